@@ -1,0 +1,177 @@
+"""What a model and a mechanism declare about themselves.
+
+Declarations are data: the one source for the documentation, for the checks of plans and
+specimens, and for the labels and units of a cube. Physics stands in the folders of the models.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.shaking import Shaking
+
+Values = Mapping[str, Any]
+"""Parameter values by name: floats or arrays that broadcast to the lanes' shape ``(n,)``."""
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A number a user may give. ``low`` and ``high`` are the bounds beyond which it has no meaning.
+
+    ``default`` None means: must be given, unless an alternative (see `Model.alternatives`) is.
+    ``low_open`` excludes the lower bound itself (a width of zero).
+    """
+
+    name: str
+    symbol: str
+    unit: str
+    meaning: str
+    low: float = -np.inf
+    high: float = np.inf
+    default: float | None = None
+    low_open: bool = False
+
+
+@dataclass(frozen=True)
+class MechanismParameter(Parameter):
+    """A parameter of a mechanism: ``null`` switches it off, ``low``..``high`` is what a fit may reach.
+
+    ``fit_inverse``: the null is infinite (or the response saturates), so a fit works with 1/value.
+    ``shape``: it shapes the effect (a gap, a time constant) and has none of its own; the mechanism
+    is off when its first parameter is at its null.
+    """
+
+    null: float = 0.0
+    fit_inverse: bool = False
+    shape: bool = False
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """An output of a run, a derived constant, or an observable channel of a history."""
+
+    name: str
+    symbol: str
+    unit: str
+    meaning: str
+    rule: str = ""
+    dtype: str = "float64"
+
+
+@dataclass(frozen=True)
+class Mechanism:
+    """Physics that a base model leaves out: one handle, the same in studies, specimens and diagnosis.
+
+    ``acts`` maps a model's name to the function that changes that model's coefficients (its type is
+    the model's own affair); a model lists the mechanisms that can act on it by these keys.
+    ``signature`` says where the residual lives when it is left out; ``sentence`` is what a report
+    prints, with the parameters' names in braces.
+    """
+
+    name: str
+    effect_class: str
+    parameters: tuple[MechanismParameter, ...]
+    equation: str
+    signature: str
+    sentence: str
+    acts: Mapping[str, Callable[..., Any]] = field(default_factory=dict)
+    source: str = ""
+
+    def parameter(self, name: str) -> MechanismParameter:
+        for parameter in self.parameters:
+            if parameter.name == name:
+                return parameter
+        raise KeyError(name)
+
+    @property
+    def nulls(self) -> dict[str, float]:
+        return {p.name: p.null for p in self.parameters}
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that happens at an instant of a history."""
+
+    time: float
+    kind: str
+    body: int = 1
+
+
+@dataclass(frozen=True)
+class History:
+    """One run over time: channels ``(n_times,)`` by observable name, and the events in order."""
+
+    time: FloatArray
+    channels: Mapping[str, FloatArray]
+    events: tuple[Event, ...]
+    outputs: Mapping[str, float]
+
+
+class Model(Protocol):
+    """What every model offers. Arrays broadcast; nothing here knows labels, files or dask.
+
+    ``alternatives``: tuples of parameter sets of which exactly one must be given, for instance
+    ``(("width", "height"), ("height", "aspect_ratio"))``.
+    ``options``: words that choose a formulation, with their values, the default first.
+    ``chaotic``: whether neighbouring trajectories part quickly, so that recordings are compared
+    window by window.
+    """
+
+    name: str
+    title: str
+    version: str
+    parameters: tuple[Parameter, ...]
+    alternatives: tuple[tuple[tuple[str, ...], ...], ...]
+    options: Mapping[str, tuple[str, ...]]
+    outputs: tuple[Quantity, ...]
+    derived: tuple[Quantity, ...]
+    observables: tuple[Quantity, ...]
+    integrators: tuple[str, ...]
+    chaotic: bool
+    vertical_by_default: bool
+
+    @property
+    def mechanisms(self) -> Mapping[str, Mechanism]: ...
+
+    def check(self, values: Values) -> list[str]:
+        """Sentences about values that have no meaning together (for instance e <= 0); empty: fine."""
+        ...
+
+    def derive(self, values: Values) -> dict[str, FloatArray]:
+        """Auxiliary constants (alpha, R, p ...), by the names of ``derived``."""
+        ...
+
+    def evaluate(
+        self,
+        values: Values,
+        shaking: Shaking,
+        scale: FloatArray,
+        *,
+        outputs: Sequence[str],
+        tail: float,
+        options: Mapping[str, str] | None = None,
+        integrator: str = "lanes",
+    ) -> dict[str, NDArray[Any]]:
+        """Run one lane per element of ``scale`` (which multiplies the shaking); outputs ``(n,)``."""
+        ...
+
+    def simulate(
+        self,
+        values: Values,
+        shaking: Shaking,
+        *,
+        scale: float = 1.0,
+        initial: Mapping[str, float] | None = None,
+        duration: float | None = None,
+        tail: float = 0.0,
+        options: Mapping[str, str] | None = None,
+        integrator: str = "lanes",
+    ) -> History:
+        """One run with its history at the time step of the shaking."""
+        ...

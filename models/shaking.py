@@ -1,0 +1,52 @@
+"""The motion of the base as the models see it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class Shaking:
+    """Base acceleration sampled at a constant step, linear between samples.
+
+    ``horizontal`` (n,) is positive to the right and ``vertical`` (n,) positive up, both in m s-2,
+    at times 0, time_step, 2 time_step ... Before the first and after the last sample the base is
+    at rest (zero acceleration).
+    """
+
+    time_step: float
+    horizontal: NDArray[np.float64]
+    vertical: NDArray[np.float64] | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("horizontal", "vertical"):
+            values = getattr(self, name)
+            if values is not None:
+                array = np.ascontiguousarray(values, dtype=np.float64)
+                array.flags.writeable = False
+                object.__setattr__(self, name, array)
+        if not self.time_step > 0.0:
+            raise ValueError(f"time_step is {self.time_step!r} s: give a positive time step")
+        if self.vertical is not None and self.vertical.shape != self.horizontal.shape:
+            raise ValueError(
+                f"vertical has {self.vertical.size} samples, horizontal {self.horizontal.size}: "
+                "cut both components to one length"
+            )
+
+    @property
+    def duration(self) -> float:
+        """Time of the last sample, in s."""
+        return (self.horizontal.size - 1) * self.time_step
+
+    @property
+    def pga(self) -> float:
+        """Largest absolute horizontal acceleration, in m s-2."""
+        return float(np.max(np.abs(self.horizontal)))
+
+    @classmethod
+    def silence(cls, duration: float, time_step: float) -> Shaking:
+        """No shaking for ``duration`` seconds (free rocking)."""
+        return cls(time_step, np.zeros(int(round(duration / time_step)) + 1))
