@@ -1,0 +1,125 @@
+"""Units: what a user writes becomes SI once, where it is read.
+
+A number is already in SI; a string carries its unit: "1.8 m", "4.5 MPa", "5 deg", "2 t".
+`g` is the standard gravity 9.80665 m s-2 (3rd CGPM, 1901) where an acceleration is wanted and the
+gram elsewhere. Units are written as CF does ("m s-2") or with / * ^ ("m/s^2").
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+from models.errors import InputError
+
+if TYPE_CHECKING:
+    import pint
+
+_NUMBER = re.compile(r"\s*([+-]?(?:inf|nan|(?:\d[\d_]*\.?\d*|\.\d+)(?:[eE][+-]?\d+)?))\s*(.*?)\s*")
+_EXPONENT = re.compile(r"(?<=[A-Za-zµμ])\s*(?:\^|\*\*)?\s*\(?([+-]?\d+)\)?")
+_PRODUCT = re.compile(r"(?<=[\w)])\s+(?=[A-Za-zµμ(])")
+_ANGLES = ("radian", "degree", "arcminute", "arcsecond", "turn", "revolution")
+_ONE = ("", "1", "-")
+
+
+@cache
+def _registry() -> pint.UnitRegistry[Any]:
+    import pint
+
+    return pint.UnitRegistry()
+
+
+@cache
+def _quantity(text: str, gravity: bool) -> Any:
+    """One of the unit as a pint quantity; raises ValueError for words pint does not know."""
+    if text.strip() in _ONE:
+        return _registry().Quantity(1.0)
+    plain = text.strip().replace("·", " ").replace("²", "2").replace("³", "3").replace("°", "deg")
+    product = _PRODUCT.sub(" * ", _EXPONENT.sub(r"**(\1)", plain.replace("%", "percent")))
+    if gravity:
+        product = re.sub(r"\bg\b", "standard_gravity", product)
+    try:
+        return _registry().Quantity(1.0, _registry().parse_units(product))
+    except Exception as error:  # pint lets attribute, tokenizer and type errors through
+        raise ValueError(text) from error
+
+
+@cache
+def _factor(unit: str, si_unit: str) -> float | None:
+    """How many ``si_unit`` one ``unit`` is; None where the dimensions differ."""
+    wanted = _quantity(si_unit, False)
+    given = _quantity(unit, bool(wanted.check("[acceleration]")))
+    if not given._is_multiplicative or given.dimensionality != wanted.dimensionality:
+        return None
+    # A radian is dimensionless for pint; a slope written as an angle is a mistake all the same.
+    angle = any(str(name).endswith(_ANGLES) for name, _ in given.unit_items())
+    if (si_unit in _ONE and angle) or (si_unit == "rad" and not angle):
+        return None
+    return float(given.to(wanted.units).magnitude)
+
+
+def factor_to_si(unit: str, si_unit: str, where: str) -> float:
+    """How many ``si_unit`` one ``unit`` is, for arrays in one unit.
+
+    Raises InputError for an unknown unit or one of another dimension.
+    """
+    try:
+        factor = _factor(unit, si_unit)
+    except ValueError:
+        raise InputError(
+            f"{where}: unit '{unit}' is not known; write for example '{_example(si_unit)}'."
+        ) from None
+    if factor is None:
+        wanted = "a pure number is needed" if si_unit in _ONE else f"'{si_unit}' is needed"
+        raise InputError(f"{where}: unit '{unit}' where {wanted}; write for example '{_example(si_unit)}'.")
+    return factor
+
+
+def to_si(value: object, si_unit: str, where: str) -> float:
+    """A number (taken as SI) or a string with its unit, as a number in ``si_unit``.
+
+    Infinity passes (some effects are null there), NaN does not. Raises InputError.
+
+    >>> to_si("0.3 g", "m s-2", "pga")
+    2.941995
+    >>> to_si("2 t", "kg", "mass")
+    2000.0
+    """
+    if isinstance(value, bool) or not isinstance(value, int | float | str):
+        raise InputError(f"{where} = {value!r}: give a number{_in(si_unit)} or a string with its unit.")
+    if isinstance(value, str):
+        match = _NUMBER.fullmatch(value)
+        if match is None:
+            raise InputError(
+                f"{where} = '{value}': give a number and its unit, for example '{_sample(si_unit)}'."
+            )
+        number, unit = float(match[1]), match[2]
+        if not unit and si_unit not in _ONE:
+            raise InputError(
+                f"{where} = '{value}' has no unit; write '{match[1]} {si_unit}' or, without quotes, {match[1]}."
+            )
+        number *= factor_to_si(unit, si_unit, f"{where} = '{value}'")
+    else:
+        number = float(value)
+    if math.isnan(number):
+        raise InputError(f"{where} = {value} is not a number; give a value{_in(si_unit)} or leave it out.")
+    return number
+
+
+def with_unit(value: float, si_unit: str) -> str:
+    """A value with its unit, for a sentence."""
+    return f"{value:.6g}" if si_unit in _ONE else f"{value:.6g} {si_unit}"
+
+
+def _in(si_unit: str) -> str:
+    return "" if si_unit in _ONE else f" in {si_unit}"
+
+
+def _example(si_unit: str) -> str:
+    return {"m s-2": "g", "N m-2": "MPa", "rad": "deg", "1": "%"}.get(si_unit, si_unit)
+
+
+def _sample(si_unit: str) -> str:
+    return "0.5" if si_unit in _ONE else f"0.5 {_example(si_unit)}"
