@@ -1,0 +1,212 @@
+"""The coefficients of one rocking block: what every integrator of the model starts from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+
+from models.base import FloatArray, Values
+
+
+@dataclass(frozen=True)
+class Block:
+    """Geometry, inertia and laws of n blocks, one array ``(n,)`` (float) a field, SI units.
+
+    The body has mass ``mass`` (M), its mass centre at ``height`` (h) over the base and
+    ``right``/``left`` (b+, b-) horizontally from the pivots on which it stands for theta > 0 and
+    theta < 0; ``inertia`` (I) is about the mass centre. About a pivot I_O = I + M (h^2 + b^2).
+
+    The base acceleration is ``offset + scale a(t)``, the apparent gravity
+    G = ``gravity + vertical_factor scale a_z(t)``.
+    Impact (see `models.housner.impact`): ``restitution`` is a given absolute ratio (nan: angular
+    momentum decides), times ``restitution_factor``, and the laws' coefficients.
+    The remaining fields belong to mechanisms; their null switches them off.
+    """
+
+    mass: FloatArray
+    height: FloatArray
+    right: FloatArray
+    left: FloatArray
+    inertia: FloatArray
+    gravity: FloatArray
+    offset: FloatArray
+    vertical_factor: FloatArray
+    # impact laws
+    restitution: FloatArray
+    restitution_factor: FloatArray
+    aspect_coefficient: FloatArray
+    amplitude_exponent: FloatArray
+    aspect: FloatArray
+    velocity_slope: FloatArray
+    loss_per_impact: FloatArray
+    restitution_floor: FloatArray
+    contact_restitution: FloatArray
+    # geometry that changes with the motion
+    corner_radius: FloatArray
+    crushing_rate: FloatArray
+    joint_angle: FloatArray
+    # couples: N m per rad, rad, N m s, N m, 1 (over I_O)
+    stiffness: FloatArray
+    gap: FloatArray
+    viscous: FloatArray
+    coulomb: FloatArray
+    quadratic: FloatArray
+    # base and body
+    pitch_per_acceleration: FloatArray
+    pitch_low_pass: FloatArray
+    friction: FloatArray
+    first_frequency: FloatArray
+
+    @property
+    def size(self) -> int:
+        return int(self.mass.size)
+
+    def replace(self, **changes: Any) -> Block:
+        """A copy with fields replaced; values broadcast to ``(n,)``."""
+        arrays = {k: np.broadcast_to(np.asarray(v, float), self.mass.shape) for k, v in changes.items()}
+        return replace(self, **arrays)
+
+    def take(self, index: Any) -> Block:
+        """The blocks selected by an index array or mask."""
+        return replace(self, **{f.name: getattr(self, f.name)[index] for f in fields(self)})
+
+    @property
+    def half_width(self) -> FloatArray:
+        """The smaller distance to a pivot: the side on which the block tips first."""
+        return np.minimum(self.right, self.left)
+
+    @property
+    def slenderness(self) -> FloatArray:
+        """alpha = atan(b/h) in rad, of the side that tips first."""
+        return np.arctan2(self.half_width, self.height)
+
+    @property
+    def radius(self) -> FloatArray:
+        """R in m, pivot to mass centre, of the side that tips first."""
+        return np.hypot(self.half_width, self.height)
+
+    @property
+    def pivot_inertia(self) -> FloatArray:
+        """I_O in kg m2, about the pivot of the side that tips first."""
+        return self.inertia + self.mass * self.radius**2
+
+    @property
+    def frequency_parameter(self) -> FloatArray:
+        """p = sqrt(M g R / I_O) in s-1."""
+        return np.sqrt(self.mass * self.gravity * self.radius / self.pivot_inertia)
+
+    @property
+    def momentum_restitution(self) -> FloatArray:
+        """Housner's e = [I + M (h^2 - b+ b-)] / [I + M (h^2 + b^2)], the smaller of both directions.
+
+        For b+ = b- it equals 1 - 2 M b^2 / I_O.
+        """
+        before = self.inertia + self.mass * (self.height**2 - self.right * self.left)
+        after = self.inertia + self.mass * (self.height**2 + np.maximum(self.right, self.left) ** 2)
+        return before / after
+
+    @property
+    def plain(self) -> bool:
+        """Whether no mechanism adds a couple, a rolling corner, pitch, sliding, flight or flexure."""
+        nulls = (
+            (self.corner_radius, 0.0),
+            (self.crushing_rate, 0.0),
+            (self.joint_angle, 0.0),
+            (self.stiffness, 0.0),
+            (self.viscous, 0.0),
+            (self.coulomb, 0.0),
+            (self.quadratic, 0.0),
+            (self.pitch_per_acceleration, 0.0),
+            (self.contact_restitution, 0.0),
+            (self.friction, np.inf),
+            (self.first_frequency, np.inf),
+        )
+        return all(bool(np.all(values == null)) for values, null in nulls)
+
+
+def assemble(values: Values, vertical: bool, size: int | None = None) -> Block:
+    """The block of the parameters alone, without mechanisms; ``values`` broadcast to ``(n,)``.
+
+    Wall (m1, h1 = height/2, b = width/2) and top mass (m2, its centre h2 above the wall's top)
+    move as one body:  S = m1 h1 + m2 (2 h1 + h2),  M = m1 + m2,  h = S/M,
+    I = I1 + m1 (h - h1)^2 + I2 + m2 (2 h1 + h2 - h)^2. A solid rectangle has
+    I1 = m1 (width^2 + height^2)/12.
+    """
+    given = {name: np.atleast_1d(np.asarray(value, float)) for name, value in values.items()}
+    shape = np.broadcast_shapes(*(v.shape for v in given.values()), (size or 1,))
+
+    def value(name: str, default: float) -> FloatArray:
+        return np.broadcast_to(given.get(name, np.asarray(default)), shape).astype(float)
+
+    height = value("height", np.nan)
+    width = value("width", np.nan) if "width" in given else value("aspect_ratio", np.nan) * height
+    mass, top = value("mass", np.nan), value("top_mass", 0.0)
+    own = value("inertia", np.nan) if "inertia" in given else mass * (width**2 + height**2) / 12.0
+    total = mass + top
+    top_height = height + value("top_mass_height", 0.0)
+    centre = (mass * height / 2.0 + top * top_height) / total
+    inertia = (
+        own
+        + mass * (centre - height / 2.0) ** 2
+        + value("top_mass_inertia", 0.0)
+        + top * (top_height - centre) ** 2
+    )
+    zero, one, infinite = np.zeros(shape), np.ones(shape), np.full(shape, np.inf)
+    return Block(
+        mass=total,
+        height=centre,
+        right=width / 2.0,
+        left=width / 2.0,
+        inertia=inertia,
+        gravity=value("gravity", 9.80665),
+        offset=zero,
+        vertical_factor=one if vertical else zero,
+        restitution=value("restitution", np.nan),
+        restitution_factor=one,
+        aspect_coefficient=value("restitution_aspect_coefficient", 0.0),
+        amplitude_exponent=value("restitution_amplitude_exponent", 0.0),
+        aspect=width / height,
+        velocity_slope=zero,
+        loss_per_impact=zero,
+        restitution_floor=zero,
+        contact_restitution=zero,
+        corner_radius=zero,
+        crushing_rate=zero,
+        joint_angle=zero,
+        stiffness=zero,
+        gap=zero,
+        viscous=zero,
+        coulomb=zero,
+        quadratic=zero,
+        pitch_per_acceleration=zero,
+        pitch_low_pass=np.full(shape, 10.0),
+        friction=infinite,
+        first_frequency=infinite,
+    )
+
+
+def mechanism_values(values: Values) -> dict[str, dict[str, Any]]:
+    """The values addressed as ``mechanism.parameter``, by mechanism and parameter."""
+    found: dict[str, dict[str, Any]] = {}
+    for key, value in values.items():
+        mechanism, dot, parameter = key.partition(".")
+        if dot:
+            found.setdefault(mechanism, {})[parameter] = value
+    return found
+
+
+def build(values: Values, vertical: bool, size: int | None = None) -> Block:
+    """The block with the mechanisms that ``values`` switch on, in the order of the catalogue."""
+    from models.mechanisms import MECHANISMS
+
+    plain: Mapping[str, Any] = {k: v for k, v in values.items() if "." not in k}
+    switched = mechanism_values(values)
+    shape = np.broadcast_shapes(*(np.shape(v) for v in values.values()), (size or 1,))
+    block = assemble(plain, vertical, int(np.prod(shape)))
+    for name, mechanism in MECHANISMS.items():
+        if name in switched:
+            block = mechanism.acts["housner"](block, {**mechanism.nulls, **switched[name]})
+    return block

@@ -1,0 +1,328 @@
+"""One step of one lane with its events: onset, impact, rest. Rare, so written plainly.
+
+Inside the step the inputs are linear in the fraction f of the step (0..1).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from models.housner.declaration import MOST_IMPACTS_PER_STEP
+from models.housner.lanes.equation import acceleration, rk4
+from models.housner.lanes.impact import kinetic_energy, pivot, restitution
+from models.housner.lanes.rows import (
+    B, CB, CH, COULOMB, DEMAND, DIRECTION, DOWN, GRAVITY, H, HELD, IM, JOINT, LAMBDA, LOG_IMPACT, LOG_ONSET,
+    LOG_REST, NOT_CONVERGED, OFFSET, PEAK, PITCH, Q_HEIGHT, Q_INERTIA, Q_LEFT, Q_MASS, Q_REST, Q_RIGHT,
+    R_DISSIPATED, R_ENERGY, R_IMPACTS, R_MODE, R_ONSET, R_PEAK, R_STATUS, R_SWING, R_UP_SINCE, R_UPLIFT,
+    SCALE, SIDE, TH, TH0, OM, OM0, UP, VSCALE, W, WORK,
+)  # fmt: skip
+from models.lanes.compiler import called
+
+Table = Any
+NONE = 2.0
+"""A fraction of the step that never comes."""
+
+
+@called
+def note(log: Table, count: Table, lane: int, time: float, kind: float) -> None:
+    """Write an event in the log of this lane, as long as there is room."""
+    if log.shape[1] > 0:
+        if count[lane] < log.shape[1]:
+            log[lane, count[lane], 0] = time
+            log[lane, count[lane], 1] = kind
+        count[lane] += 1
+
+
+@called
+def stand_on(given: Table, w: Table, lane: int, slot: int, side: float, linear: Any) -> None:
+    """Set the coefficients of the side on which the block now stands."""
+    half = given[Q_RIGHT, lane] if side > 0.0 else given[Q_LEFT, lane]
+    height, mass, inertia = given[Q_HEIGHT, lane], given[Q_MASS, lane], given[Q_INERTIA, lane]
+    corner = inertia + mass * (height * height + half * half)
+    w[SIDE * W + slot] = side
+    w[B * W + slot] = half
+    w[H * W + slot] = height
+    w[IM * W + slot] = inertia / mass
+    w[LAMBDA * W + slot] = corner / mass
+    if linear is not None:
+        ch = mass * math.sqrt(height * height + half * half) / corner
+        w[CB * W + slot] = side * math.atan(half / height) * ch
+        w[CH * W + slot] = ch
+    else:
+        w[CB * W + slot] = side * mass * half / corner
+        w[CH * W + slot] = mass * height / corner
+
+
+@called
+def inputs(w: Table, slot: int, record: Table, i: int, f: float) -> tuple[float, float, float, float]:
+    """a, G, psi, psi'' at the fraction f of step i."""
+    a = (1.0 - f) * record[0, i] + f * record[0, i + 1]
+    v = (1.0 - f) * record[1, i] + f * record[1, i + 1]
+    p = (1.0 - f) * record[2, i] + f * record[2, i + 1]
+    q = (1.0 - f) * record[3, i] + f * record[3, i + 1]
+    scale, pitch = w[SCALE * W + slot], w[PITCH * W + slot]
+    return (
+        scale * a + w[OFFSET * W + slot],
+        w[GRAVITY * W + slot] + w[VSCALE * W + slot] * v,
+        pitch * p,
+        pitch * q,
+    )
+
+
+@called
+def excess(
+    given: Table, w: Table, lane: int, slot: int, side: float,
+    a: float, g: float, psi: float, psi2: float, linear: Any,
+) -> float:  # fmt: skip
+    """Moment over M that lifts the block at rest onto ``side``: positive means it starts to rock."""
+    h = given[Q_HEIGHT, lane]
+    b = pivot(given, w, lane, slot, side)
+    inertia = given[Q_INERTIA, lane] / given[Q_MASS, lane]
+    push = -side * ((a - g * psi) * h + (inertia + h * h) * psi2)
+    if w[JOINT * W + slot] >= 0.0:
+        return float(push - w[COULOMB * W + slot])
+    if linear is not None:
+        return float(push - g * h * math.atan(b / h))
+    return float(push - g * b - w[COULOMB * W + slot])
+
+
+@called
+def onset(
+    given: Table, w: Table, lane: int, slot: int, record: Table, i: int, f: float, linear: Any
+) -> tuple[float, float]:
+    """First fraction >= f of step i at which the block leaves rest, and the side; (NONE, 0) if it stays."""
+    a0, g0, p0, q0 = inputs(w, slot, record, i, f)
+    a1, g1, p1, q1 = inputs(w, slot, record, i, 1.0)
+    first, which = NONE, 0.0
+    for side in (1.0, -1.0):
+        m0 = excess(given, w, lane, slot, side, a0, g0, p0, q0, linear)
+        m1 = excess(given, w, lane, slot, side, a1, g1, p1, q1, linear)
+        at = NONE
+        if m0 > 0.0:
+            at = f
+        elif m1 > 0.0:
+            at = f + (1.0 - f) * (-m0) / (m1 - m0)
+        if at < first:
+            first, which = at, side
+    return first, which
+
+
+@called
+def next_onset(
+    given: Table, w: Table, lane: int, slot: int, record: Table, i: int, last: int, chunk: Table, linear: Any
+) -> int:
+    """First step from i on in which the resting block is lifted, ``last`` if there is none.
+
+    ``chunk`` (4, n) holds the extremes of the record over 64 steps: |a|, -a_z, |psi|, |psi''|.
+    """
+    h = given[Q_HEIGHT, lane]
+    b = min(pivot(given, w, lane, slot, 1.0), pivot(given, w, lane, slot, -1.0))
+    if linear is not None:
+        b = h * math.atan(b / h)
+    if w[JOINT * W + slot] >= 0.0:
+        b = 0.0
+    inertia = given[Q_INERTIA, lane] / given[Q_MASS, lane] + h * h
+    scale, pitch = abs(w[SCALE * W + slot]), abs(w[PITCH * W + slot])
+    while i < last:
+        if i % 64 == 0 and i + 64 <= last:
+            c = i // 64
+            low = w[GRAVITY * W + slot] - abs(w[VSCALE * W + slot]) * chunk[1, c]
+            high = w[GRAVITY * W + slot] + abs(w[VSCALE * W + slot]) * chunk[1, c]
+            push = (scale * chunk[0, c] + abs(w[OFFSET * W + slot]) + high * pitch * chunk[2, c]) * h
+            if push + inertia * pitch * chunk[3, c] < low * b:
+                i += 64
+                continue
+        f, _ = onset(given, w, lane, slot, record, i, 0.0, linear)
+        if f < NONE:
+            return i
+        i += 1
+    return last
+
+
+@called
+def turning_point(theta: float, omega: float, theta1: float, omega1: float, step: float) -> float:
+    """|theta| where the cubic through both ends of the step turns (two Newton steps from the secant)."""
+    c = 3.0 * (theta1 - theta) - step * (2.0 * omega + omega1)
+    d = 2.0 * (theta - theta1) + step * (omega + omega1)
+    f = omega / (omega - omega1)
+    for _ in range(2):
+        curve = 2.0 * c + 6.0 * d * f
+        if curve != 0.0:
+            f -= (step * omega + f * (2.0 * c + 3.0 * d * f)) / curve
+    f = min(1.0, max(0.0, f))
+    return abs(theta + f * (step * omega + f * (c + f * d)))
+
+
+@called
+def raise_peak(result: Table, w: Table, lane: int, slot: int, size: float) -> None:
+    """Keep the largest rotation of the run and of this swing."""
+    result[R_SWING, lane] = max(result[R_SWING, lane], size)
+    if size > result[R_PEAK, lane]:
+        result[R_PEAK, lane] = size
+        w[PEAK * W + slot] = size
+
+
+@called
+def land(
+    given: Table, result: Table, w: Table, lane: int, slot: int, omega: float, time: float,
+    log: Table, count: Table, linear: Any,
+) -> float:  # fmt: skip
+    """An impact at theta = 0 with velocity ``omega``: change of pivot, loss; returns the velocity after."""
+    side = w[SIDE * W + slot]
+    e = restitution(given, result, w, lane, slot, side, omega)
+    before = kinetic_energy(given, w, lane, slot, side, omega)
+    after = e * omega
+    left = kinetic_energy(given, w, lane, slot, -side, after)
+    result[R_DISSIPATED, lane] += before - left
+    result[R_IMPACTS, lane] += 1.0
+    note(log, count, lane, time, LOG_IMPACT)
+    stand_on(given, w, lane, slot, -side, linear)
+    calm = abs(after) < given[Q_REST, lane]
+    if w[JOINT * W + slot] >= 0.0:
+        result[R_ENERGY, lane] = max(result[R_ENERGY, lane], before)
+        calm = left < 1e-6 * result[R_ENERGY, lane]
+    if calm:
+        result[R_DISSIPATED, lane] += left
+        result[R_MODE, lane] = DOWN
+        after = 0.0
+    result[R_SWING, lane] = 0.0
+    return float(after)
+
+
+@called
+def one_step(
+    given: Table, result: Table, w: Table, lane: int, slot: int, record: Table, i: int, h: float,
+    log: Table, count: Table, general: Any, linear: Any,
+) -> None:  # fmt: skip
+    """Advance a lane over step i from theta0, theta0' in ``work``, whatever happens in it."""
+    theta, omega = w[TH0 * W + slot], w[OM0 * W + slot]
+    f, rounds = 0.0, 0
+    while f < 1.0:
+        rounds += 1
+        if rounds > MOST_IMPACTS_PER_STEP:
+            result[R_STATUS, lane] = NOT_CONVERGED
+            result[R_MODE, lane] = DOWN
+            theta, omega = 0.0, 0.0
+            break
+        if result[R_MODE, lane] == DOWN:
+            theta, omega = 0.0, 0.0
+            at, side = onset(given, w, lane, slot, record, i, f, linear)
+            since = result[R_UP_SINCE, lane]
+            if at > f and since == since:
+                result[R_UPLIFT, lane] += (i + f) * h - since
+                result[R_UP_SINCE, lane] = math.nan
+                note(log, count, lane, (i + f) * h, LOG_REST)
+            if at >= 1.0:
+                break
+            f = at
+            result[R_MODE, lane] = UP
+            stand_on(given, w, lane, slot, side, linear)
+            w[DIRECTION * W + slot] = side
+            if not result[R_UP_SINCE, lane] == result[R_UP_SINCE, lane]:
+                result[R_UP_SINCE, lane] = (i + f) * h
+                note(log, count, lane, (i + f) * h, LOG_ONSET)
+                if not result[R_ONSET, lane] == result[R_ONSET, lane]:
+                    result[R_ONSET, lane] = (i + f) * h
+        if result[R_MODE, lane] == HELD:
+            if not released(w, slot, theta, record, i, f, general, linear):
+                break
+            result[R_MODE, lane] = UP
+        if omega != 0.0:
+            w[DIRECTION * W + slot] = 1.0 if omega > 0.0 else -1.0
+        rest = 1.0 - f
+        th1, om1, work = part(w, slot, theta, omega, record, i, f, rest, h, general, linear)
+        if w[SIDE * W + slot] * th1 < 0.0:
+            rest, om1, work = crossing(w, slot, theta, omega, record, i, f, rest, h, general, linear)
+            if omega * om1 < 0.0:
+                raise_peak(result, w, lane, slot, turning_point(theta, omega, 0.0, om1, rest * h))
+            f += rest
+            w[WORK * W + slot] += work
+            theta = 0.0
+            omega = land(given, result, w, lane, slot, om1, (i + f) * h, log, count, linear)
+            continue
+        if omega * om1 < 0.0:
+            if w[COULOMB * W + slot] > 0.0:
+                rest, th1, work = turning(w, slot, theta, omega, record, i, f, rest, h, general, linear)
+                om1 = 0.0
+                w[DIRECTION * W + slot] = -w[DIRECTION * W + slot]
+                result[R_MODE, lane] = HELD
+                raise_peak(result, w, lane, slot, abs(th1))
+            else:
+                raise_peak(result, w, lane, slot, turning_point(theta, omega, th1, om1, rest * h))
+        w[WORK * W + slot] += work
+        theta, omega, f = th1, om1, f + rest
+    w[TH * W + slot], w[OM * W + slot] = theta, omega
+
+
+@called
+def part(
+    w: Table, slot: int, theta: float, omega: float, record: Table, i: int, f: float, share: float, h: float,
+    general: Any, linear: Any,
+) -> tuple[float, float, float]:  # fmt: skip
+    """theta, theta' and the work in couples after ``share`` of step i from its fraction f."""
+    a0, g0, p0, q0 = inputs(w, slot, record, i, f)
+    a1, g1, p1, q1 = inputs(w, slot, record, i, f + share)
+    th1, om1, demand, work = rk4(
+        w, slot, theta, omega, share * h, a0, a1, g0, g1, p0, p1, q0, q1, general, linear
+    )
+    w[DEMAND * W + slot] = max(w[DEMAND * W + slot], demand)
+    return th1, om1, work
+
+
+@called
+def crossing(
+    w: Table, slot: int, theta: float, omega: float, record: Table, i: int, f: float, rest: float, h: float,
+    general: Any, linear: Any,
+) -> tuple[float, float, float]:  # fmt: skip
+    """Share of the step until theta = 0, theta' and work there: Newton within a bracket on the step itself."""
+    side = w[SIDE * W + slot]
+    low, high, share = 0.0, rest, rest
+    om1, work = omega, 0.0
+    for _ in range(60):
+        th1, om1, work = part(w, slot, theta, omega, record, i, f, share, h, general, linear)
+        if side * th1 < 0.0:
+            high = share
+        else:
+            low = share
+        if abs(th1) <= 1e-15 or high - low <= 1e-15:
+            break
+        trial = share - th1 / (om1 * h) if side * om1 < 0.0 else -1.0
+        share = trial if low < trial < high else 0.5 * (low + high)
+    return share, om1, work
+
+
+@called
+def turning(
+    w: Table, slot: int, theta: float, omega: float, record: Table, i: int, f: float, rest: float, h: float,
+    general: Any, linear: Any,
+) -> tuple[float, float, float]:  # fmt: skip
+    """Share of the step until theta' = 0, theta and work there, by bisection and secant."""
+    low, high = 0.0, rest
+    f_low, f_high = omega, -omega
+    share, th1, work = rest, theta, 0.0
+    for k in range(60):
+        th1, om1, work = part(w, slot, theta, omega, record, i, f, share, h, general, linear)
+        if om1 * omega > 0.0:
+            low, f_low = share, om1
+        else:
+            high, f_high = share, om1
+        if abs(om1) <= 1e-14 or high - low <= 1e-15:
+            break
+        trial = low - f_low * (high - low) / (f_high - f_low)
+        share = trial if low < trial < high and k % 3 < 2 else 0.5 * (low + high)
+    return share, th1, work
+
+
+@called
+def released(
+    w: Table, slot: int, theta: float, record: Table, i: int, f: float, general: Any, linear: Any
+) -> bool:
+    """Whether the other moments overcome the Coulomb couple that holds the block; sets its direction."""
+    a, g, p, q = inputs(w, slot, record, i, f)
+    for direction in (1.0, -1.0):
+        w[DIRECTION * W + slot] = direction
+        accel, _, _, _ = acceleration(w, slot, theta, 0.0, a, g, p, q, general, linear)
+        if accel * direction > 0.0:
+            return True
+    return False

@@ -1,0 +1,57 @@
+"""Where a quantity stands in the tables of the lane kernel.
+
+``work`` is one flat array: row r of the W lanes under way lies at ``work[r * W : (r + 1) * W]``
+(constant offsets let the compiler prove that rows do not overlap). ``given`` and ``result`` are
+tables (rows, n) over all lanes.
+"""
+
+from __future__ import annotations
+
+W = 16
+"""Lanes under way together: two full 512-bit or four 256-bit vectors."""
+
+# --- work: state and inputs of the step
+TH, OM = 0, 1  # theta, theta'
+TH0, OM0 = 2, 3  # the same at the start of the step
+A0, G0 = 4, 5  # base acceleration and apparent gravity at the start of the coming step
+RA, RV = 6, 7  # record, horizontal and vertical, at the end of the step
+SCALE, OFFSET, GRAVITY, VSCALE = 8, 9, 10, 11
+SIDE = 12  # sign of theta
+LIMIT = 13  # |theta| beyond which a lane needs attention
+DEMAND = 14  # largest |H|/N
+# the side on which the block stands: M b/I_O (signed), M h/I_O, I_O/M
+CB, CH, LAMBDA = 15, 16, 17
+# --- work: rows that only the general equation reads
+B, H, IM = 18, 19, 20  # b of this side, h, I/M
+RHO, CRUSH, PEAK = 21, 22, 23
+JOINT = 24  # 1/joint angle, negative when rigid
+K, GAP, VISCOUS, COULOMB, QUADRATIC = 25, 26, 27, 28, 29  # over M
+DIRECTION = 30  # sign of theta' held during the step
+PITCH, RP, RPP, P0, PP0 = 31, 32, 33, 34, 35  # rad s2 m-1 times scale; psi and psi'' of the record
+WORK, WORK_STEP = 36, 37  # work lost in couples over M: in all, in this step
+FLAG = 38  # whether the lane needs attention after this step
+N_WORK = 39
+
+# --- given: constants of a lane
+(
+    Q_SCALE, Q_OFFSET, Q_GRAVITY, Q_VSCALE, Q_MASS, Q_HEIGHT, Q_RIGHT, Q_LEFT, Q_INERTIA,
+    Q_RESTITUTION, Q_FACTOR, Q_ASPECT, Q_EXPONENT, Q_SLOPE, Q_LOSS, Q_FLOOR, Q_REST, Q_ALPHA, Q_P,
+    Q_RHO, Q_CRUSH, Q_JOINT, Q_K, Q_GAP, Q_VISCOUS, Q_COULOMB, Q_QUADRATIC, Q_PITCH,
+    Q_BOUNCE, Q_FRICTION, Q_FREQUENCY, Q_THETA, Q_OMEGA, Q_PEAK, Q_IMPACTS,
+) = range(35)  # fmt: skip
+N_GIVEN = 35
+
+# --- result: what a lane has gathered
+(
+    R_PEAK, R_UPLIFT, R_ONSET, R_OVERTURNED_AT, R_IMPACTS, R_ROTATION, R_DISSIPATED, R_DEMAND, R_STATUS,
+    R_SWING, R_UP_SINCE, R_MODE, R_ENERGY,
+) = range(13)  # fmt: skip
+N_RESULT = 13
+
+# R_MODE: rocking in the vector loop, at rest, or held at a turning point by a Coulomb couple
+UP, DOWN, HELD = 0.0, 1.0, 2.0
+
+REST, ROCKING, OVERTURNED, NOT_CONVERGED = 1.0, 2.0, 3.0, 4.0
+
+# kinds of events in a log, in the order of `models.housner.lanes.run.EVENTS`
+LOG_ONSET, LOG_IMPACT, LOG_REST, LOG_OVERTURNED = 0.0, 1.0, 2.0, 3.0

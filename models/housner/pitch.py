@@ -1,0 +1,32 @@
+"""The pitching of the table that carries the block.
+
+    psi(t) = pitch_per_acceleration * lowpass(a(t)),  clockwise positive
+
+with a second-order Butterworth low-pass run forwards and backwards (no phase). Against the table,
+which turns about the middle of the block's base, the mass centre (height h) feels to first order in
+psi a horizontal acceleration a - G psi, and the frame's angular acceleration adds the couple
+-(I + M h^2) psi''. (The frame's Coriolis force does no work, its centrifugal one is of second order.)
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+from scipy.signal import butter, sosfiltfilt
+
+from models.base import FloatArray
+
+
+def pitch(acceleration: FloatArray, time_step: float, low_pass: float) -> tuple[FloatArray, FloatArray]:
+    """psi and psi'' per unit of ``pitch_per_acceleration`` at the samples of ``acceleration`` (m s-2).
+
+    ``low_pass`` in Hz, under half the sampling rate. The base is still before and after the record.
+    psi'' belongs to the cubic spline through psi, so it is linear between samples.
+    """
+    sections = butter(2, low_pass, fs=1.0 / time_step, output="sos")
+    margin = int(np.ceil(2.0 / (low_pass * time_step)))
+    padded = np.pad(acceleration, margin)
+    filtered = sosfiltfilt(sections, padded, padtype=None)
+    spline = CubicSpline(np.arange(padded.size) * time_step, filtered)
+    inside = slice(margin, margin + acceleration.size)
+    return filtered[inside], spline(spline.x, 2)[inside]

@@ -1,0 +1,1 @@
+"""What compiled lane kernels share: the compiler's settings, its cache, and elementary functions."""

@@ -1,0 +1,29 @@
+"""The body rocks on points inside its corners."""
+
+from __future__ import annotations
+
+from models.base import Mechanism, MechanismParameter, Values
+from models.housner.block import Block
+
+
+def on_housner(block: Block, values: Values) -> Block:
+    left_over = 1.0 - values["inset_over_half_width"]
+    return block.replace(
+        right=block.right * left_over, left=block.left * left_over, aspect=block.aspect * left_over
+    )
+
+
+MECHANISM = Mechanism(
+    name="pivot_inset",
+    effect_class="contact_geometry",
+    parameters=(
+        MechanismParameter(
+            "inset_over_half_width", "inset", "1", "shift of both pivots inwards over the half width", 0.0, 0.35
+        ),
+    ),
+    equation="b' = (1 - inset) b; alpha, R, I_O, the onset and e follow",
+    signature="all rocking at constant sign of theta; the onset comes earlier",
+    sentence="the block rocks on points {inset_over_half_width:.1%} of the half width inside its corners",
+    acts={"housner": on_housner},
+    source="Mordant, Denoel, Degee (COMPDYN 2015), section 2.1",
+)

@@ -1,0 +1,26 @@
+"""Impacts lose more or less energy than the conservation of angular momentum says."""
+
+from __future__ import annotations
+
+from models.base import Mechanism, MechanismParameter, Values
+from models.housner.block import Block
+
+
+def on_housner(block: Block, values: Values) -> Block:
+    return block.replace(restitution_factor=block.restitution_factor * values["factor_on_housner"])
+
+
+MECHANISM = Mechanism(
+    name="restitution",
+    effect_class="restitution",
+    parameters=(
+        MechanismParameter(
+            "factor_on_housner", "f_e", "1", "factor on the restitution of angular momentum", 0.5, 1.1, null=1.0
+        ),
+    ),
+    equation="theta'_after = f_e e_H theta'_before",
+    signature="only at impacts",
+    sentence="each impact keeps {factor_on_housner:.3f} times the angular velocity that angular momentum predicts",
+    acts={"housner": on_housner},
+    source="ElGawady et al. (Earthquake Engng Struct. Dyn. 40, 2011): .95 on concrete, .67 on rubber",
+)
