@@ -1,0 +1,134 @@
+"""Text tables with a TOML beside them that states columns, units, signs and sampling.
+
+``record.csv`` and ``record.toml``:
+
+    time_step = "0.005 s"                  # or: time = { column = "t", unit = "s" }
+    delimiter = ","                        # default; " " for any white space
+    skip = 0                               # lines before the header
+    header = true                          # one line with the columns' names; false: columns by number
+    [columns]
+    base_acceleration_x = { column = "acc_x", unit = "g", sign = -1 }
+    base_acceleration_z = { column = 3, unit = "cm/s2" }       # number, from 1
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import Field
+
+from grids.files import Schema, check, parse_toml, read_text
+from grids.sampling import FloatArray, check_step, parse_numbers, uniform_step
+from grids.units import factor_to_si, to_si
+from models.errors import InputError, nearest
+
+
+class Column(Schema):
+    """Where a channel stands in the table, in which unit, and whether its sign is turned."""
+
+    column: str | int
+    unit: str
+    sign: Literal[1, -1] = 1
+
+
+class Layout(Schema):
+    """What the TOML beside a table states; exactly one of ``time_step`` and ``time``."""
+
+    columns: dict[str, Column] = Field(min_length=1)
+    time_step: str | float | None = None
+    time: Column | None = None
+    delimiter: str = Field(default=",", min_length=1, max_length=1)
+    skip: int = Field(default=0, ge=0)
+    header: bool = True
+    title: str = ""
+    source: str = ""
+    licence: str = ""
+
+
+@dataclass(frozen=True)
+class Channels:
+    """Channels (n,) in SI by name, at ``time_step`` (s) from ``start`` (s)."""
+
+    time_step: float
+    start: float
+    values: Mapping[str, FloatArray]
+
+
+def read_layout(path: Path, statement: Mapping[str, Any]) -> Layout:
+    """What ``statement`` says about the table at ``path``, or the TOML beside it where that is empty."""
+    beside = path.with_suffix(".toml")
+    where = path.name if statement else beside.name
+    try:
+        table = dict(statement) or parse_toml(read_text(beside, "the description of the columns"))
+        layout = check(Layout, table)
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from None
+    if (layout.time_step is None) == (layout.time is None):
+        held = "neither is given" if layout.time is None else "both are given"
+        raise InputError(f"{where}: give exactly one of time_step and time; {held}")
+    return layout
+
+
+def read_columns(path: Path, layout: Layout, factor: Callable[[str, str, str], float]) -> Channels:
+    """The channels of a table, as ``layout`` states them; raises InputError.
+
+    ``factor(channel, unit, where)`` gives SI units per unit.
+    """
+    header, rows = _rows(path, layout)
+    values = {
+        name: _values(path, name, column, header, rows, layout)
+        * (column.sign * factor(name, column.unit, f"{path.name}: {name}"))
+        for name, column in layout.columns.items()
+    }
+    if layout.time is None:
+        where = f"{path.with_suffix('.toml').name}: time_step"
+        return Channels(check_step(to_si(layout.time_step, "s", where), path.name), 0.0, values)
+    times = _values(path, "time", layout.time, header, rows, layout)
+    times = times * factor_to_si(layout.time.unit, "s", f"{path.name}: time")
+    return Channels(uniform_step(times, path.name), float(times[0]), values)
+
+
+def _rows(path: Path, layout: Layout) -> tuple[list[str], list[tuple[int, list[str]]]]:
+    """The names of the columns (empty without a header), and the rows with their line numbers."""
+    lines = read_text(path, "the table").splitlines()
+    numbered = [(i, line) for i, line in enumerate(lines, 1) if i > layout.skip and line.strip()]
+    if layout.delimiter.isspace() and layout.delimiter != "\t":
+        split = [line.split() for _, line in numbered]
+    else:
+        split = list(csv.reader((line for _, line in numbered), delimiter=layout.delimiter))
+    rows = [(i, cells) for (i, _), cells in zip(numbered, split, strict=True)]
+    if not rows:
+        raise InputError(f"{path.name}: holds no lines of numbers: fetch it again")
+    if not layout.header:
+        return [], rows
+    return [cell.strip() for cell in rows[0][1]], rows[1:]
+
+
+def _values(
+    path: Path,
+    name: str,
+    column: Column,
+    header: list[str],
+    rows: list[tuple[int, list[str]]],
+    layout: Layout,
+) -> FloatArray:
+    if isinstance(column.column, int):
+        index = column.column - 1
+        if index < 0:
+            raise InputError(f"{path.name}: column {column.column} of {name}: columns are numbered from 1")
+    elif column.column in header:
+        index = header.index(column.column)
+    else:
+        cure = nearest(column.column, header) if layout.header else "name it by its number, from 1"
+        raise InputError(f"{path.name}: has no column {column.column!r} for {name}; {cure}")
+    for line, cells in rows:
+        if index >= len(cells):
+            raise InputError(
+                f"{path.name}: line {line} has {len(cells)} column(s), {name} wants number {index + 1}: "
+                "the file is damaged or the delimiter is another"
+            )
+    return parse_numbers([cells[index].strip() for _, cells in rows], f"{path.name}: {name}")

@@ -1,0 +1,121 @@
+"""PEER ``.AT2``: one component a file, in g; the other components of the record lie beside it.
+
+Four header lines (the second ends with the component, the fourth has NPTS and DT), then samples.
+Files of one record share the RSN number, or the name without its component, and the second line.
+Source: PEER Ground Motion Database, file format of NGA-West2 time series.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from grids.motions.readers.base import (
+    FloatArray,
+    Reader,
+    Record,
+    assemble,
+    check_samples,
+    read_text,
+    vertical_sign,
+)
+from grids.motions.units import STANDARD_GRAVITY
+from grids.sampling import check_step, parse_numbers
+from models.errors import InputError
+
+_NUMBER = r"([-+]?\d*\.?\d+(?:[eE][-+]?\d+)?)"
+_NPTS = (re.compile(r"NPTS\s*=\s*(\d+)", re.I), re.compile(rf"^\s*(\d+)\s+{_NUMBER}\s*,?\s*NPTS", re.I))
+_DT = (re.compile(rf"DT\s*=\s*{_NUMBER}", re.I), re.compile(rf"^\s*\d+\s+{_NUMBER}\s*,?\s*NPTS", re.I))
+_RSN = re.compile(r"RSN\d+_", re.I)
+
+
+def _heading(line: str) -> tuple[str, str]:
+    """Event and station, and the component, of the second line."""
+    event, _, component = line.strip().rpartition(",")
+    return event.strip(), component.strip()
+
+
+def _read_one(path: Path) -> tuple[str, float, FloatArray]:
+    lines = read_text(path)
+    if len(lines) < 5:
+        raise InputError(
+            f"{path.name}: has {len(lines)} lines, an AT2 file has 4 before its samples: fetch it again"
+        )
+    quantity = lines[2].upper()
+    if "ACCELERATION" not in quantity:
+        raise InputError(
+            f"{path.name}: line 3 reads {lines[2].strip()!r}, not acceleration: give the .AT2 file"
+        )
+    if not re.search(r"UNITS OF G\b", quantity):
+        raise InputError(
+            f"{path.name}: line 3 does not say 'UNITS OF G' ({lines[2].strip()!r}): state the unit there"
+        )
+    count = next((m for pattern in _NPTS if (m := pattern.search(lines[3]))), None)
+    step = next((m for pattern in _DT if (m := pattern.search(lines[3]))), None)
+    if count is None or step is None:
+        raise InputError(
+            f"{path.name}: line 4 has no NPTS and DT ({lines[3].strip()!r}): the header is damaged"
+        )
+    values = parse_numbers(" ".join(lines[4:]).split(), path.name)
+    if values.size != int(count[1]):
+        raise InputError(
+            f"{path.name}: NPTS says {count[1]} samples, the file has {values.size}: cut short or damaged"
+        )
+    component = _heading(lines[1])[1]
+    if not component:
+        raise InputError(
+            f"{path.name}: line 2 does not end with the component: write it after the last comma"
+        )
+    samples = check_samples(values * STANDARD_GRAVITY, path.name)
+    return component, check_step(float(step[1]), path.name), samples
+
+
+def heading_of(path: Path) -> tuple[str, str]:
+    """Event with station, and component, of a file; empty where the file has no such line."""
+    try:
+        with path.open(encoding="latin-1") as file:
+            file.readline()
+            return _heading(file.readline())
+    except OSError:
+        return "", ""
+
+
+def is_vertical(path: Path) -> bool:
+    """Whether a file holds the vertical component, by its second line."""
+    return vertical_sign(heading_of(path)[1]) != 0
+
+
+def _siblings(path: Path) -> list[Path]:
+    """The files of the record that ``path`` belongs to, itself included, by name."""
+    event, component = heading_of(path)
+    number = _RSN.match(path.name)
+    if number:
+        prefix = number[0]
+    elif component and path.stem.upper().endswith(component.upper()):
+        prefix = path.stem[: -len(component)]
+    else:
+        prefix = ""
+    beside = (p for p in path.parent.iterdir() if p.suffix.lower() == ".at2")
+    found = [
+        p for p in beside if p.name.upper().startswith(prefix.upper()) and event and heading_of(p)[0] == event
+    ]
+    return sorted({path, *found})
+
+
+def _read(path: Path, key: str | None, statement: Mapping[str, Any]) -> Record:
+    files = _siblings(path)
+    components = {file: _read_one(file) for file in files}
+    own = components[path][0]
+    source = {"format": AT2.name, "files": tuple(f.name for f in files), "record": heading_of(path)[0]}
+    return assemble(
+        path.stem,
+        list(components.values()),
+        source,
+        where=path.name,
+        preferred=None if vertical_sign(own) else own,
+    )
+
+
+AT2 = Reader("PEER AT2", (".at2",), _read)

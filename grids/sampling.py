@@ -1,0 +1,70 @@
+"""Samples at a uniform step: what every measured series is checked for."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.errors import InputError
+
+FloatArray = NDArray[np.float64]
+
+SHORTEST = 10
+"""Fewest samples of a series: fewer are a damaged file, not a record."""
+JITTER = 0.01
+"""Largest departure of one interval from the mean step, as a share of the step."""
+
+
+def check_step(time_step: float, where: str) -> float:
+    """A finite positive time step below one second, s."""
+    if not (math.isfinite(time_step) and 0.0 < time_step <= 1.0):
+        raise InputError(f"{where}: time step is {time_step:.9g} s: a record needs one between 0 and 1 s")
+    return time_step
+
+
+def uniform_step(times: FloatArray, where: str) -> float:
+    """The step of uniform sampling times (n,), s."""
+    if times.size < SHORTEST:
+        raise InputError(
+            f"{where}: has {times.size} sample(s), fewer than {SHORTEST}: is the file cut short?"
+        )
+    if not np.isfinite(times).all():
+        first = int(np.flatnonzero(~np.isfinite(times))[0])
+        raise InputError(f"{where}: time of sample {first + 1} is not finite: repair the time column")
+    step = float((times[-1] - times[0]) / (times.size - 1))
+    check_step(step, where)
+    intervals = np.diff(times)
+    worst = int(np.argmax(np.abs(intervals - step)))
+    if abs(intervals[worst] - step) > JITTER * step:
+        raise InputError(
+            f"{where}: sampling is not uniform, the step is {intervals[worst]:.6g} s at "
+            f"{times[worst]:.6g} s and {step:.6g} s on average: "
+            "resample the record to one step, or state time_step if the times are only rounded"
+        )
+    return _rounded(step)
+
+
+def _rounded(step: float) -> float:
+    """The short decimal number, or whole rate, that a step computed from stored times stands for."""
+    for candidate in (float(f"{step:.6g}"), 1.0 / round(1.0 / step, 3)):
+        if abs(candidate / step - 1.0) < 1e-7:
+            return candidate
+    return step
+
+
+def parse_numbers(tokens: Sequence[str], where: str) -> FloatArray:
+    """Numbers from words; an InputError that names the first word that is none."""
+    try:
+        return np.array(tokens, dtype=np.float64)
+    except ValueError:
+        for number, token in enumerate(tokens, start=1):
+            try:
+                float(token)
+            except ValueError:
+                raise InputError(
+                    f"{where}: value {number} is {token!r}, not a number: the file is damaged, fetch it again"
+                ) from None
+        raise
