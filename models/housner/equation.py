@@ -13,8 +13,8 @@ since X_t X_tt + Z_t Z_tt = rho Z_t. A sharp corner (rho = 0) gives Housner's eq
 p^2 = M g R / I_O. q = 1 - exp(-|theta|/joint_angle) in a flexible joint, else 1. The inset of a
 crushed corner is min(.35, crushing_rate * largest |theta| so far), on both sides; the present contact
 point is taken as the centre of rotation.
-couples = -stiffness (|theta| - gap)+ s - J viscous theta' - J quadratic theta' |theta'|
-          - coulomb sign(theta').
+couples = -stiffness (|theta| - gap)+ s - I_O viscous theta' - I_O quadratic theta' |theta'|
+          - coulomb sign(theta'), with I_O = I + M (h^2 + (b' + rho)^2) about the corner.
 
 Linear formulation: X_t = R, Z_t = s R alpha - (R - rho) theta, J = I + M R^2, no theta'^2 term, with
 R and alpha of the present contact: theta'' = -(M R/I_O) [G (alpha s - theta) + a].
@@ -90,9 +90,10 @@ class Equation:
     ) -> tuple[float, float]:
         """theta'' (rad s-2) and the power lost in couples (W); ``direction`` is the sign of theta'."""
         moment, inertia = self.moment(theta, rate, side, largest, ground)
-        drag = self.viscous + self.quadratic * abs(rate)
-        second = (moment - direction * self.coulomb) / inertia - drag * rate
-        return second, inertia * drag * rate**2 + direction * self.coulomb * rate
+        corner = self.half_width(side, max(largest, abs(theta))) + self.rho
+        drag = (self.base_inertia + self.mass * corner**2) * (self.viscous + self.quadratic * abs(rate))
+        couple = drag * rate + direction * self.coulomb
+        return (moment - couple) / inertia, couple * rate
 
     def excess(self, side: int, largest: float, ground: tuple[float, float, float]) -> float:
         """Moment (N m) by which the block at rest starts to turn towards ``side``; <= 0: it stays."""
@@ -110,9 +111,7 @@ class Equation:
     ) -> float:
         """|H|/N at the contact, infinite where N <= 0: H = M (a + h psi'' + X''), N = M (G + Z'')."""
         a, gravity, pitching = ground
-        b = self.half_width(side, max(largest, abs(theta)))
-        h, sine, cosine = self.height - self.rho, math.sin(theta), math.cos(theta)
-        sway, lift = self.rho + side * b * sine + h * cosine, side * b * cosine - h * sine
+        sway, lift, _ = self.arms(theta, side, largest)
         horizontal = a + self.height * pitching + sway * second + lift * rate**2
         vertical = gravity + lift * second + (self.rho - sway) * rate**2
         return abs(horizontal) / vertical if vertical > 0.0 else math.inf

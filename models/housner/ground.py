@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -72,4 +73,4 @@ def _straight(samples: FloatArray) -> Iterator[tuple[int, int]]:
     count = samples.shape[1]
     kinks = np.flatnonzero(np.any(np.diff(samples, n=2, axis=1) != 0.0, axis=0)) + 1
     knots = [0, *kinks.tolist(), count - 1]
-    yield from ((low, high) for low, high in zip(knots[:-1], knots[1:], strict=True) if high > low)
+    yield from ((low, high) for low, high in pairwise(knots) if high > low)

@@ -61,7 +61,7 @@ def run(
     (alpha, p alpha, M g R alpha^2).
     """
     until = shaking.duration + tail if duration is None else duration
-    grid = np.arange(int(math.floor(until / shaking.time_step + 1e-9)) + 1) * shaking.time_step
+    grid = shaking.time_step * np.arange(math.floor(until / shaking.time_step + 1e-9) + 1, dtype=np.float64)
     body = _Run(Equation(block, linear), grid, rtol, follow)
     start = dict(initial or {})
     body.begin(start.get("rotation_1", 0.0), start.get("rotation_rate_1", 0.0))
@@ -93,7 +93,7 @@ class _Run:
     def begin(self, theta: float, rate: float) -> None:
         self.theta, self.rate = theta, rate
         if theta != 0.0 or rate != 0.0:
-            self.mode, self.onset = "up", 0.0
+            self.mode = "up"
             self.side = int(math.copysign(1.0, theta if theta != 0.0 else rate))
             self.largest = self.arc = abs(theta)
 
@@ -228,7 +228,7 @@ class _Run:
         self.arc = max(self.arc, abs(self.theta))
         self.largest = max(self.largest, self.arc)
         if solution.status == 1:
-            kind = next(n for (n, _, _), t in zip(named, solution.t_events, strict=True) if t.size)
+            kind = next(n for (n, _, _), t in zip(named, solution.t_events or [], strict=True) if t.size)
             self._happen(kind, piece)
 
     def _hop(self, second: float) -> float:
@@ -269,18 +269,18 @@ class _Run:
         inertia_new = eq.base_inertia + eq.mass * new**2
         self.lost += 0.5 * (inertia_old * before**2 - inertia_new * after**2)
         self.impacts += 1
-        self.crossing = max(self.crossing, abs(before))
+        self.crossing = max(self.crossing, 0.5 * inertia_old * before**2)
         self.theta, self.rate, self.side, self.arc = 0.0, after, -self.side, 0.0
         self.events.append(Event(self.time, "impact"))
-        slow = (
-            math.sqrt(REST_SHARE) * self.crossing
-            if eq.joint > 0.0
-            else REST_VELOCITY * eq.frequency_parameter * eq.alpha
-        )
+        left = 0.5 * inertia_new * after**2
+        if eq.joint > 0.0:
+            calm = left < REST_SHARE * self.crossing
+        else:
+            calm = abs(after) < REST_VELOCITY * eq.frequency_parameter * eq.alpha
         ground = piece.at(self.time)
         stays = all(eq.excess(s, self.largest, ground) <= 0.0 for s in (1, -1))
-        if after == 0.0 or (abs(after) < slow and stays):
-            self.lost += 0.5 * inertia_new * after**2
+        if after == 0.0 or (calm and stays):
+            self.lost += left
             self.rate, self.mode = 0.0, "rest"
             self.events.append(Event(self.time, "rest"))
 
@@ -312,7 +312,7 @@ class _Run:
     def _outputs(self) -> dict[str, float]:
         over, eq = not math.isnan(self.overturned), self.equation
         peak = math.pi / 2.0 if over else self.largest
-        rocked = not math.isnan(self.onset)
+        rocked = self.largest > 0.0 or not math.isnan(self.onset)
         status = "not_converged" if self.failed else "overturned" if over else "rocking" if rocked else "rest"
         return {
             "peak_rotation": peak,
