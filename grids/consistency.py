@@ -1,0 +1,81 @@
+"""Whether the names given in a plan or specimen describe one wall: nothing missing, nothing twice."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
+from typing import TypeVar
+
+from models.base import Mechanism, Model
+from models.errors import InputError
+
+ValueT = TypeVar("ValueT")
+
+
+def check_names(model: Model, given: Collection[str], mechanisms: Mapping[str, Mechanism]) -> None:
+    """Raise InputError unless ``given`` (values and axes together) holds each thing exactly once.
+
+    ``mechanisms``: those addressed in ``given``, by name.
+    """
+    names = set(given)
+    in_groups: set[str] = set()
+    for group in model.alternatives:
+        members = {name for choice in group for name in choice}
+        in_groups |= members
+        present = members & names
+        if any(present == set(choice) for choice in group):
+            continue
+        choices = "; or ".join(" and ".join(choice) if choice else "none of them" for choice in group)
+        if any(set(choice) < present for choice in group):
+            raise InputError(
+                f"{_listed(sorted(present))} are alternatives, all given; give exactly one of: {choices}."
+            )
+        held = f"only {_listed(sorted(present))} given" if present else "none is given"
+        raise InputError(
+            f"model '{model.name}' needs one of these alternatives, {held}; give exactly one of: {choices}."
+        )
+    for parameter in model.parameters:
+        if parameter.default is None and parameter.name not in in_groups and parameter.name not in names:
+            raise InputError(
+                f"{parameter.name} ({parameter.meaning}, {parameter.unit}) is missing; "
+                f"give it in [parameters], it has no default."
+            )
+    for mechanism in mechanisms.values():
+        _check_mechanism(mechanism, names)
+
+
+def _check_mechanism(mechanism: Mechanism, names: set[str]) -> None:
+    if mechanism.name in names:
+        handle = next(n for n in sorted(names) if n.startswith(f"{mechanism.name}."))
+        raise InputError(
+            f"'{mechanism.name}' and '{handle}' are two handles for the same physics; "
+            "give the one or the other."
+        )
+    effects = [p.name for p in mechanism.parameters if not p.shape]
+    if effects and not any(f"{mechanism.name}.{effect}" in names for effect in effects):
+        shape = next(n for n in sorted(names) if n.startswith(f"{mechanism.name}."))
+        raise InputError(
+            f"'{shape}' only shapes the effect of mechanism '{mechanism.name}', which is off; "
+            f"give {_listed([f'{mechanism.name}.{effect}' for effect in effects], 'or')} too."
+        )
+
+
+def replaced(model: Model, base: Mapping[str, ValueT], overrides: Collection[str]) -> dict[str, ValueT]:
+    """``base`` without what ``overrides`` replaces: the same names, and alternatives left behind.
+
+    With width and height in ``base``, an override of aspect_ratio drops the width.
+    """
+    kept = {name: value for name, value in base.items() if name not in overrides}
+    for group in model.alternatives:
+        members = {name for choice in group for name in choice}
+        new = members & set(overrides)
+        if not new:
+            continue
+        fitting = [set(choice) for choice in group if new <= set(choice) <= new | kept.keys()]
+        if len(fitting) == 1:
+            kept = {name: value for name, value in kept.items() if name not in members - fitting[0]}
+    return kept
+
+
+def _listed(names: Iterable[str], word: str = "and") -> str:
+    *head, last = (f"'{name}'" for name in names)
+    return f"{', '.join(head)} {word} {last}" if head else last

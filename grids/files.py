@@ -1,0 +1,84 @@
+"""TOML files checked by a pydantic schema, with one sentence for whatever is wrong."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from models.errors import InputError, nearest
+
+SchemaT = TypeVar("SchemaT", bound="Schema")
+
+
+class Schema(BaseModel):
+    """A table of a file. Unknown keys are mistakes; a number is not guessed from a string."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+
+def read_text(path: Path, what: str) -> str:
+    """The text of a UTF-8 file; InputError when it is missing or not text."""
+    try:
+        return path.read_text(encoding="utf-8-sig")
+    except FileNotFoundError:
+        beside = [p.name for p in path.parent.glob(f"*{path.suffix}")] if path.parent.is_dir() else []
+        raise InputError(
+            f"{what} {path} does not exist; {nearest(path.name, beside)}"
+            if beside
+            else f"{what} {path} does not exist; check the path."
+        ) from None
+    except UnicodeDecodeError:
+        raise InputError(f"{what} {path} is not UTF-8 text; save it as UTF-8.") from None
+    except OSError as error:
+        raise InputError(f"{what} {path} cannot be read: {error.strerror}.") from None
+
+
+def parse_toml(text: str) -> dict[str, Any]:
+    """The tables of a TOML text; InputError with the line of the mistake."""
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        line = re.search(r"at line (\d+)", str(error))
+        shown = text.splitlines()[int(line[1]) - 1].strip() if line else ""
+        quoted = f" '{shown}'" if shown else ""
+        raise InputError(f"not valid TOML{quoted}: {error}; correct that line.") from None
+
+
+def check(schema: type[SchemaT], table: dict[str, Any]) -> SchemaT:
+    """The table as ``schema``; InputError about the first thing that does not fit."""
+    try:
+        return schema.model_validate(table)
+    except ValidationError as error:
+        raise InputError(_sentence(schema, dict(error.errors()[0]))) from None
+
+
+def _sentence(schema: type[Schema], error: dict[str, Any]) -> str:
+    location = [str(part) for part in error["loc"] if not str(part).startswith("function-")]
+    kind, value = error["type"], error["input"]
+    where = _address(location)
+    if kind == "extra_forbidden":
+        return f"{where} is not known; {nearest(location[-1], _known(schema, location[:-1]))}"
+    if kind == "missing":
+        return f"{where} is missing; add it."
+    if kind == "value_error":
+        return f"{where}: {error['ctx']['error']}"
+    wish = error["msg"].replace("Input should be", "it must be")
+    return f"{where} = {value!r}: {wish[0].lower()}{wish[1:]}."
+
+
+def _address(location: list[str]) -> str:
+    """['motion', 'files', '0'] as '[motion] files 0', a lone key as it stands."""
+    return f"[{location[0]}] {' '.join(location[1:])}" if len(location) > 1 else location[0]
+
+
+def _known(schema: type[Schema], location: list[str]) -> list[str]:
+    for part in location:
+        annotation = schema.model_fields[part].annotation if part in schema.model_fields else None
+        if not (isinstance(annotation, type) and issubclass(annotation, Schema)):
+            return []
+        schema = annotation
+    return [field.alias or name for name, field in schema.model_fields.items()]

@@ -1,0 +1,99 @@
+"""The ground motions of a plan: one, or one for each value of the axis `motion`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from grids.axes import Axis
+from grids.files import Schema
+from grids.motions import Motion, find, read_motion
+from grids.targets import MOTION
+from models.errors import InputError
+
+
+class MotionTable(Schema):
+    files: str | list[str | dict[str, Any]] | None = None
+    pulse: dict[str, Any] | None = None
+    component: str | None = None
+    vertical: bool | None = None
+
+
+def read_motions(
+    table: MotionTable,
+    axes: tuple[Axis, ...],
+    folder: Path,
+    vertical: bool | None,
+    apart: bool,
+) -> tuple[tuple[Motion, ...], tuple[Axis, ...]]:
+    """The motions, and the axes with the motions' names where they vary.
+
+    ``vertical`` stands where the plan does not say. ``apart``: a mechanism applies the vertical
+    component itself, so the record must have one and the plan may not feed it as well.
+    """
+    vertical = table.vertical if table.vertical is not None else vertical
+    if apart and vertical:
+        raise InputError(
+            "'vertical_acceleration.kappa' stands for a vertical motion that is left out; "
+            "set [motion] vertical = false or leave the mechanism out."
+        )
+    wanted = True if apart else vertical
+
+    def read(source: Any) -> Motion:
+        return read_motion(source, component=table.component, vertical=wanted, near=folder)
+
+    listing = [axis for axis in axes if MOTION in axis.sets]
+    given = [name for name in ("files", "pulse") if getattr(table, name) is not None]
+    if len(given) + len(listing) != 1:
+        places = [f"[motion] {name}" for name in given] + [f"[axes] {axis.name}" for axis in listing]
+        held = f"{' and '.join(places)} both name motions" if places else "no motion is given"
+        raise InputError(f"{held}; give exactly one of [motion] files, [motion] pulse, an axis of motions.")
+    if not listing:
+        sources = _listed(table.files) if table.pulse is None else [{"pulse": table.pulse}]
+        motions = _distinct([read(source) for source in _expanded(sources, folder)])
+        if len(motions) == 1:
+            return motions, axes
+        return motions, (Axis(MOTION, _names(motions), "1", "ground motion"), *axes)
+    axis = listing[0]
+    if axis.points is None:
+        motions = _distinct([read(source) for source in _expanded(axis.values, folder)])
+        return motions, tuple(replace(a, values=_names(motions)) if a is axis else a for a in axes)
+    read_once = {str(source): read(source) for source in axis.points[MOTION]}
+    names = _names([read_once[str(source)] for source in axis.points[MOTION]])
+    points = {**axis.points, MOTION: names}
+    motions = _distinct(list(read_once.values()))
+    return motions, tuple(replace(a, points=points) if a is axis else a for a in axes)
+
+
+def _listed(files: str | list[str | dict[str, Any]] | None) -> list[str | dict[str, Any]]:
+    if not files:
+        raise InputError("[motion] files is empty; name at least one record.")
+    return [files] if isinstance(files, str) else files
+
+
+def _expanded(sources: Iterable[Any], folder: Path) -> list[Any]:
+    """The sources with globs replaced by what they match."""
+    found: list[Any] = []
+    for source in sources:
+        found += [source] if isinstance(source, dict) else find(str(source), folder)
+    return found
+
+
+def _distinct(motions: list[Motion]) -> tuple[Motion, ...]:
+    for index, motion in enumerate(motions):
+        if any(motion.name == other.name for other in motions[:index]):
+            raise InputError(
+                f"two motions are called '{motion.name}'; leave one out or rename its file."
+            )
+    return tuple(motions)
+
+
+def _names(motions: Iterable[Motion]) -> np.ndarray[tuple[int], np.dtype[np.object_]]:
+    names = [motion.name for motion in motions]
+    values = np.empty(len(names), dtype=object)
+    values[:] = names
+    return values

@@ -1,0 +1,184 @@
+"""Specimen files: one wall as the laboratory knows it.
+
+    title = "wall 3"
+    model = "housner"
+    [parameters]                      # nominal; numbers are SI
+    width = "0.25 m"
+    [tolerance]                       # relative, one sigma
+    width = 0.005
+    [calibrate]                       # unknown, with a range
+    restitution = [0.7, 1.0]
+    [motion]
+    vertical = false
+    [initial]                         # state at t = 0, at rest without it
+    rotation_1 = "2 deg"
+    [options]
+    formulation = "linear"
+    [mechanisms.pivot_inset]
+    inset_over_half_width = 0.1
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from pydantic import Field
+
+from grids.consistency import check_names
+from grids.files import Schema, check, parse_toml, read_text
+from grids.targets import Targets, find_model
+from grids.units import to_si, with_unit
+from models.base import Mechanism
+from models.errors import InputError, nearest
+
+MOST_TOLERANCE = 1.0
+
+
+class MotionTable(Schema):
+    vertical: bool | None = None
+
+
+class SpecimenFile(Schema):
+    title: str
+    model: str
+    parameters: dict[str, Any]
+    tolerance: dict[str, float | str] = Field(default_factory=dict)
+    calibrate: dict[str, Any] = Field(default_factory=dict)
+    motion: MotionTable = MotionTable()
+    initial: dict[str, float | str] = Field(default_factory=dict)
+    options: dict[str, str] = Field(default_factory=dict)
+    mechanisms: dict[str, dict[str, Any]] = Field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Specimen:
+    """A checked specimen in SI. ``calibrate`` holds (low, high); ``vertical`` None: the model decides."""
+
+    title: str
+    model: str
+    parameters: Mapping[str, float]
+    tolerance: Mapping[str, float] = field(default_factory=dict)
+    calibrate: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    vertical: bool | None = None
+    initial: Mapping[str, float] = field(default_factory=dict)
+    options: Mapping[str, str] = field(default_factory=dict)
+    mechanisms: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+
+
+def read_specimen(path: str | Path, *, sensors: Mapping[str, Mechanism] | None = None) -> Specimen:
+    """Read and check a specimen file.
+
+    ``sensors``: mechanisms of instruments by name, usable in [mechanisms] beside the model's own.
+    Raises InputError with one sentence: file, key, value, cure.
+    """
+    path = Path(path)
+    text = read_text(path, "specimen")
+    try:
+        return parse_specimen(text, sensors=sensors)
+    except InputError as error:
+        raise InputError(f"{path.name}: {error}") from None
+
+
+def parse_specimen(text: str, *, sensors: Mapping[str, Mechanism] | None = None) -> Specimen:
+    """The specimen of a TOML text. Raises InputError."""
+    file = check(SpecimenFile, parse_toml(text))
+    model = find_model(file.model, "model")
+    targets = Targets(model, sensors or {}, with_sensors=True)
+    parameters = {}
+    for name, value in file.parameters.items():
+        where = f"[parameters] {name}"
+        target = targets.find(name, where)
+        if target.words or "." in name:
+            table = "[options]" if target.words else "[mechanisms]"
+            raise InputError(f"{where}: this does not belong to [parameters]; put it in {table}.")
+        parameters[name] = target.number(value, where)
+    mechanisms = _mechanisms(file, targets)
+    calibrate = {
+        name: _range(name, entry, targets) for name, entry in targets.flatten(file.calibrate).items()
+    }
+    known = {*parameters, *(f"{m}.{p}" for m, values in mechanisms.items() for p in values)}
+    if twice := sorted(known & calibrate.keys()):
+        raise InputError(
+            f"[calibrate] {twice[0]} has a fixed value too; leave that out, or the range."
+        )
+    used = {n.split(".")[0]: targets.mechanism(n.split(".")[0], n) for n in known | {*calibrate} if "." in n}
+    check_names(model, known | calibrate.keys(), used)
+    fixed = {**parameters, **{f"{m}.{p}": v for m, values in mechanisms.items() for p, v in values.items()}}
+    if not calibrate:
+        of_wall = {n: v for n, v in fixed.items() if n.partition(".")[0] not in targets.sensors}
+        for sentence in model.check(of_wall):
+            raise InputError(sentence)
+    options = {name: targets.option(name, word, f"[options] {name}") for name, word in file.options.items()}
+    return Specimen(
+        title=file.title,
+        model=model.name,
+        parameters=parameters,
+        tolerance=_tolerance(file, parameters),
+        calibrate=calibrate,
+        vertical=file.motion.vertical,
+        initial=_initial(file, targets),
+        options=options,
+        mechanisms=mechanisms,
+    )
+
+
+def _mechanisms(file: SpecimenFile, targets: Targets) -> dict[str, dict[str, float]]:
+    mechanisms: dict[str, dict[str, float]] = Field(default_factory=dict)
+    for name, table in file.mechanisms.items():
+        targets.mechanism(name, f"[mechanisms.{name}]")
+        if not table:
+            raise InputError(f"[mechanisms.{name}] is empty; give its parameters or leave the table out.")
+        mechanisms[name] = {}
+        for parameter, value in table.items():
+            where = f"[mechanisms.{name}] {parameter}"
+            mechanisms[name][parameter] = targets.find(f"{name}.{parameter}", where).number(value, where)
+    return mechanisms
+
+
+def _tolerance(file: SpecimenFile, parameters: Mapping[str, float]) -> dict[str, float]:
+    tolerance = {}
+    for name, value in file.tolerance.items():
+        where = f"[tolerance] {name}"
+        if name not in parameters:
+            raise InputError(f"{where} has no value in [parameters]; {nearest(name, parameters)}")
+        tolerance[name] = to_si(value, "1", where)
+        if not 0.0 < tolerance[name] < MOST_TOLERANCE:
+            raise InputError(
+                f"{where} = {tolerance[name]:g}: a tolerance is relative, above 0 and below 1 "
+                "(0.01 for 1 %); leave it out for an exact value."
+            )
+        if parameters[name] == 0.0:
+            raise InputError(f"{where}: the value is 0, which has no relative tolerance; leave it out.")
+    return tolerance
+
+
+def _range(name: str, entry: object, targets: Targets) -> tuple[float, float]:
+    where = f"[calibrate] {name}"
+    target = targets.find(name, where)
+    if target.words:
+        raise InputError(f"{where}: an option cannot be calibrated; put it in [options].")
+    if not isinstance(entry, list) or len(entry) != 2:
+        raise InputError(f"{where} = {entry!r}: give the range [low, high].")
+    low, high = (target.number(end, where) for end in entry)
+    if not low < high:
+        ends = f"[{with_unit(low, target.unit)}, {with_unit(high, target.unit)}]"
+        raise InputError(f"{where} = {ends}: low must be below high; swap or part them.")
+    return low, high
+
+
+def _initial(file: SpecimenFile, targets: Targets) -> dict[str, float]:
+    observables = {quantity.name: quantity for quantity in targets.model.observables}
+    initial = {}
+    for name, value in file.initial.items():
+        where = f"[initial] {name}"
+        if name not in observables:
+            raise InputError(
+                f"{where} is no state of model '{targets.model.name}'; {nearest(name, observables)}"
+            )
+        initial[name] = to_si(value, observables[name].unit, where)
+        if abs(initial[name]) == float("inf"):
+            raise InputError(f"{where} = {initial[name]}: give a finite value.")
+    return initial

@@ -1,0 +1,56 @@
+"""Writing a specimen file that reads back equal."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from grids.specimen import Specimen
+
+
+def write_specimen(specimen: Specimen, path: str | Path) -> None:
+    """Write the file that `grids.specimen.read_specimen` reads back equal, numbers in SI."""
+    Path(path).write_text(specimen_text(specimen), encoding="utf-8")
+
+
+def specimen_text(specimen: Specimen) -> str:
+    """The specimen as TOML; floats with all their digits."""
+    head = {"title": specimen.title, "model": specimen.model}
+    tables: dict[str, Mapping[str, Any]] = {
+        "parameters": specimen.parameters,
+        "tolerance": specimen.tolerance,
+        "calibrate": specimen.calibrate,
+        "motion": {} if specimen.vertical is None else {"vertical": specimen.vertical},
+        "initial": specimen.initial,
+        "options": specimen.options,
+        **{f"mechanisms.{name}": values for name, values in specimen.mechanisms.items()},
+    }
+    parts = [_lines(head)]
+    parts += [f"[{name}]\n{_lines(table)}" for name, table in tables.items() if table or name == "parameters"]
+    return "\n".join(parts)
+
+
+def _lines(table: Mapping[str, Any]) -> str:
+    return "".join(f"{_key(name)} = {_value(value)}\n" for name, value in table.items())
+
+
+def _key(name: str) -> str:
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else _string(name)
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return _string(value)
+    if isinstance(value, tuple | list):
+        return "[" + ", ".join(_value(item) for item in value) + "]"
+    return repr(float(value))
+
+
+def _string(text: str) -> str:
+    # A basic TOML string escapes as JSON does, and the delete character besides.
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
