@@ -47,8 +47,11 @@ OVERTURNED = (
     "overturned when |theta| reaches pi/2, or, once the shaking has ended, when |theta| exceeds alpha "
     "while the velocity and the acceleration both point outwards"
 )
+REST_VELOCITY = 4.5e-3
+"""|theta'| over p alpha below which an impact ends in rest: the swing ahead is 1e-5 alpha."""
 AT_REST = (
-    "at rest after an impact with |theta'| under 1e-3 p alpha until |a| exceeds G tan(alpha) again"
+    f"at rest after an impact with |theta'| under {REST_VELOCITY:g} p alpha (a swing of 1e-5 alpha) "
+    "until |a| exceeds G tan(alpha) again"
 )
 
 OUTPUTS = (
@@ -92,6 +95,4 @@ OBSERVABLES = (
 )
 STATES = ("rotation_1", "rotation_rate_1")
 
-REST_VELOCITY = 1e-3
-"""|theta'| below this times p alpha after an impact counts as rest."""
 MOST_IMPACTS_PER_STEP = 200

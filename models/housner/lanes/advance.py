@@ -73,70 +73,70 @@ def load_inputs(w: Table, slot: int, record: Table, i: int) -> None:
 @called
 def start(given: Table, result: Table, w: Table, lane: int, slot: int, time: float, linear: Any) -> None:
     """Put a lane in a slot, in its initial state."""
-    w[SCALE * W + slot] = given[Q_SCALE, lane]
-    w[OFFSET * W + slot] = given[Q_OFFSET, lane]
-    w[GRAVITY * W + slot] = given[Q_GRAVITY, lane]
-    w[VSCALE * W + slot] = given[Q_VSCALE, lane]
-    w[RHO * W + slot] = given[Q_RHO, lane]
-    w[CRUSH * W + slot] = given[Q_CRUSH, lane]
-    w[JOINT * W + slot] = given[Q_JOINT, lane]
-    w[K * W + slot] = given[Q_K, lane] / given[Q_MASS, lane]
-    w[GAP * W + slot] = given[Q_GAP, lane]
-    w[VISCOUS * W + slot] = given[Q_VISCOUS, lane]
-    w[COULOMB * W + slot] = given[Q_COULOMB, lane] / given[Q_MASS, lane]
-    w[QUADRATIC * W + slot] = given[Q_QUADRATIC, lane]
-    w[PITCH * W + slot] = given[Q_PITCH, lane] * given[Q_SCALE, lane]
+    w[SCALE * W + slot] = given[lane, Q_SCALE]
+    w[OFFSET * W + slot] = given[lane, Q_OFFSET]
+    w[GRAVITY * W + slot] = given[lane, Q_GRAVITY]
+    w[VSCALE * W + slot] = given[lane, Q_VSCALE]
+    w[RHO * W + slot] = given[lane, Q_RHO]
+    w[CRUSH * W + slot] = given[lane, Q_CRUSH]
+    w[JOINT * W + slot] = given[lane, Q_JOINT]
+    w[K * W + slot] = given[lane, Q_K] / given[lane, Q_MASS]
+    w[GAP * W + slot] = given[lane, Q_GAP]
+    w[VISCOUS * W + slot] = given[lane, Q_VISCOUS]
+    w[COULOMB * W + slot] = given[lane, Q_COULOMB] / given[lane, Q_MASS]
+    w[QUADRATIC * W + slot] = given[lane, Q_QUADRATIC]
+    w[PITCH * W + slot] = given[lane, Q_PITCH] * given[lane, Q_SCALE]
     w[DEMAND * W + slot], w[WORK * W + slot], w[WORK_STEP * W + slot] = 0.0, 0.0, 0.0
-    theta, omega = given[Q_THETA, lane], given[Q_OMEGA, lane]
+    theta, omega = given[lane, Q_THETA], given[lane, Q_OMEGA]
     w[TH * W + slot], w[OM * W + slot] = theta, omega
-    w[PEAK * W + slot] = max(given[Q_PEAK, lane], abs(theta))
+    w[PEAK * W + slot] = max(given[lane, Q_PEAK], abs(theta))
     side = 1.0 if theta > 0.0 or (theta == 0.0 and omega >= 0.0) else -1.0
     stand_on(given, w, lane, slot, side, linear)
     w[DIRECTION * W + slot] = -side if omega * side < 0.0 else side
-    for row in range(result.shape[0]):
-        result[row, lane] = 0.0
-    result[R_PEAK, lane] = w[PEAK * W + slot]
-    result[R_SWING, lane] = abs(theta)
-    result[R_IMPACTS, lane] = given[Q_IMPACTS, lane]
-    result[R_ONSET, lane], result[R_OVERTURNED_AT, lane], result[R_UP_SINCE, lane] = math.nan, math.nan, math.nan
+    for row in range(result.shape[1]):
+        result[lane, row] = 0.0
+    result[lane, R_PEAK] = w[PEAK * W + slot]
+    result[lane, R_SWING] = abs(theta)
+    result[lane, R_IMPACTS] = given[lane, Q_IMPACTS]
+    result[lane, R_ONSET], result[lane, R_OVERTURNED_AT], result[lane, R_UP_SINCE] = math.nan, math.nan, math.nan
     if theta == 0.0 and omega == 0.0:
-        result[R_MODE, lane] = DOWN
+        result[lane, R_MODE] = DOWN
     else:
-        result[R_UP_SINCE, lane] = time
-        result[R_MODE, lane] = HELD if omega == 0.0 and given[Q_COULOMB, lane] > 0.0 else UP
+        result[lane, R_UP_SINCE] = time
+        result[lane, R_MODE] = HELD if omega == 0.0 and given[lane, Q_COULOMB] > 0.0 else UP
 
 
 @called
 def watch(given: Table, result: Table, w: Table, lane: int, slot: int, shaken: bool) -> None:
     """Set the rotation beyond which the lane needs attention (always, unless it rocks)."""
-    if result[R_MODE, lane] != UP:
+    if result[lane, R_MODE] != UP:
         w[LIMIT * W + slot] = -1.0
     else:
-        w[LIMIT * W + slot] = HALF_TURN if shaken else min(HALF_TURN, given[Q_ALPHA, lane])
+        w[LIMIT * W + slot] = HALF_TURN if shaken else min(HALF_TURN, given[lane, Q_ALPHA])
 
 
 @called
 def finish(given: Table, result: Table, w: Table, lane: int, slot: int, time: float) -> None:
     """Close the account of a lane that ends at ``time``."""
-    since = result[R_UP_SINCE, lane]
+    since = result[lane, R_UP_SINCE]
     if since == since:
-        result[R_UPLIFT, lane] += time - since
+        result[lane, R_UPLIFT] += time - since
     theta = w[TH * W + slot]
-    result[R_ROTATION, lane] = theta
-    result[R_PEAK, lane] = max(result[R_PEAK, lane], abs(theta))
-    result[R_DEMAND, lane] = w[DEMAND * W + slot]
-    result[R_DISSIPATED, lane] += given[Q_MASS, lane] * w[WORK * W + slot]
-    result[R_IMPACTS, lane] -= given[Q_IMPACTS, lane]
-    at = result[R_OVERTURNED_AT, lane]
+    result[lane, R_ROTATION] = theta
+    result[lane, R_PEAK] = max(result[lane, R_PEAK], abs(theta))
+    result[lane, R_DEMAND] = w[DEMAND * W + slot]
+    result[lane, R_DISSIPATED] += given[lane, Q_MASS] * w[WORK * W + slot]
+    result[lane, R_IMPACTS] -= given[lane, Q_IMPACTS]
+    at = result[lane, R_OVERTURNED_AT]
     if at == at:
-        result[R_PEAK, lane] = HALF_TURN
-        result[R_ROTATION, lane] = HALF_TURN if theta > 0.0 else -HALF_TURN
-        result[R_STATUS, lane] = OVERTURNED
+        result[lane, R_PEAK] = HALF_TURN
+        result[lane, R_ROTATION] = HALF_TURN if theta > 0.0 else -HALF_TURN
+        result[lane, R_STATUS] = OVERTURNED
     elif not theta == theta:
-        result[R_STATUS, lane] = NOT_CONVERGED
-    elif result[R_STATUS, lane] != NOT_CONVERGED:
-        moved = result[R_ONSET, lane] == result[R_ONSET, lane] or result[R_PEAK, lane] > 0.0
-        result[R_STATUS, lane] = ROCKING if moved else REST
+        result[lane, R_STATUS] = NOT_CONVERGED
+    elif result[lane, R_STATUS] != NOT_CONVERGED:
+        moved = result[lane, R_ONSET] == result[lane, R_ONSET] or result[lane, R_PEAK] > 0.0
+        result[lane, R_STATUS] = ROCKING if moved else REST
 
 
 @called
@@ -147,27 +147,26 @@ def attend(
     """What a flagged lane needs after step i; True when it ends (overturned, or not a number)."""
     theta, omega = w[TH0 * W + slot], w[OM0 * W + slot]
     th1, om1 = w[TH * W + slot], w[OM * W + slot]
-    known = result[R_OVERTURNED_AT, lane]
-    turned_only = result[R_MODE, lane] == UP and w[SIDE * W + slot] * th1 >= 0.0 and abs(th1) < HALF_TURN
+    known = result[lane, R_OVERTURNED_AT]
+    turned_only = result[lane, R_MODE] == UP and w[SIDE * W + slot] * th1 >= 0.0 and abs(th1) < HALF_TURN
     if turned_only and (omega * om1 >= 0.0 or w[COULOMB * W + slot] == 0.0):
         if omega * om1 < 0.0:
             raise_peak(result, w, lane, slot, turning_point(theta, omega, th1, om1, h))
-    elif not abs(th1) < HALF_TURN and result[R_MODE, lane] == UP and abs(theta) > 1.0:
+    elif not abs(th1) < HALF_TURN and result[lane, R_MODE] == UP and abs(theta) > 1.0:
         # through pi/2 (a step never crosses zero from beyond 1 rad)
         f = (HALF_TURN - abs(theta)) / (abs(th1) - abs(theta))
         if not known == known:
-            result[R_OVERTURNED_AT, lane] = (i + min(1.0, max(0.0, f))) * h
+            result[lane, R_OVERTURNED_AT] = (i + min(1.0, max(0.0, f))) * h
     else:
         w[WORK * W + slot] -= w[WORK_STEP * W + slot]
-        w[WORK_STEP * W + slot] = 0.0
         one_step(given, result, w, lane, slot, record, i, h, log, count, general, linear)
     theta, omega = w[TH * W + slot], w[OM * W + slot]
-    if not shaken and abs(theta) >= given[Q_ALPHA, lane] and omega * theta > 0.0:
+    if not shaken and abs(theta) >= given[lane, Q_ALPHA] and omega * theta > 0.0:
         a, g, p, q = inputs(w, slot, record, i, 1.0)
         accel, _, _, _ = acceleration(w, slot, theta, omega, a, g, p, q, general, linear)
         if accel * theta > 0.0 and not known == known:
-            result[R_OVERTURNED_AT, lane] = (i + 1) * h
-    over = result[R_OVERTURNED_AT, lane]
+            result[lane, R_OVERTURNED_AT] = (i + 1) * h
+    over = result[lane, R_OVERTURNED_AT]
     if over == over:
         if not known == known:
             note(log, count, lane, over, LOG_OVERTURNED)
@@ -187,7 +186,7 @@ def advance(
     ``shaken_steps``. ``trace`` (n, m, 2) takes theta and theta' every ``every`` steps (0: never).
     ``fall``: go on to pi/2 after overturning is certain (histories), instead of ending the lane.
     """
-    n = given.shape[1]
+    n = given.shape[0]
     w = np.zeros(N_WORK * W)
     at = np.zeros(W, np.int64)
     bound = np.zeros(W, np.int64)
@@ -200,6 +199,9 @@ def advance(
         active = 0
         for slot in range(W):
             lane = of[slot]
+            if lane >= 0 and at[slot] < bound[slot] and result[lane, R_MODE] == UP:
+                active += 1
+                continue
             while True:
                 if lane < 0:
                     if waiting == n:
@@ -215,7 +217,7 @@ def advance(
                         if k < trace.shape[1]:
                             trace[lane, k, 0] = w[TH * W + slot]
                             trace[lane, k, 1] = w[OM * W + slot]
-                if result[R_MODE, lane] == DOWN:
+                if result[lane, R_MODE] == DOWN:
                     at[slot] = next_onset(given, w, lane, slot, record, at[slot], last[lane], chunk, linear)
                 if at[slot] >= last[lane]:
                     finish(given, result, w, lane, slot, at[slot] * h)
@@ -267,13 +269,12 @@ def advance(
                             general, linear,
                         )  # fmt: skip
                         if over:
-                            finish(given, result, w, lane, slot, result[R_OVERTURNED_AT, lane])
+                            finish(given, result, w, lane, slot, result[lane, R_OVERTURNED_AT])
                             of[slot] = -1
                             settle = True
-                        elif result[R_MODE, lane] == UP:
-                            if w[LIMIT * W + slot] < 0.0:
-                                settle = True
-                        else:
+                        elif result[lane, R_MODE] != UP:
                             settle = True
+                        elif w[LIMIT * W + slot] < 0.0:
+                            watch(given, result, w, lane, slot, i + 1 < shaken_steps)
             if settle:
                 break

@@ -12,10 +12,10 @@ from models.housner.declaration import MOST_IMPACTS_PER_STEP
 from models.housner.lanes.equation import acceleration, rk4
 from models.housner.lanes.impact import kinetic_energy, pivot, restitution
 from models.housner.lanes.rows import (
-    B, CB, CH, COULOMB, DEMAND, DIRECTION, DOWN, GRAVITY, H, HELD, IM, JOINT, LAMBDA, LOG_IMPACT, LOG_ONSET,
+    B, CB, CH, COULOMB, DEMAND, DIRECTION, DOWN, GRAVITY, H, HELD, IM, JOINT, LAMBDA, LIMIT, LOG_IMPACT, LOG_ONSET,
     LOG_REST, NOT_CONVERGED, OFFSET, PEAK, PITCH, Q_HEIGHT, Q_INERTIA, Q_LEFT, Q_MASS, Q_REST, Q_RIGHT,
     R_DISSIPATED, R_ENERGY, R_IMPACTS, R_MODE, R_ONSET, R_PEAK, R_STATUS, R_SWING, R_UP_SINCE, R_UPLIFT,
-    SCALE, SIDE, TH, TH0, OM, OM0, UP, VSCALE, W, WORK,
+    SCALE, SIDE, TH, TH0, OM, OM0, UP, VSCALE, W, WORK, WORK_STEP,
 )  # fmt: skip
 from models.lanes.compiler import called
 
@@ -37,8 +37,8 @@ def note(log: Table, count: Table, lane: int, time: float, kind: float) -> None:
 @called
 def stand_on(given: Table, w: Table, lane: int, slot: int, side: float, linear: Any) -> None:
     """Set the coefficients of the side on which the block now stands."""
-    half = given[Q_RIGHT, lane] if side > 0.0 else given[Q_LEFT, lane]
-    height, mass, inertia = given[Q_HEIGHT, lane], given[Q_MASS, lane], given[Q_INERTIA, lane]
+    half = given[lane, Q_RIGHT] if side > 0.0 else given[lane, Q_LEFT]
+    height, mass, inertia = given[lane, Q_HEIGHT], given[lane, Q_MASS], given[lane, Q_INERTIA]
     corner = inertia + mass * (height * height + half * half)
     w[SIDE * W + slot] = side
     w[B * W + slot] = half
@@ -76,9 +76,9 @@ def excess(
     a: float, g: float, psi: float, psi2: float, linear: Any,
 ) -> float:  # fmt: skip
     """Moment over M that lifts the block at rest onto ``side``: positive means it starts to rock."""
-    h = given[Q_HEIGHT, lane]
+    h = given[lane, Q_HEIGHT]
     b = pivot(given, w, lane, slot, side)
-    inertia = given[Q_INERTIA, lane] / given[Q_MASS, lane]
+    inertia = given[lane, Q_INERTIA] / given[lane, Q_MASS]
     push = -side * ((a - g * psi) * h + (inertia + h * h) * psi2)
     if w[JOINT * W + slot] >= 0.0:
         return float(push - w[COULOMB * W + slot])
@@ -116,13 +116,13 @@ def next_onset(
 
     ``chunk`` (4, n) holds the extremes of the record over 64 steps: |a|, -a_z, |psi|, |psi''|.
     """
-    h = given[Q_HEIGHT, lane]
+    h = given[lane, Q_HEIGHT]
     b = min(pivot(given, w, lane, slot, 1.0), pivot(given, w, lane, slot, -1.0))
     if linear is not None:
         b = h * math.atan(b / h)
     if w[JOINT * W + slot] >= 0.0:
         b = 0.0
-    inertia = given[Q_INERTIA, lane] / given[Q_MASS, lane] + h * h
+    inertia = given[lane, Q_INERTIA] / given[lane, Q_MASS] + h * h
     scale, pitch = abs(w[SCALE * W + slot]), abs(w[PITCH * W + slot])
     while i < last:
         if i % 64 == 0 and i + 64 <= last:
@@ -157,9 +157,9 @@ def turning_point(theta: float, omega: float, theta1: float, omega1: float, step
 @called
 def raise_peak(result: Table, w: Table, lane: int, slot: int, size: float) -> None:
     """Keep the largest rotation of the run and of this swing."""
-    result[R_SWING, lane] = max(result[R_SWING, lane], size)
-    if size > result[R_PEAK, lane]:
-        result[R_PEAK, lane] = size
+    result[lane, R_SWING] = max(result[lane, R_SWING], size)
+    if size > result[lane, R_PEAK]:
+        result[lane, R_PEAK] = size
         w[PEAK * W + slot] = size
 
 
@@ -174,19 +174,19 @@ def land(
     before = kinetic_energy(given, w, lane, slot, side, omega)
     after = e * omega
     left = kinetic_energy(given, w, lane, slot, -side, after)
-    result[R_DISSIPATED, lane] += before - left
-    result[R_IMPACTS, lane] += 1.0
+    result[lane, R_DISSIPATED] += before - left
+    result[lane, R_IMPACTS] += 1.0
     note(log, count, lane, time, LOG_IMPACT)
     stand_on(given, w, lane, slot, -side, linear)
-    calm = abs(after) < given[Q_REST, lane]
+    calm = abs(after) < given[lane, Q_REST]
     if w[JOINT * W + slot] >= 0.0:
-        result[R_ENERGY, lane] = max(result[R_ENERGY, lane], before)
-        calm = left < 1e-6 * result[R_ENERGY, lane]
+        result[lane, R_ENERGY] = max(result[lane, R_ENERGY], before)
+        calm = left < 1e-6 * result[lane, R_ENERGY]
     if calm:
-        result[R_DISSIPATED, lane] += left
-        result[R_MODE, lane] = DOWN
+        result[lane, R_DISSIPATED] += left
+        result[lane, R_MODE] = DOWN
         after = 0.0
-    result[R_SWING, lane] = 0.0
+    result[lane, R_SWING] = 0.0
     return float(after)
 
 
@@ -201,39 +201,44 @@ def one_step(
     while f < 1.0:
         rounds += 1
         if rounds > MOST_IMPACTS_PER_STEP:
-            result[R_STATUS, lane] = NOT_CONVERGED
-            result[R_MODE, lane] = DOWN
+            result[lane, R_STATUS] = NOT_CONVERGED
+            result[lane, R_MODE] = DOWN
             theta, omega = 0.0, 0.0
             break
-        if result[R_MODE, lane] == DOWN:
+        if result[lane, R_MODE] == DOWN:
             theta, omega = 0.0, 0.0
             at, side = onset(given, w, lane, slot, record, i, f, linear)
-            since = result[R_UP_SINCE, lane]
+            since = result[lane, R_UP_SINCE]
             if at > f and since == since:
-                result[R_UPLIFT, lane] += (i + f) * h - since
-                result[R_UP_SINCE, lane] = math.nan
+                result[lane, R_UPLIFT] += (i + f) * h - since
+                result[lane, R_UP_SINCE] = math.nan
                 note(log, count, lane, (i + f) * h, LOG_REST)
             if at >= 1.0:
                 break
             f = at
-            result[R_MODE, lane] = UP
+            result[lane, R_MODE] = UP
             stand_on(given, w, lane, slot, side, linear)
             w[DIRECTION * W + slot] = side
-            if not result[R_UP_SINCE, lane] == result[R_UP_SINCE, lane]:
-                result[R_UP_SINCE, lane] = (i + f) * h
+            if not result[lane, R_UP_SINCE] == result[lane, R_UP_SINCE]:
+                result[lane, R_UP_SINCE] = (i + f) * h
                 note(log, count, lane, (i + f) * h, LOG_ONSET)
-                if not result[R_ONSET, lane] == result[R_ONSET, lane]:
-                    result[R_ONSET, lane] = (i + f) * h
-        if result[R_MODE, lane] == HELD:
+                if not result[lane, R_ONSET] == result[lane, R_ONSET]:
+                    result[lane, R_ONSET] = (i + f) * h
+        if result[lane, R_MODE] == HELD:
             if not released(w, slot, theta, record, i, f, general, linear):
                 break
-            result[R_MODE, lane] = UP
+            result[lane, R_MODE] = UP
         if omega != 0.0:
             w[DIRECTION * W + slot] = 1.0 if omega > 0.0 else -1.0
         rest = 1.0 - f
-        th1, om1, work = part(w, slot, theta, omega, record, i, f, rest, h, general, linear)
+        if rounds == 1 and f == 0.0 and w[LIMIT * W + slot] > 0.0:
+            th1, om1, work = w[TH * W + slot], w[OM * W + slot], w[WORK_STEP * W + slot]
+        else:
+            th1, om1, work = part(w, slot, theta, omega, record, i, f, rest, h, general, linear)
         if w[SIDE * W + slot] * th1 < 0.0:
-            rest, om1, work = crossing(w, slot, theta, omega, record, i, f, rest, h, general, linear)
+            rest, om1, work = crossing(
+                w, slot, theta, omega, th1, om1, record, i, f, rest, h, general, linear
+            )  # fmt: skip
             if omega * om1 < 0.0:
                 raise_peak(result, w, lane, slot, turning_point(theta, omega, 0.0, om1, rest * h))
             f += rest
@@ -246,7 +251,7 @@ def one_step(
                 rest, th1, work = turning(w, slot, theta, omega, record, i, f, rest, h, general, linear)
                 om1 = 0.0
                 w[DIRECTION * W + slot] = -w[DIRECTION * W + slot]
-                result[R_MODE, lane] = HELD
+                result[lane, R_MODE] = HELD
                 raise_peak(result, w, lane, slot, abs(th1))
             else:
                 raise_peak(result, w, lane, slot, turning_point(theta, omega, th1, om1, rest * h))
@@ -271,23 +276,48 @@ def part(
 
 
 @called
+def hermite_root(theta: float, omega: float, th1: float, om1: float, step: float) -> float:
+    """Fraction of the step at which the cubic through both ends passes zero (th1 beyond it)."""
+    c = 3.0 * (th1 - theta) - step * (2.0 * omega + om1)
+    d = 2.0 * (theta - th1) + step * (omega + om1)
+    f = 1.0
+    for _ in range(4):
+        value = theta + f * (step * omega + f * (c + f * d))
+        slope = step * omega + f * (2.0 * c + 3.0 * d * f)
+        if slope * th1 <= 0.0:
+            break
+        f -= value / slope
+    return f
+
+
+@called
 def crossing(
-    w: Table, slot: int, theta: float, omega: float, record: Table, i: int, f: float, rest: float, h: float,
-    general: Any, linear: Any,
+    w: Table, slot: int, theta: float, omega: float, th1: float, om1: float, record: Table, i: int, f: float,
+    rest: float, h: float, general: Any, linear: Any,
 ) -> tuple[float, float, float]:  # fmt: skip
-    """Share of the step until theta = 0, theta' and work there: Newton within a bracket on the step itself."""
+    """Share of the step until theta = 0, theta' and work there: Newton within a bracket on the step itself.
+
+    It stops where the last correction is under 1e-7 of the step and applies it to both: the error
+    left is of its square.
+    """
     side = w[SIDE * W + slot]
-    low, high, share = 0.0, rest, rest
-    om1, work = omega, 0.0
+    low, high, work = 0.0, rest, 0.0
+    share = rest * hermite_root(theta, omega, th1, om1, rest * h)
+    if not low < share < high:
+        share = 0.5 * rest
     for _ in range(60):
         th1, om1, work = part(w, slot, theta, omega, record, i, f, share, h, general, linear)
         if side * th1 < 0.0:
             high = share
         else:
             low = share
-        if abs(th1) <= 1e-15 or high - low <= 1e-15:
+        inward = side * om1 < 0.0
+        if inward and abs(th1) <= 1e-7 * abs(om1) * h:
+            more = -th1 / (om1 * h)
+            return share + more, om1 + (om1 - omega) * more / share, work
+        if high - low <= 1e-15:
             break
-        trial = share - th1 / (om1 * h) if side * om1 < 0.0 else -1.0
+        trial = share - th1 / (om1 * h) if inward else -1.0
         share = trial if low < trial < high else 0.5 * (low + high)
     return share, om1, work
 

@@ -17,27 +17,27 @@ Table = Any
 @called
 def pivot(given: Table, w: Table, lane: int, slot: int, side: float) -> float:
     """b of a side at theta = 0: crushed by the peak so far, less the corner's radius."""
-    half = given[Q_RIGHT, lane] if side > 0.0 else given[Q_LEFT, lane]
+    half = given[lane, Q_RIGHT] if side > 0.0 else given[lane, Q_LEFT]
     inset = min(MOST_INSET, w[CRUSH * W + slot] * w[PEAK * W + slot])
-    return float(half * (1.0 - inset) - given[Q_RHO, lane])
+    return float(half * (1.0 - inset) - given[lane, Q_RHO])
 
 
 @called
 def restitution(given: Table, result: Table, w: Table, lane: int, slot: int, side: float, omega: float) -> float:
     """theta'_after / theta'_before when the block leaves ``side``; the law of `models.housner.impact`."""
-    mass, height, inertia = given[Q_MASS, lane], given[Q_HEIGHT, lane], given[Q_INERTIA, lane]
+    mass, height, inertia = given[lane, Q_MASS], given[lane, Q_HEIGHT], given[lane, Q_INERTIA]
     old = pivot(given, w, lane, slot, side)
     new = pivot(given, w, lane, slot, -side)
-    e = given[Q_RESTITUTION, lane]
+    e = given[lane, Q_RESTITUTION]
     if not e == e:
         e = (inertia + mass * (height * height - old * new)) / (inertia + mass * (height * height + new * new))
-    e *= given[Q_FACTOR, lane]
-    e *= 1.0 - given[Q_ASPECT, lane]
-    exponent = given[Q_EXPONENT, lane]
-    if exponent != 0.0 and result[R_PEAK, lane] > 0.0:
-        e *= (result[R_SWING, lane] / result[R_PEAK, lane]) ** exponent
-    e *= 1.0 - given[Q_SLOPE, lane] * abs(omega) / (given[Q_P, lane] * given[Q_ALPHA, lane])
-    e *= max(given[Q_FLOOR, lane], 1.0 - given[Q_LOSS, lane] * result[R_IMPACTS, lane])
+    e *= given[lane, Q_FACTOR]
+    e *= 1.0 - given[lane, Q_ASPECT]
+    exponent = given[lane, Q_EXPONENT]
+    if exponent != 0.0 and result[lane, R_PEAK] > 0.0:
+        e *= (result[lane, R_SWING] / result[lane, R_PEAK]) ** exponent
+    e *= 1.0 - given[lane, Q_SLOPE] * abs(omega) / (given[lane, Q_P] * given[lane, Q_ALPHA])
+    e *= max(given[lane, Q_FLOOR], 1.0 - given[lane, Q_LOSS] * result[lane, R_IMPACTS])
     return float(max(e, 0.0))
 
 
@@ -45,5 +45,5 @@ def restitution(given: Table, result: Table, w: Table, lane: int, slot: int, sid
 def kinetic_energy(given: Table, w: Table, lane: int, slot: int, side: float, omega: float) -> float:
     """Kinetic energy at theta = 0 about the pivot of ``side``, in J."""
     b = pivot(given, w, lane, slot, side)
-    h = given[Q_HEIGHT, lane]
-    return float(0.5 * (given[Q_INERTIA, lane] + given[Q_MASS, lane] * (h * h + b * b)) * omega * omega)
+    h = given[lane, Q_HEIGHT]
+    return float(0.5 * (given[lane, Q_INERTIA] + given[lane, Q_MASS] * (h * h + b * b)) * omega * omega)

@@ -2,7 +2,7 @@
 
 ``work`` is one flat array: row r of the W lanes under way lies at ``work[r * W : (r + 1) * W]``
 (constant offsets let the compiler prove that rows do not overlap). ``given`` and ``result`` are
-tables (rows, n) over all lanes.
+tables (n, columns) over all lanes.
 """
 
 from __future__ import annotations

@@ -18,7 +18,7 @@ from models.housner.lanes.advance import advance
 from models.shaking import Shaking
 
 EVENTS = ("onset", "impact", "rest", "overturned")
-LARGEST_PHASE = 0.03
+LARGEST_PHASE = 0.0075
 """Largest p h of a step (rad); the error of the rule falls with its fourth power."""
 JOINT_PHASE = 0.2
 CHUNK = 64
@@ -90,8 +90,8 @@ def records(shaking: Shaking, n: int, tail: float, pitch: float | None) -> tuple
 
 
 def given_table(block: Block, scale: FloatArray, initial: Mapping[str, FloatArray]) -> FloatArray:
-    """The constants of the lanes, row by row as in `rows`."""
-    table = np.zeros((r.N_GIVEN, block.size))
+    """The constants of the lanes, a line a lane with the columns of `rows`."""
+    table = np.zeros((block.size, r.N_GIVEN))
     p, alpha = block.frequency_parameter, block.slenderness
     with np.errstate(divide="ignore"):
         joint = np.where(block.joint_angle > 0.0, 1.0 / block.joint_angle, -1.0)
@@ -132,7 +132,7 @@ def given_table(block: Block, scale: FloatArray, initial: Mapping[str, FloatArra
         (r.Q_PEAK, initial.get("peak_rotation_1", 0.0)),
         (r.Q_IMPACTS, initial.get("impacts", 0.0)),
     ):
-        table[row] = values
+        table[:, row] = values
     return table
 
 
@@ -158,7 +158,7 @@ def run(
     on; ``log`` > 0 returns up to that many events a lane. ``refinement`` divides every step.
     """
     n = block.size
-    out = np.zeros((r.N_RESULT, n))
+    out = np.zeros((n, r.N_RESULT))
     trace = np.zeros((n, samples, 2))
     logged: list[tuple[tuple[float, str], ...]] = [()] * n
     steps = 0
@@ -172,7 +172,7 @@ def run(
         begin = np.zeros(lanes.size, np.int64) if first is None else first[lanes] * sub
         end = np.full(lanes.size, record.shape[1] - 2) if last is None else last[lanes] * sub
         given = given_table(part, scale[lanes], {k: v[lanes] for k, v in start.items()})
-        result = np.zeros((r.N_RESULT, lanes.size))
+        result = np.zeros((lanes.size, r.N_RESULT))
         part_trace = np.zeros((lanes.size, samples, 2))
         part_log = np.zeros((lanes.size, log, 2))
         count = np.zeros(lanes.size, np.int64)
@@ -181,7 +181,7 @@ def run(
             sub if samples else 0, part_trace, part_log, count, fall,
             None if part.plain else True, True if linear else None,
         )  # fmt: skip
-        out[:, lanes] = result
+        out[lanes] = result
         trace[lanes] = part_trace
         for k, lane in enumerate(lanes):
             logged[lane] = tuple((t, EVENTS[int(kind)]) for t, kind in part_log[k, : min(count[k], log)])
@@ -196,17 +196,17 @@ def run(
 
 def outputs(block: Block, result: NDArray[np.float64]) -> dict[str, NDArray[Any]]:
     """The declared outputs from the table of results."""
-    status = result[r.R_STATUS].astype(np.int8)
+    status = result[:, r.R_STATUS].astype(np.int8)
     return {
-        "peak_rotation": result[r.R_PEAK],
-        "peak_rotation_ratio": result[r.R_PEAK] / block.slenderness,
-        "uplift_duration": result[r.R_UPLIFT],
-        "onset_time": result[r.R_ONSET],
+        "peak_rotation": result[:, r.R_PEAK],
+        "peak_rotation_ratio": result[:, r.R_PEAK] / block.slenderness,
+        "uplift_duration": result[:, r.R_UPLIFT],
+        "onset_time": result[:, r.R_ONSET],
         "overturned": status == r.OVERTURNED,
-        "overturning_time": result[r.R_OVERTURNED_AT],
-        "impacts": result[r.R_IMPACTS].astype(np.int32),
-        "residual_rotation": result[r.R_ROTATION],
-        "dissipated_energy": result[r.R_DISSIPATED],
-        "needed_friction": np.where(result[r.R_DEMAND] > 1e299, np.inf, result[r.R_DEMAND]),
+        "overturning_time": result[:, r.R_OVERTURNED_AT],
+        "impacts": result[:, r.R_IMPACTS].astype(np.int32),
+        "residual_rotation": result[:, r.R_ROTATION],
+        "dissipated_energy": result[:, r.R_DISSIPATED],
+        "needed_friction": np.where(result[:, r.R_DEMAND] > 1e299, np.inf, result[:, r.R_DEMAND]),
         "status": status,
     }
