@@ -89,7 +89,8 @@ def read_columns(path: Path, layout: Layout, factor: Callable[[str, str, str], f
         return Channels(check_step(to_si(layout.time_step, "s", where), path.name), 0.0, values)
     times = _values(path, "time", layout.time, header, rows, layout)
     times = times * factor_to_si(layout.time.unit, "s", f"{path.name}: time")
-    return Channels(uniform_step(times, path.name), float(times[0]), values)
+    cure = "resample to one step, or state time_step instead of time where the times are only rounded"
+    return Channels(uniform_step(times, path.name, cure), float(times[0]), values)
 
 
 def _rows(path: Path, layout: Layout) -> tuple[list[str], list[tuple[int, list[str]]]]:

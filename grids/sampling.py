@@ -21,12 +21,12 @@ JITTER = 0.01
 def check_step(time_step: float, where: str) -> float:
     """A finite positive time step below one second, s."""
     if not (math.isfinite(time_step) and 0.0 < time_step <= 1.0):
-        raise InputError(f"{where}: time step is {time_step:.9g} s: a record needs one between 0 and 1 s")
+        raise InputError(f"{where}: time step is {time_step:.9g} s: give one above 0 and up to 1 s")
     return time_step
 
 
-def uniform_step(times: FloatArray, where: str) -> float:
-    """The step of uniform sampling times (n,), s."""
+def uniform_step(times: FloatArray, where: str, cure: str = "resample the record to one step") -> float:
+    """The step of uniform sampling times (n,), s; ``cure`` ends the sentence about other times."""
     if times.size < SHORTEST:
         raise InputError(
             f"{where}: has {times.size} sample(s), fewer than {SHORTEST}: is the file cut short?"
@@ -41,8 +41,7 @@ def uniform_step(times: FloatArray, where: str) -> float:
     if abs(intervals[worst] - step) > JITTER * step:
         raise InputError(
             f"{where}: sampling is not uniform, the step is {intervals[worst]:.6g} s at "
-            f"{times[worst]:.6g} s and {step:.6g} s on average: "
-            "resample the record to one step, or state time_step if the times are only rounded"
+            f"{times[worst]:.6g} s and {step:.6g} s on average: {cure}"
         )
     return _rounded(step)
 

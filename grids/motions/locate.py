@@ -58,8 +58,8 @@ def locate(source: str, near: Path | None = None) -> tuple[Path, str | None]:
         return SHIPPED / f"{name}.nc", key
     folders = [folder / wanted.parent for folder in _folders(near)]
     raise InputError(
-        f"motion {source!r} is found neither beside the plan, in the current folder, among the shipped ones nor in "
-        f"the data folder (ROCKING_DATA); {_cure(wanted.name, folders)}"
+        f"motion {source!r} is not beside the plan, in the current folder, among the shipped ones "
+        f"or in the data folder (ROCKING_DATA); {_cure(wanted.name, folders)}"
     )
 
 

@@ -158,7 +158,7 @@ def _read(path: Path, key: str | None, statement: Mapping[str, Any]) -> Record:
         raw = np.asarray(array)
         values = check_samples(raw * factor if raw.dtype.kind in "fiu" else raw, where)
         if line is not None:
-            _check_index(where, line, component, values)
+            _check_index(where, line, split_key(one)[1], values)
         components.append((component, step, values))
     facts = {} if stated is None else {k: v for k in ("source", "licence") if (v := getattr(stated, k))}
     source = {"format": NPZ.name, "files": (path.name,), "record": split_key(keys[0])[0] or name, **facts}
