@@ -1,0 +1,94 @@
+"""Cells to outputs: lanes are grouped by what a model takes once per call.
+
+A model advances many lanes under one shaking; so cells are grouped by motion, time scale and option
+words, and each group is one call. Every lane's result is its own: it does not depend on the other
+lanes of the call, and neither therefore on blocks or schedulers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import models
+from grids.motions import Motion
+from grids.targets import MOTION, SCALES
+from models.base import Model
+from study.keys import Setting
+
+Coordinates = Mapping[str, NDArray[Any]]
+"""Values ``(n,)`` by name of everything that varies, one element a cell."""
+SCALING = tuple(parameter.name for parameter in SCALES)
+"""Names of a plan that act on the motion and not on the model."""
+
+
+def evaluate(setting: Setting, motions: Mapping[str, Motion], cells: Coordinates) -> dict[str, NDArray[Any]]:
+    """Outputs ``(n,)`` of the cells, by name.
+
+    ``motions`` by the values of the coordinate ``motion``; without such a coordinate it holds the
+    one motion of all cells. The horizontal component is scaled to ``pga`` (m s-2) if that is given, both
+    components by the same factor, times ``motion_scale``; ``time_scale`` stretches time.
+    """
+    model = models.get(setting.model)
+    size = len(next(iter(cells.values()))) if cells else 1
+    results: dict[str, NDArray[Any]] = {}
+    for key, index in _groups(model, cells, size):
+        values, scaling = _split({**setting.fixed, **{k: v[index] for k, v in cells.items() if k not in key}})
+        words = {k: str(v) for k, v in key.items() if k in model.options}
+        motion = motions[key[MOTION]] if MOTION in key else next(iter(motions.values()))
+        stretch = float(key.get("time_scale", setting.fixed.get("time_scale", 1.0)))
+        if stretch != 1.0:
+            motion = motion.time_scaled(stretch)
+        computed = model.evaluate(
+            values,
+            motion.shaking(),
+            _scale(motion, scaling, index.size),
+            outputs=setting.outputs,
+            tail=setting.tail,
+            options={**setting.options, **words},
+            integrator=setting.integrator,
+        )
+        for name in setting.outputs:
+            column = np.asarray(computed[name])
+            if column.dtype == bool:
+                column = column.astype(np.int8)
+            results.setdefault(name, np.empty(size, column.dtype))[index] = column
+    return results
+
+
+def lane_groups(model: Model, name: str) -> bool:
+    """Whether a call of the model takes one value of ``name`` for all its lanes."""
+    return name in (MOTION, "time_scale") or name in model.options
+
+
+def _groups(model: Model, cells: Coordinates, size: int) -> Iterator[tuple[dict[str, Any], NDArray[np.intp]]]:
+    """The values that a call takes once, and the indices of the cells that share them."""
+    names = [name for name in cells if lane_groups(model, name)]
+    group = np.zeros(size, dtype=np.intp)
+    levels: list[NDArray[Any]] = []
+    for name in names:
+        distinct, number = np.unique(cells[name], return_inverse=True)
+        group = group * distinct.size + number
+        levels.append(distinct)
+    for g in np.unique(group):
+        key: dict[str, Any] = {}
+        rest = int(g)
+        for name, distinct in zip(reversed(names), reversed(levels), strict=True):
+            rest, k = divmod(rest, distinct.size)
+            key[name] = distinct[k].item() if hasattr(distinct[k], "item") else distinct[k]
+        yield key, np.flatnonzero(group == g)
+
+
+def _split(given: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
+    values = {name: value for name, value in given.items() if name not in SCALING}
+    return values, {name: value for name, value in given.items() if name in SCALING}
+
+
+def _scale(motion: Motion, scaling: Mapping[str, Any], size: int) -> NDArray[np.float64]:
+    scale = np.broadcast_to(np.asarray(scaling.get("motion_scale", 1.0), dtype=np.float64), size).copy()
+    if "pga" in scaling:
+        scale *= np.asarray(scaling["pga"], dtype=np.float64) / motion.pga
+    return scale

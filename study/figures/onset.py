@@ -1,0 +1,42 @@
+"""The onset map of a cube, with the rigid block's threshold for comparison."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import xarray as xr
+from matplotlib.axes import Axes
+
+from study.figures.map_figure import plot_map
+from study.figures.style import COLOURS, positions, shown
+from study.maps import onset_map, select
+
+
+def plot_onset_map(
+    cube: xr.Dataset, x: str, y: str, at: Mapping[str, Any] | None = None, *, ax: Axes | None = None
+) -> Axes:
+    """Draw where rocking starts over two axes, or the smallest intensity that starts it.
+
+    Arguments as in `study.maps.onset_map`. Over PGA, a dashed line marks the onset acceleration of
+    the wall under horizontal shaking alone.
+    """
+    ax = plot_map(onset_map(cube, x, y, at), words=("rocks", "does not rock"), ax=ax)
+    if y == "pga" and "onset_acceleration" in cube.coords:
+        threshold = select(cube, at)["onset_acceleration"].squeeze()
+        if threshold.dims == (x,):
+            low, high = ax.get_ylim()
+            line = ax.plot(positions(cube[x])[0], shown(threshold)[0], "--", color=COLOURS[6])
+            ax.set_ylim(low, high)
+            legend = ax.get_legend()
+            handles = [*(legend.legend_handles if legend else []), *line]
+            texts = [*(text.get_text() for text in (legend.get_texts() if legend else []))]
+            ax.legend(
+                handles,
+                [*texts, "onset without vertical shaking"],
+                loc="lower center",
+                bbox_to_anchor=(0.5, 1.06),
+                ncols=3,
+                frameon=False,
+            )
+    return ax

@@ -1,0 +1,136 @@
+"""Attributes and values of a cube's coordinates, from the declarations of model and mechanisms."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from itertools import product
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from grids.axes import Axis
+from grids.plan import Plan
+from grids.targets import MOTION, SCALES
+from models.base import Model, Parameter, Quantity
+from study.evaluate import SCALING, lane_groups
+from study.keys import motions_by_name
+from study.status import STATUS
+
+
+@dataclass(frozen=True)
+class Coordinate:
+    """A coordinate variable of the cube: values over ``dims`` and CF attributes."""
+
+    name: str
+    dims: tuple[str, ...]
+    values: NDArray[Any]
+    attributes: Mapping[str, Any] = field(default_factory=dict)
+
+
+def describe(quantity: Parameter | Quantity) -> dict[str, Any]:
+    """CF attributes of a declared quantity; ``comment`` holds the rule by which it is computed."""
+    rule = getattr(quantity, "rule", "") or quantity.meaning
+    attributes = {"units": quantity.unit, "long_name": quantity.meaning, "comment": rule}
+    if quantity.symbol:
+        attributes["symbol"] = quantity.symbol
+    if quantity.name == "status":
+        attributes |= flags(STATUS)
+    elif getattr(quantity, "dtype", "") == "bool":
+        attributes |= flags(("no", "yes"))
+    return attributes
+
+
+def flags(words: tuple[str, ...]) -> dict[str, Any]:
+    """CF attributes of an integer variable whose values 0, 1, 2 ... mean ``words``."""
+    return {"flag_values": np.arange(len(words), dtype=np.int8), "flag_meanings": " ".join(words)}
+
+
+def axis_coordinates(plan: Plan, model: Model) -> list[Coordinate]:
+    """The dimension coordinates, and what an axis of cases or samples sets at its points."""
+    found = []
+    for axis in plan.axes:
+        attributes = {"units": axis.unit, "long_name": axis.long_name, "comment": axis.long_name}
+        attributes |= _declared(model, axis.name) | {"axis_of_study": True}
+        found.append(Coordinate(axis.name, (axis.name,), np.asarray(axis.values), attributes))
+        if axis.points is not None:
+            for name, values in axis.points.items():
+                found.append(Coordinate(name, (axis.name,), np.asarray(values), _declared(model, name)))
+    return found
+
+
+def _declared(model: Model, name: str) -> dict[str, Any]:
+    """Attributes of anything a plan can vary; empty for the name of an axis of cases."""
+    if name == MOTION:
+        return {"units": "1", "long_name": "ground motion", "comment": "name of the record"}
+    if name in model.options:
+        return {"units": "1", "long_name": name.replace("_", " "), "comment": "option of the model"}
+    mechanism, dot, parameter = name.partition(".")
+    if dot:
+        return describe(model.mechanisms[mechanism].parameter(parameter))
+    declared = {p.name: p for p in (*model.parameters, *SCALES)}
+    return describe(declared[name]) if name in declared else {}
+
+
+def motion_coordinates(plan: Plan) -> list[Coordinate]:
+    """Name and own peak of the records: along the axis that varies them, or scalars."""
+    along = next((axis for axis in plan.axes if MOTION in axis.sets), None)
+    motions = motions_by_name(plan)
+    label = {"units": "1", "long_name": "ground motion", "comment": "name of the record"}
+    peak = {
+        "units": "m s-2",
+        "long_name": "peak horizontal acceleration of the record",
+        "comment": "largest absolute sample before any scaling",
+    }
+    if along is None:
+        (motion,) = motions.values()
+        return [
+            Coordinate(MOTION, (), np.array(motion.name, dtype=object), label),
+            Coordinate("record_pga", (), np.array(motion.pga), peak),
+        ]
+    peaks = np.array([motions[value].pga for value in along.sets[MOTION].tolist()])
+    return [Coordinate("record_pga", (along.name,), peaks, peak)]
+
+
+def derived_coordinates(plan: Plan, model: Model) -> list[Coordinate]:
+    """The model's constants (alpha, R, p ...), each over only the axes on which it depends."""
+    axes = [axis for axis in plan.axes if any(_physical(model, name) for name in axis.sets)]
+    corners = [np.unique([0, axis.size // 2, axis.size - 1]) for axis in axes]
+    trial = _derive(plan, model, axes, corners)
+    found = []
+    for quantity in model.derived:
+        values = trial[quantity.name]
+        used = [k for k in range(len(axes)) if not _constant(values, k)]
+        positions = [np.arange(axis.size) if k in used else np.array([0]) for k, axis in enumerate(axes)]
+        dims = tuple(axes[k].name for k in used)
+        whole = _derive(plan, model, axes, positions)[quantity.name]
+        shape = [axes[k].size for k in used]
+        found.append(Coordinate(quantity.name, dims, whole.reshape(shape), describe(quantity)))
+    return found
+
+
+def _physical(model: Model, name: str) -> bool:
+    return name not in SCALING and not lane_groups(model, name)
+
+
+def _constant(values: NDArray[Any], axis: int) -> bool:
+    first = np.take(values, [0], axis=axis)
+    return bool(np.all((values == first) | (np.isnan(values) & np.isnan(first))))
+
+
+def _derive(
+    plan: Plan, model: Model, axes: list[Axis], positions: list[NDArray[np.intp]]
+) -> dict[str, NDArray[Any]]:
+    """Derived constants over the product of some positions of each axis."""
+    shape = tuple(p.size for p in positions)
+    index = np.array(list(product(*positions)), dtype=np.intp).reshape(-1, len(axes))
+    values: dict[str, Any] = {
+        name: np.full(len(index), value) for name, value in plan.fixed.items() if _physical(model, name)
+    }
+    for k, axis in enumerate(axes):
+        for name, points in axis.sets.items():
+            if _physical(model, name):
+                values[name] = np.asarray(points)[index[:, k]]
+    derived = model.derive(values)
+    return {name: np.broadcast_to(v, len(index)).reshape(shape) for name, v in derived.items()}

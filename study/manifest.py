@@ -1,0 +1,93 @@
+"""Which cells belong to which block: fixed at the first start, kept in ``manifest.json``.
+
+An axis that grows adds blocks for the new cells only; the old ones stay as they are.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from grids.changes import compare, describe
+from grids.grid import Rectangle
+from grids.plan import Plan
+from models.errors import InputError
+from study.keys import Setting, block_key
+from study.provenance import as_json
+from study.store import write_text
+
+FORMAT = 1
+
+
+@dataclass(frozen=True)
+class Manifest:
+    """What decides the cells of a study (see `grids.changes.describe`), and its blocks by key.
+
+    ``plan_folder``: where the paths in the frozen plan start.
+    """
+
+    description: Mapping[str, Any]
+    blocks: Mapping[str, Rectangle]
+    plan_folder: str
+
+    @classmethod
+    def start(cls, plan: Plan, most_cells: int, plan_folder: str) -> Manifest:
+        """The manifest of a study that has not run yet, in blocks of at most ``most_cells``."""
+        return cls(describe(plan), _keyed(plan, plan.grid.rectangles(most_cells)), plan_folder)
+
+    def differences(self, plan: Plan) -> tuple[str, ...]:
+        """What the plan changes beyond adding axis values; empty: the study can go on."""
+        return compare(self.description, _through_json(describe(plan))).differences
+
+    @property
+    def cells(self) -> int:
+        return sum(block.size for block in self.blocks.values())
+
+    def extended(self, plan: Plan, most_cells: int) -> Manifest:
+        """The manifest with blocks for the axis values that the plan adds."""
+        added = plan.grid.new_rectangles(list(self.blocks.values()), most_cells)
+        return replace(self, description=describe(plan), blocks={**self.blocks, **_keyed(plan, added)})
+
+    def save(self, folder: Path) -> None:
+        """Write ``manifest.json`` whole or not at all."""
+        record = {
+            "format": FORMAT,
+            "plan_folder": self.plan_folder,
+            "description": self.description,
+            "blocks": {key: block.as_json() for key, block in self.blocks.items()},
+        }
+        write_text(folder / "manifest.json", as_json(record) + "\n")
+
+    @classmethod
+    def load(cls, folder: Path) -> Manifest | None:
+        """The manifest of a folder; None when no study was started there."""
+        path = folder / "manifest.json"
+        if not path.exists():
+            return None
+        try:
+            record = json.loads(path.read_text("utf-8"))
+            if record["format"] != FORMAT:
+                raise InputError(
+                    f"{path} has format {record['format']}, this version reads {FORMAT}: "
+                    "start the study under another name"
+                )
+            blocks = {key: Rectangle.from_json(block) for key, block in record["blocks"].items()}
+            return cls(record["description"], blocks, record["plan_folder"])
+        except (KeyError, TypeError, AttributeError, json.JSONDecodeError) as error:
+            raise InputError(
+                f"{path} is not a manifest ({type(error).__name__}: {error}): "
+                "restore it, or start the study under another name"
+            ) from None
+
+
+def _keyed(plan: Plan, blocks: Iterable[Rectangle]) -> dict[str, Rectangle]:
+    setting = Setting.of(plan)
+    return {block_key(plan, setting, block): block for block in blocks}
+
+
+def _through_json(description: Mapping[str, Any]) -> Any:
+    """The description as it reads back from a file, so that both sides compare alike."""
+    return json.loads(as_json(description))

@@ -1,0 +1,235 @@
+"""Run a study: start it, or continue where it stopped.
+
+One task a block, the tasks in flight a few more than the workers. A run that is killed leaves only
+whole blocks; the next run computes the others and writes the cube.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import time
+import traceback
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future, wait
+from contextlib import contextmanager
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+
+from grids.grid import Rectangle
+from grids.plan import Plan, read_plan
+from models.errors import InputError
+from study.cube import write_cube
+from study.keys import Setting
+from study.manifest import Manifest
+from study.provenance import now
+from study.schedulers import check_scheduler, count_workers, open_executor
+from study.store import BlockStore, write_text
+from study.task import Outcome, Task, make_task, run_task
+from study.timing import cells_per_block, time_sample
+
+AHEAD = 2
+"""Tasks in flight per worker: one runs, one waits."""
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a run is; ``reused`` of the ``cells`` done were finished before it began."""
+
+    cells: int
+    cells_done: int
+    cells_reused: int
+    blocks: int
+    blocks_done: int
+    failures: int
+    seconds: float
+
+    @property
+    def rate(self) -> float:
+        """Cells per second of this run."""
+        return (self.cells_done - self.cells_reused) / self.seconds if self.seconds > 0.0 else 0.0
+
+    @property
+    def seconds_left(self) -> float | None:
+        """Time left at this rate; None before the first block."""
+        return (self.cells - self.cells_done) / self.rate if self.rate > 0.0 else None
+
+
+@dataclass(frozen=True)
+class Report:
+    """What a run did. ``cube`` is the file; ``failed`` counts blocks whose cells are flagged."""
+
+    folder: Path
+    cube: Path
+    cells: int
+    blocks: int
+    computed: int
+    reused: int
+    failed: int
+    seconds: float
+    compute_seconds: float
+    store_seconds: float
+
+    def __str__(self) -> str:
+        text = (
+            f"{self.cube}: {self.cells} cells in {self.blocks} blocks "
+            f"({self.computed} computed, {self.reused} reused) in {self.seconds:.1f} s"
+        )
+        return text + (f"; {self.failed} blocks failed, see {self.folder / 'failed'}" if self.failed else "")
+
+
+def run(
+    plan: Plan | str | Path,
+    *,
+    results: str | Path = "results",
+    scheduler: str = "threads",
+    workers: int | None = None,
+    progress: Callable[[Progress], None] | None = None,
+) -> Report:
+    """Run a plan, or continue it, in ``results/<name>`` and write its cube there.
+
+    ``scheduler``: "synchronous", "threads", "processes" or the address of a dask cluster
+    ("tcp://host:port", which must see the same folder); ``workers`` for threads and processes,
+    default one a core. ``progress`` is called after every block. A failed block is noted in
+    ``failed`` and its cells are flagged; the rest goes on.
+
+    Raises InputError for a plan that differs from the folder's in more than added axis values.
+    """
+    check_scheduler(scheduler, workers)
+    plan_folder = "" if isinstance(plan, Plan) else str(Path(plan).resolve().parent)
+    plan = plan if isinstance(plan, Plan) else read_plan(plan)
+    folder = Path(results).resolve() / plan.name
+    setting = Setting.of(plan)
+    with _alone(folder):
+        started, clock = now(), time.perf_counter()
+        manifest = _manifest(plan, setting, folder, plan_folder, count_workers(scheduler, workers))
+        store = BlockStore(folder)
+        store.sweep()
+        blocks = manifest.blocks
+        finished = store.finished()
+        missing = {key: block for key, block in blocks.items() if key not in finished}
+        tasks = (make_task(plan, setting, folder, key, block) for key, block in missing.items())
+        counter = _Counter(blocks, missing, progress)
+        _compute(tasks, store, scheduler, workers, counter)
+        cube = write_cube(plan, setting, manifest, store, started=started, scheduler=scheduler)
+    return Report(
+        folder=folder,
+        cube=cube,
+        cells=counter.cells,
+        blocks=len(blocks),
+        computed=counter.computed,
+        reused=len(blocks) - len(missing),
+        failed=counter.failures,
+        seconds=time.perf_counter() - clock,
+        compute_seconds=counter.compute_seconds,
+        store_seconds=counter.store_seconds,
+    )
+
+
+def _manifest(plan: Plan, setting: Setting, folder: Path, plan_folder: str, workers: int) -> Manifest:
+    """The manifest that covers the plan, saved with the frozen plan before any block is computed."""
+    old = Manifest.load(folder)
+    if old is not None:
+        differences = old.differences(plan)
+        if differences:
+            raise InputError(
+                f"{folder} holds a study that this plan changes; give the plan a new name or undo: "
+                + "; ".join(differences)
+            )
+        if plan.grid.size == old.cells:
+            return old
+    most_cells = cells_per_block(plan, time_sample(plan, setting), workers)
+    new = Manifest.start(plan, most_cells, plan_folder) if old is None else old.extended(plan, most_cells)
+    write_text(folder / "study.toml", plan.text)
+    new.save(folder)
+    return new
+
+
+class WorkerLost(RuntimeError):
+    """A worker process was killed, by hand or because memory ran out."""
+
+
+class _Counter:
+    """Adds up outcomes and reports progress."""
+
+    def __init__(
+        self,
+        blocks: Mapping[str, Rectangle],
+        missing: Mapping[str, Rectangle],
+        report: Callable[[Progress], None] | None,
+    ) -> None:
+        self.cells = sum(block.size for block in blocks.values())
+        self.blocks = len(blocks)
+        self.reused = self.done = self.cells - sum(block.size for block in missing.values())
+        self.blocks_done = len(blocks) - len(missing)
+        self.computed = self.failures = 0
+        self.compute_seconds = self.store_seconds = 0.0
+        self.begun = time.perf_counter()
+        self.report = report
+        self._tell()
+
+    def add(self, outcome: Outcome) -> None:
+        self.done += outcome.cells
+        self.blocks_done += 1
+        self.computed += outcome.failure is None
+        self.failures += outcome.failure is not None
+        self.store_seconds += outcome.storing
+        self.compute_seconds += outcome.seconds - outcome.storing
+        self._tell()
+
+    def _tell(self) -> None:
+        if self.report is not None:
+            seconds = time.perf_counter() - self.begun
+            self.report(
+                Progress(
+                    self.cells, self.done, self.reused, self.blocks, self.blocks_done, self.failures, seconds
+                )
+            )
+
+
+def _compute(
+    tasks: Iterable[Task], store: BlockStore, scheduler: str, workers: int | None, counter: _Counter
+) -> None:
+    """Run every task; a worker that dies without an answer fails its block only where that is known."""
+    queue: Iterator[Task] = iter(tasks)
+    first = next(queue, None)
+    if first is None:
+        return
+    with open_executor(scheduler, workers) as (executor, n):
+        running: dict[Future[Outcome], Task] = {executor.submit(run_task, first): first}
+        while running:
+            for task in islice(queue, AHEAD * n - len(running)):
+                running[executor.submit(run_task, task)] = task
+            done, _ = wait(running, return_when=FIRST_COMPLETED)
+            for future in done:
+                counter.add(_outcome(future, running.pop(future), store))
+
+
+def _outcome(future: Future[Outcome], task: Task, store: BlockStore) -> Outcome:
+    try:
+        return future.result()
+    except BrokenExecutor as error:
+        raise WorkerLost(
+            f"a worker process ended without an answer (killed, or out of memory: {error}); "
+            "finished blocks are kept, run again to continue"
+        ) from None
+    except Exception as error:
+        store.fail(task.key, traceback.format_exc())
+        return Outcome(task.key, task.grid.size, 0.0, 0.0, f"{type(error).__name__}: {error}")
+
+
+@contextmanager
+def _alone(folder: Path) -> Iterator[None]:
+    """Hold the study's lock; the system releases it when the process ends, however it ends."""
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / ".lock").open("w") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise InputError(f"{folder} is being run by another process: wait for it or stop it") from None
+        try:
+            yield
+        finally:
+            if set(folder.iterdir()) == {folder / ".lock"}:  # refused before anything was kept
+                (folder / ".lock").unlink()
+                folder.rmdir()

@@ -1,0 +1,56 @@
+"""How far a study is, from its folder alone."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from models.errors import InputError
+from study.manifest import Manifest
+from study.store import BlockStore
+
+
+@dataclass(frozen=True)
+class State:
+    """``failures``: the reason by block key; ``cube``: whether a cube was written."""
+
+    folder: Path
+    cells: int
+    cells_done: int
+    blocks: int
+    blocks_done: int
+    failures: Mapping[str, str]
+    cube: bool
+
+    def __str__(self) -> str:
+        share = self.cells_done / self.cells
+        lines = [
+            f"{self.folder}: {self.blocks_done} of {self.blocks} blocks, "
+            f"{self.cells_done} of {self.cells} cells ({share:.1%})",
+            f"failed blocks: {len(self.failures)}",
+            "cube.nc is written" if self.cube else "no cube yet: run the plan to go on",
+        ]
+        lines += [
+            f"  failed/{key}.txt: {text.strip().splitlines()[-1]}" for key, text in self.failures.items()
+        ]
+        return "\n".join(lines)
+
+
+def state(folder: str | Path) -> State:
+    """How far the study of a folder is. Raises InputError when it holds none."""
+    folder = Path(folder)
+    manifest = Manifest.load(folder)
+    if manifest is None:
+        raise InputError(f"{folder} holds no study: give a folder under results/ that a run has written")
+    store = BlockStore(folder)
+    done = manifest.blocks.keys() & store.finished()
+    return State(
+        folder=folder,
+        cells=manifest.cells,
+        cells_done=sum(manifest.blocks[key].size for key in done),
+        blocks=len(manifest.blocks),
+        blocks_done=len(done),
+        failures=store.failures(),
+        cube=(folder / "cube.nc").exists(),
+    )

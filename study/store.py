@@ -1,0 +1,149 @@
+"""The block store: a block's file exists if and only if the block is finished.
+
+A file is written under a hidden random name, flushed to the disk, renamed onto its key, and the
+folder is flushed too; a kill at any moment leaves either no block or a whole one. The netCDF
+library is not safe between threads, so every open..close holds `NETCDF_LOCK`.
+"""
+
+from __future__ import annotations
+
+import os
+import uuid
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from grids.netcdf_lock import NETCDF_LOCK
+from study.provenance import attribute
+
+COMPRESSION: dict[str, Any] = {"compression": "zlib", "complevel": 1, "shuffle": True}
+
+
+def flush(path: Path) -> None:
+    """Force a file or a folder onto the disk."""
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+def write_whole(path: Path, write: Callable[[Path], None]) -> None:
+    """Let ``write`` fill a hidden temporary file beside ``path``, then put it in place in one step."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary = path.with_name(f".{path.stem}.{uuid.uuid4().hex}.tmp")
+    try:
+        write(temporary)
+        flush(temporary)
+        os.replace(temporary, path)
+    except BaseException:
+        temporary.unlink(missing_ok=True)
+        raise
+    flush(path.parent)
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text file whole or not at all."""
+    write_whole(path, lambda temporary: _write_utf8(temporary, text))
+
+
+def _write_utf8(path: Path, text: str) -> None:
+    path.write_text(text, encoding="utf-8")
+
+
+class DamagedBlock(RuntimeError):
+    """A block's file cannot be read (a failing disk, a half copied folder)."""
+
+
+@dataclass(frozen=True)
+class BlockStore:
+    """The folders ``blocks`` (``<key>.nc``) and ``failed`` (``<key>.txt``) of one study."""
+
+    folder: Path
+
+    @property
+    def blocks(self) -> Path:
+        return self.folder / "blocks"
+
+    @property
+    def failed(self) -> Path:
+        return self.folder / "failed"
+
+    def finished(self) -> set[str]:
+        """Keys of the finished blocks."""
+        return {path.stem for path in self.blocks.glob("*.nc") if not path.name.startswith(".")}
+
+    def failures(self) -> dict[str, str]:
+        """Why blocks failed, by key."""
+        return {path.stem: path.read_text("utf-8") for path in sorted(self.failed.glob("*.txt"))}
+
+    def sweep(self) -> None:
+        """Remove what killed runs left half written; only the holder of the study's lock may do so."""
+        for folder in (self.folder, self.blocks, self.failed):
+            for leftover in folder.glob(".*.tmp"):
+                leftover.unlink(missing_ok=True)
+
+    def write(
+        self,
+        key: str,
+        coordinates: Mapping[str, NDArray[Any]],
+        outputs: Mapping[str, NDArray[Any]],
+        attributes: Mapping[str, Any],
+    ) -> None:
+        """Store a finished block; the dimensions of ``outputs`` are the names of ``coordinates``."""
+        write_whole(self.blocks / f"{key}.nc", lambda path: _write(path, coordinates, outputs, attributes))
+        (self.failed / f"{key}.txt").unlink(missing_ok=True)
+
+    def read(self, key: str) -> dict[str, NDArray[Any]]:
+        """Outputs of a finished block by name, shaped as its axes."""
+        import netCDF4
+
+        path = self.blocks / f"{key}.nc"
+        try:
+            with NETCDF_LOCK, netCDF4.Dataset(path) as dataset:
+                dataset.set_auto_mask(False)
+                outputs = [name for name in dataset.variables if name not in dataset.dimensions]
+                return {name: dataset[name][...] for name in outputs}
+        except (OSError, RuntimeError) as error:
+            raise DamagedBlock(f"{path} cannot be read ({error}): delete it and run again") from None
+
+    def seconds(self, key: str) -> float:
+        """Computing time of a finished block, in s."""
+        import netCDF4
+
+        with NETCDF_LOCK, netCDF4.Dataset(self.blocks / f"{key}.nc") as dataset:
+            return float(dataset.seconds)
+
+    def fail(self, key: str, reason: str) -> None:
+        """Note why a block failed; the next run tries it again."""
+        write_text(self.failed / f"{key}.txt", reason)
+
+
+def _write(
+    path: Path,
+    coordinates: Mapping[str, NDArray[Any]],
+    outputs: Mapping[str, NDArray[Any]],
+    attributes: Mapping[str, Any],
+) -> None:
+    import netCDF4
+
+    with NETCDF_LOCK, netCDF4.Dataset(path, "w") as dataset:
+        dataset.setncatts({name: attribute(value) for name, value in attributes.items()})
+        for name, values in coordinates.items():
+            dataset.createDimension(name, len(values))
+            kind = str if values.dtype.kind in "OUS" else values.dtype
+            dataset.createVariable(name, kind, (name,))[:] = values.astype(object) if kind is str else values
+        for name, values in outputs.items():
+            variable = dataset.createVariable(
+                name,
+                values.dtype,
+                tuple(coordinates),
+                fill_value=False,
+                chunksizes=values.shape or None,
+                **COMPRESSION,
+            )
+            variable[...] = np.ascontiguousarray(values)

@@ -1,0 +1,77 @@
+"""How long a study takes, from a timed sample; it chooses the size of blocks, never a result."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from math import ceil
+
+import numpy as np
+
+import models
+from grids.plan import Plan
+from study.evaluate import evaluate, lane_groups
+from study.keys import Setting, motions_by_name
+
+SAMPLE_SECONDS = 0.2
+LARGEST_SAMPLE = 4096
+GROUPS = 3
+BLOCKS_PER_WORKER = 8
+SHORTEST_BLOCK = 1.0
+"""s: a block's file costs some 20 ms."""
+
+
+@dataclass(frozen=True)
+class Sample:
+    """``cells`` computed in ``seconds`` on one core, after compilation took ``compile_seconds``."""
+
+    cells: int
+    seconds: float
+    compile_seconds: float
+
+    @property
+    def seconds_per_cell(self) -> float:
+        return self.seconds / self.cells
+
+
+def time_sample(plan: Plan, setting: Setting) -> Sample:
+    """Compute random cells of a few motions and option words, twice as many until the time is long enough."""
+    grid, motions = plan.grid, motions_by_name(plan)
+
+    def seconds(cells: int) -> float:
+        chosen = grid.coordinates(_choose(plan, grid.shape, cells))
+        begun = time.perf_counter()
+        evaluate(setting, motions, chosen)
+        return time.perf_counter() - begun
+
+    first = seconds(cells := min(64, LARGEST_SAMPLE))
+    spent = seconds(cells)
+    compile_seconds = max(0.0, first - spent)
+    while spent < SAMPLE_SECONDS and cells < LARGEST_SAMPLE:
+        cells *= 2
+        spent = seconds(cells)
+    return Sample(cells, spent, compile_seconds)
+
+
+def _choose(plan: Plan, shape: tuple[int, ...], cells: int) -> np.ndarray:
+    """Flat indices of random cells (repeats allowed) that share few values of what a call takes once."""
+    random = np.random.default_rng(0)
+    groups = random.integers(0, np.maximum(shape, 1), size=(GROUPS, len(shape)))
+    index = random.integers(0, np.maximum(shape, 1), size=(cells, len(shape)))
+    group = random.integers(0, GROUPS, cells)
+    model = models.get(plan.model)
+    for k, axis in enumerate(plan.axes):
+        if any(lane_groups(model, name) for name in axis.sets):
+            index[:, k] = groups[group, k]
+    if not shape:
+        return np.zeros(cells, dtype=np.intp)
+    return np.ravel_multi_index(tuple(index.T), shape)
+
+
+def cells_per_block(plan: Plan, sample: Sample, workers: int) -> int:
+    """Cells that take about ``block_seconds``; fewer in a short study, so that every worker has some
+    blocks and progress shows, but none under a second."""
+    size = plan.grid.size
+    total = sample.seconds_per_cell * size
+    blocks = max(total / plan.block_seconds, min(total / SHORTEST_BLOCK, BLOCKS_PER_WORKER * workers), 1.0)
+    return ceil(size / blocks)
