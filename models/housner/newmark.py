@@ -189,9 +189,9 @@ class _Lanes:
             s = np.full(k.size, side)
             zero = np.zeros(k.size)
             ends = [self._acceleration(k, zero, s, *ground(k, t)) * side for t in (past, np.full(k.size, h))]
-            share = np.where(
-                ends[0] > 0.0, 0.0, np.where(ends[1] > 0.0, ends[0] / (ends[0] - ends[1]), np.inf)
-            )
+            rise = np.where(ends[1] > ends[0], ends[1] - ends[0], 1.0)
+            later = np.where(ends[1] > 0.0, -ends[0] / rise, np.inf)
+            share = np.where(ends[0] > 0.0, 0.0, later)
             which = np.where(share < first, side, which)
             first = np.minimum(first, share)
         starts = first < 1.0
