@@ -62,7 +62,7 @@ def step_all(w: Table, h: float, general: Any, linear: Any) -> int:
     return flagged
 
 
-@called
+@inlined
 def load_inputs(w: Table, slot: int, record: Table, i: int) -> None:
     """The inputs at the start of step i, for a lane that has jumped."""
     a, g, p, q = inputs(w, slot, record, i, 0.0)
@@ -106,7 +106,7 @@ def start(given: Table, result: Table, w: Table, lane: int, slot: int, time: flo
         result[lane, R_MODE] = HELD if omega == 0.0 and given[lane, Q_COULOMB] > 0.0 else UP
 
 
-@called
+@inlined
 def watch(given: Table, result: Table, w: Table, lane: int, slot: int, shaken: bool) -> None:
     """Set the rotation beyond which the lane needs attention (always, unless it rocks)."""
     if result[lane, R_MODE] != UP:
@@ -139,7 +139,7 @@ def finish(given: Table, result: Table, w: Table, lane: int, slot: int, time: fl
         result[lane, R_STATUS] = ROCKING if moved else REST
 
 
-@called
+@inlined
 def attend(
     given: Table, result: Table, w: Table, lane: int, slot: int, record: Table, i: int, h: float, shaken: bool,
     fall: bool, log: Table, count: Table, general: Any, linear: Any,
@@ -250,13 +250,14 @@ def advance(
         settle = False
         for _ in range(common):
             for slot in range(W):
-                i = at[slot] + 1
+                # unsigned: no code for negative indices
+                i = np.uint64(at[slot] + 1)
                 w[RA * W + slot] = record[0, i]
                 w[RV * W + slot] = record[1, i]
                 if general is not None:
                     w[RP * W + slot] = record[2, i]
                     w[RPP * W + slot] = record[3, i]
-                at[slot] = i
+                at[slot] += 1
             flagged = step_all(w, h, general, linear)
             steps += active
             if flagged > 0:

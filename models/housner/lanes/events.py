@@ -17,14 +17,14 @@ from models.housner.lanes.rows import (
     R_DISSIPATED, R_ENERGY, R_IMPACTS, R_MODE, R_ONSET, R_PEAK, R_STATUS, R_SWING, R_UP_SINCE, R_UPLIFT,
     SCALE, SIDE, TH, TH0, OM, OM0, UP, VSCALE, W, WORK, WORK_STEP,
 )  # fmt: skip
-from models.lanes.compiler import called
+from models.lanes.compiler import called, inlined
 
 Table = Any
 NONE = 2.0
 """A fraction of the step that never comes."""
 
 
-@called
+@inlined
 def note(log: Table, count: Table, lane: int, time: float, kind: float) -> None:
     """Write an event in the log of this lane, as long as there is room."""
     if log.shape[1] > 0:
@@ -34,7 +34,7 @@ def note(log: Table, count: Table, lane: int, time: float, kind: float) -> None:
         count[lane] += 1
 
 
-@called
+@inlined
 def stand_on(given: Table, w: Table, lane: int, slot: int, side: float, linear: Any) -> None:
     """Set the coefficients of the side on which the block now stands."""
     half = given[lane, Q_RIGHT] if side > 0.0 else given[lane, Q_LEFT]
@@ -54,7 +54,7 @@ def stand_on(given: Table, w: Table, lane: int, slot: int, side: float, linear: 
         w[CH * W + slot] = mass * height / corner
 
 
-@called
+@inlined
 def inputs(w: Table, slot: int, record: Table, i: int, f: float) -> tuple[float, float, float, float]:
     """a, G, psi, psi'' at the fraction f of step i."""
     a = (1.0 - f) * record[0, i] + f * record[0, i + 1]
@@ -70,7 +70,7 @@ def inputs(w: Table, slot: int, record: Table, i: int, f: float) -> tuple[float,
     )
 
 
-@called
+@inlined
 def excess(
     given: Table, w: Table, lane: int, slot: int, side: float,
     a: float, g: float, psi: float, psi2: float, linear: Any,
@@ -140,7 +140,7 @@ def next_onset(
     return last
 
 
-@called
+@inlined
 def turning_point(theta: float, omega: float, theta1: float, omega1: float, step: float) -> float:
     """|theta| where the cubic through both ends of the step turns (two Newton steps from the secant)."""
     c = 3.0 * (theta1 - theta) - step * (2.0 * omega + omega1)
@@ -154,7 +154,7 @@ def turning_point(theta: float, omega: float, theta1: float, omega1: float, step
     return abs(theta + f * (step * omega + f * (c + f * d)))
 
 
-@called
+@inlined
 def raise_peak(result: Table, w: Table, lane: int, slot: int, size: float) -> None:
     """Keep the largest rotation of the run and of this swing."""
     result[lane, R_SWING] = max(result[lane, R_SWING], size)
@@ -163,7 +163,7 @@ def raise_peak(result: Table, w: Table, lane: int, slot: int, size: float) -> No
         w[PEAK * W + slot] = size
 
 
-@called
+@inlined
 def land(
     given: Table, result: Table, w: Table, lane: int, slot: int, omega: float, time: float,
     log: Table, count: Table, linear: Any,
@@ -260,7 +260,7 @@ def one_step(
     w[TH * W + slot], w[OM * W + slot] = theta, omega
 
 
-@called
+@inlined
 def part(
     w: Table, slot: int, theta: float, omega: float, record: Table, i: int, f: float, share: float, h: float,
     general: Any, linear: Any,
@@ -275,7 +275,7 @@ def part(
     return th1, om1, work
 
 
-@called
+@inlined
 def hermite_root(theta: float, omega: float, th1: float, om1: float, step: float) -> float:
     """Fraction of the step at which the cubic through both ends passes zero (th1 beyond it)."""
     c = 3.0 * (th1 - theta) - step * (2.0 * omega + om1)

@@ -9,12 +9,12 @@ from models.housner.lanes.rows import (
     CRUSH, PEAK, Q_ALPHA, Q_ASPECT, Q_EXPONENT, Q_FACTOR, Q_FLOOR, Q_HEIGHT, Q_INERTIA, Q_LEFT, Q_LOSS,
     Q_MASS, Q_P, Q_RESTITUTION, Q_RHO, Q_RIGHT, Q_SLOPE, R_IMPACTS, R_PEAK, R_SWING, W,
 )  # fmt: skip
-from models.lanes.compiler import called
+from models.lanes.compiler import inlined
 
 Table = Any
 
 
-@called
+@inlined
 def pivot(given: Table, w: Table, lane: int, slot: int, side: float) -> float:
     """b of a side at theta = 0: crushed by the peak so far, less the corner's radius."""
     half = given[lane, Q_RIGHT] if side > 0.0 else given[lane, Q_LEFT]
@@ -22,7 +22,7 @@ def pivot(given: Table, w: Table, lane: int, slot: int, side: float) -> float:
     return float(half * (1.0 - inset) - given[lane, Q_RHO])
 
 
-@called
+@inlined
 def restitution(given: Table, result: Table, w: Table, lane: int, slot: int, side: float, omega: float) -> float:
     """theta'_after / theta'_before when the block leaves ``side``; the law of `models.housner.impact`."""
     mass, height, inertia = given[lane, Q_MASS], given[lane, Q_HEIGHT], given[lane, Q_INERTIA]
@@ -41,7 +41,7 @@ def restitution(given: Table, result: Table, w: Table, lane: int, slot: int, sid
     return float(max(e, 0.0))
 
 
-@called
+@inlined
 def kinetic_energy(given: Table, w: Table, lane: int, slot: int, side: float, omega: float) -> float:
     """Kinetic energy at theta = 0 about the pivot of ``side``, in J."""
     b = pivot(given, w, lane, slot, side)
