@@ -34,9 +34,10 @@ def uniform_step(times: FloatArray, where: str, cure: str = "resample the record
     if not np.isfinite(times).all():
         first = int(np.flatnonzero(~np.isfinite(times))[0])
         raise InputError(f"{where}: time of sample {first + 1} is not finite: repair the time column")
+    intervals = np.diff(times)
+    _check_order(times, intervals, where)
     step = float((times[-1] - times[0]) / (times.size - 1))
     check_step(step, where)
-    intervals = np.diff(times)
     worst = int(np.argmax(np.abs(intervals - step)))
     if abs(intervals[worst] - step) > JITTER * step:
         raise InputError(
@@ -44,6 +45,23 @@ def uniform_step(times: FloatArray, where: str, cure: str = "resample the record
             f"{times[worst]:.6g} s and {step:.6g} s on average: {cure}"
         )
     return _rounded(step)
+
+
+def _check_order(times: FloatArray, intervals: FloatArray, where: str) -> None:
+    """A clock that stands, runs back, or leaves samples out is no matter of jitter."""
+    back = int(np.argmin(intervals))
+    if intervals[back] <= 0.0:
+        raise InputError(
+            f"{where}: the clock goes from {times[back]:.6g} s to {times[back + 1]:.6g} s at sample {back + 2}: "
+            "it was reset or a line stands twice, split the record there"
+        )
+    gap, usual = int(np.argmax(intervals)), float(np.median(intervals))
+    if intervals[gap] > 1.5 * usual:
+        missing = round(float(intervals[gap]) / usual) - 1
+        raise InputError(
+            f"{where}: about {missing} sample(s) are missing between {times[gap]:.6g} s and "
+            f"{times[gap + 1]:.6g} s: cut the record there (gaps are not filled)"
+        )
 
 
 def _rounded(step: float) -> float:

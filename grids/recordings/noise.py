@@ -1,0 +1,78 @@
+"""The noise of a channel, from what a local polynomial leaves over, and whether it is white.
+
+A Savitzky-Golay filter (9 points, degree 4; Anal. Chem. 36, 1964) with coefficients h leaves the
+residual r = x - h * x. White noise of standard deviation sigma leaves
+
+    std(r) = sigma sqrt(1 - h_0),        corr(r_i, r_i+1) = sum g_k g_k+1 / sum g_k^2,   g = delta - h,
+
+since h is a projection (sum h_k^2 = h_0). The median absolute deviation ignores impacts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from grids.recordings.base import FloatArray, Recording
+from models.errors import InputError
+
+WINDOW, DEGREE = 9, 4
+MAD_TO_SIGMA = 1.482602218505602
+"""Of a normal distribution."""
+OUTLIER = 4.0
+LAG_TOLERANCE = 0.1
+"""Departure of the lag-one correlation that still counts as white, beside its own scatter 4/sqrt(n)."""
+
+
+@dataclass(frozen=True)
+class Noise:
+    """``sigma`` in the channel's unit; lag-one correlation of the residual, found and if white."""
+
+    sigma: float
+    lag_one: float
+    lag_one_if_white: float
+    white: bool
+
+
+@cache
+def _high_pass() -> FloatArray:
+    from scipy.signal import savgol_coeffs
+
+    kernel = -np.asarray(savgol_coeffs(WINDOW, DEGREE), dtype=np.float64)
+    kernel[WINDOW // 2] += 1.0
+    return kernel
+
+
+def noise_of(values: FloatArray) -> Noise:
+    """The noise of one channel (n_times,), n_times >= 20.
+
+    A channel without any noise (a computed one) has sigma 0 and counts as white. Valid while the
+    signal is smooth over 9 samples except at isolated instants; a signal sampled too coarsely, or
+    noise that was filtered, shows as not white. Raises InputError for a channel that is too short.
+    """
+    if values.size < 2 * WINDOW + 2:
+        raise InputError(f"a channel of {values.size} samples is too short to tell its noise; give 20.")
+    kernel = _high_pass()
+    energy = float(kernel @ kernel)
+    if_white = float(kernel[:-1] @ kernel[1:]) / energy
+    residual = np.convolve(values, kernel, mode="valid")
+    spread = MAD_TO_SIGMA * float(np.median(np.abs(residual - np.median(residual))))
+    if spread <= 1e-12 * float(np.max(np.abs(values))):
+        return Noise(0.0, if_white, if_white, True)
+    quiet = np.abs(residual) < OUTLIER * spread
+    pairs = quiet[:-1] & quiet[1:]
+    before, after = residual[:-1][pairs], residual[1:][pairs]
+    lag_one = float(before @ after / np.sqrt((before @ before) * (after @ after)))
+    tolerance = max(LAG_TOLERANCE, 4.0 / np.sqrt(pairs.sum()))
+    return Noise(spread / np.sqrt(energy), lag_one, if_white, abs(lag_one - if_white) < tolerance)
+
+
+def noise_levels(recording: Recording) -> Mapping[str, tuple[Noise, ...]]:
+    """The noise of every channel; one entry, or one for each level."""
+    return {
+        name: tuple(noise_of(row) for row in np.atleast_2d(values))
+        for name, values in recording.channels.items()
+    }

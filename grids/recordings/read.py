@@ -1,0 +1,102 @@
+"""From a file to a checked recording."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from grids.recordings import csv_toml, netcdf
+from grids.recordings.base import CHANNELS, REQUIRED, FloatArray, Raw, Recording
+from grids.recordings.suspicions import suspicions_of
+from models.errors import InputError, nearest
+
+READERS = (netcdf, csv_toml)
+
+
+def read_recording(path: str | Path) -> Recording:
+    """Read and check a recording: netCDF, or CSV with a TOML beside it (either may be named).
+
+    Samples without a value are cut off where they stand at the start or the end of the record;
+    inside it they are an error, because a filled gap is not a measurement. Nothing is filtered,
+    interpolated or detrended. Raises InputError with one sentence: file, channel, place, cure.
+    """
+    path = Path(path)
+    table = path.with_suffix(".csv") if path.suffix == ".toml" else path
+    if not table.is_file():
+        beside = [p.name for p in table.parent.glob(f"*{table.suffix}")] if table.parent.is_dir() else []
+        cure = nearest(table.name, beside) if beside else "check the path."
+        raise InputError(f"recording {table} does not exist; {cure}")
+    suffixes = [suffix for reader in READERS for suffix in reader.SUFFIXES]
+    if table.suffix.lower() not in suffixes:
+        raise InputError(
+            f"recording {table.name}: ending '{table.suffix}' is not known; known: {', '.join(suffixes)}."
+        )
+    reader = next(r for r in READERS if table.suffix.lower() in r.SUFFIXES)
+    try:
+        recording = _checked(table.stem, reader.read(table))
+        return replace(
+            recording,
+            source={"file": table.name, **recording.source},
+            suspicions=suspicions_of(recording),
+        )
+    except InputError as error:
+        raise InputError(f"recording {table.name}: {error}") from None
+
+
+def _checked(name: str, raw: Raw) -> Recording:
+    if REQUIRED not in raw.channels:
+        found = ", ".join([*raw.channels, *(note.partition(" is no")[0] for note in raw.notes)])
+        raise InputError(
+            fX
+        )
+    if not any(CHANNELS[channel].response for channel in raw.channels):
+        responses = [channel for channel, declared in CHANNELS.items() if declared.response]
+        raise InputError(
+            f"has no response (channels: {', '.join(raw.channels)}); add one of {', '.join(responses)}."
+        )
+    first, last = _measured_span(raw)
+    notes = list(raw.notes)
+    count = raw.channels[REQUIRED].shape[-1]
+    if last - first + 1 < count:
+        notes.append(
+            f"{first} samples at the start and {count - 1 - last} at the end lack a value and are cut off"
+        )
+    start = raw.start + first * raw.time_step
+    if start != 0.0:
+        notes.append(f"time starts at {start:g} s in the file, at 0 s here")
+    channels = {}
+    for channel, values in raw.channels.items():
+        kept = np.ascontiguousarray(values[..., first : last + 1])
+        kept.flags.writeable = False
+        channels[channel] = kept
+    time = np.arange(last - first + 1, dtype=np.float64) * raw.time_step
+    return Recording(name, raw.time_step, time, channels, raw.levels, tuple(notes), (), raw.source)
+
+
+def _measured_span(raw: Raw) -> tuple[int, int]:
+    """First and last sample at which every channel has a value; InputError for a gap between."""
+    lacking = {channel: _lacking(values) for channel, values in raw.channels.items()}
+    whole = ~np.any(list(lacking.values()), axis=0)
+    if whole.sum() < 10:
+        worst = max(lacking, key=lambda channel: int(lacking[channel].sum()))
+        raise InputError(
+            f"{worst} lacks {int(lacking[worst].sum())} of {whole.size} values; leave the channel out."
+        )
+    first, last = (int(i) for i in np.flatnonzero(whole)[[0, -1]])
+    for channel, missing in lacking.items():
+        inside = np.flatnonzero(missing[first : last + 1]) + first
+        if inside.size:
+            begin = raw.start + float(inside[0]) * raw.time_step
+            end = raw.start + float(inside[-1]) * raw.time_step
+            raise InputError(
+                f"{channel} lacks {inside.size} value(s) between {begin:.6g} s and {end:.6g} s; cut the "
+                "recording there or leave the channel out (gaps are not filled)."
+            )
+    return first, last
+
+
+def _lacking(values: FloatArray) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    missing = ~np.isfinite(values)
+    return np.asarray(missing.any(axis=0) if values.ndim == 2 else missing)

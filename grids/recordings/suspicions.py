@@ -1,0 +1,184 @@
+"""What looks wrong with a recording but may be right: sentences, never errors.
+
+While a body rocks on an edge,
+
+    theta'' = -p^2 [alpha sign(theta) - theta + a/g],        p^2 = 3 g / (4 R) for a solid block,
+
+so a regression of the measured theta'' on sign(theta), theta and a tells p^2 and alpha without
+knowing the wall. A swapped unit, a turned sign or a clock out of step moves them by factors that no
+wall explains. Joints of rubber change the coefficients of sign(theta) and theta, hardly that of a.
+Levels of a building are held against x_level'' + a = absolute acceleration.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from grids.recordings.base import REQUIRED, FloatArray, Recording
+
+GRAVITY = 9.80665
+SMOOTHING = 0.06
+"""s; width of the local cubic that differentiates a rotation twice: several samples, well under a swing."""
+UPLIFTED = 0.2
+"""Share of the peak rotation above which a body counts as rocking."""
+FEWEST_SAMPLES = 100
+SIGNIFICANT = 5.0
+"""Standard errors by which the coefficient of the base acceleration must differ from zero."""
+LARGEST_P2 = 120.0
+"""s-2; p^2 of a block with R = 6 cm. Degrees taken for radians multiply p^2 by 57."""
+G_TAKEN_P2, G_TAKEN_ALPHA = 15.0, 0.04
+"""g taken for m s-2 multiplies p^2 by 9.8 and divides alpha (rad) by as much."""
+AHEAD = 0.04
+"""s; the tool's own delay mechanism reaches this far, so less is left to it."""
+LARGEST_LEAD = 0.3
+LARGEST_PGA = 3.0 * GRAVITY
+
+
+@dataclass(frozen=True)
+class Rocking:
+    """The regression above: ``p2`` (s-2) with its significance, ``alpha`` (rad), share explained."""
+
+    p2: float
+    significance: float
+    alpha: float
+    explained: float
+
+
+def suspicions_of(recording: Recording) -> tuple[str, ...]:
+    """The sentences about a recording, possibly none."""
+    found = [*_of_base(recording), *_of_levels(recording)]
+    for name in ("rotation_1", "rotation_2"):
+        if name in recording.channels:
+            found += _of_rotation(name, recording)
+    return tuple(found)
+
+
+def _of_base(recording: Recording) -> Iterator[str]:
+    peak = float(np.max(np.abs(recording.channels[REQUIRED])))
+    if peak > LARGEST_PGA:
+        yield (
+            f"{REQUIRED} peaks at {peak / GRAVITY:.3g} g, more than a shake table gives: "
+            "is it in cm s-2, or in m s-2 declared as g?"
+        )
+    vertical = recording.channels.get("base_acceleration_z")
+    if vertical is not None and abs(abs(float(np.median(vertical))) - GRAVITY) < 0.1 * GRAVITY:
+        yield (
+            f"base_acceleration_z rests at {float(np.median(vertical)):.3g} m s-2: "
+            "gravity is in it, subtract it"
+        )
+
+
+def _of_rotation(name: str, recording: Recording) -> Iterator[str]:
+    rotation, base = recording.channels[name], recording.channels[REQUIRED]
+    peak = float(np.max(np.abs(rotation)))
+    if peak == 0.0:
+        yield f"{name} is zero throughout: was the sensor connected?"
+        return
+    if peak > np.pi / 2 * 1.1:
+        yield f"{name} peaks at {peak:.3g} rad, beyond lying flat: is it in degrees, declared as rad?"
+        return
+    if not np.any(base):
+        return
+    fit = fit_rocking(rotation, base, recording.time_step)
+    if fit is None:
+        return
+    lead = _lead(rotation, base, recording.time_step, fit)
+    if lead > AHEAD:
+        yield f"{name} is ahead of {REQUIRED} by about {lead:.2g} s: were the clocks joined wrongly?"
+    elif fit.significance < SIGNIFICANT:
+        return
+    elif fit.p2 < 0.0:
+        yield (
+            f"{name} follows {REQUIRED} with the wrong sign (a base pushed to +x must tip the body to "
+            "negative rotation): is one of them turned?"
+        )
+    elif fit.p2 > LARGEST_P2:
+        yield (
+            f"{name} answers {REQUIRED} as a block of R = {0.75 * GRAVITY / fit.p2 * 100:.1g} cm would: "
+            "is the rotation in degrees, declared as rad?"
+        )
+    elif fit.p2 > G_TAKEN_P2 and abs(fit.alpha) < G_TAKEN_ALPHA:
+        yield (
+            f"{name} answers {REQUIRED} as a block of alpha = {abs(fit.alpha):.1g} rad would: "
+            "is the acceleration in g, declared as m s-2?"
+        )
+
+
+def _lead(rotation: FloatArray, base: FloatArray, time_step: float, fit: Rocking) -> float:
+    """Time (s) by which the rotation runs ahead of the base, 0 unless that explains far more."""
+    best, best_fit = 0, fit
+    for shift in range(1, int(LARGEST_LEAD / time_step) + 1, max(1, int(0.01 / time_step))):
+        shifted = fit_rocking(rotation[:-shift], base[shift:], time_step)
+        if shifted and shifted.significance > SIGNIFICANT and shifted.explained > best_fit.explained:
+            best, best_fit = shift, shifted
+    unexplained = (1.0 - best_fit.explained) / max(1.0 - fit.explained, 1e-12)
+    return best * time_step if best_fit.p2 > 0.0 and unexplained < 0.9 else 0.0
+
+
+def fit_rocking(rotation: FloatArray, base: FloatArray, time_step: float) -> Rocking | None:
+    """The regression of the module's equation; None where the body hardly rocks."""
+    from scipy.ndimage import binary_erosion
+    from scipy.signal import savgol_filter
+
+    width = max(7, round(SMOOTHING / time_step) | 1)
+    if rotation.size < 4 * width:
+        return None
+    acceleration = savgol_filter(rotation, width, 3, deriv=2, delta=time_step)
+    smooth, shaking = savgol_filter(rotation, width, 3), savgol_filter(base, width, 3)
+    up = binary_erosion(np.abs(smooth) > UPLIFTED * np.max(np.abs(smooth)), iterations=width // 2)
+    if up.sum() < FEWEST_SAMPLES:
+        return None
+    regressors = np.column_stack([np.sign(smooth[up]), smooth[up], shaking[up]])
+    solved = _least_squares(regressors, acceleration[up])
+    if solved is None:
+        return None
+    (of_sign, _, of_base), errors, explained = solved
+    p2 = -float(of_base) * GRAVITY
+    alpha = float(of_sign / of_base) / GRAVITY
+    return Rocking(p2, abs(float(of_base / errors[2])), alpha, explained)
+
+
+def _least_squares(
+    regressors: NDArray[np.float64], wanted: FloatArray
+) -> tuple[FloatArray, FloatArray, float] | None:
+    """Coefficients, their standard errors, share of the variance explained; None if not unique."""
+    coefficients, _, rank, _ = np.linalg.lstsq(regressors, wanted, rcond=None)
+    if rank < regressors.shape[1]:
+        return None
+    rest = wanted - regressors @ coefficients
+    errors = np.sqrt(np.diag(np.linalg.inv(regressors.T @ regressors)) * np.var(rest))
+    explained = 1.0 - float(np.var(rest) / np.var(wanted))
+    return np.asarray(coefficients, np.float64), np.maximum(errors, 1e-300), explained
+
+
+def _of_levels(recording: Recording) -> Iterator[str]:
+    """c_x x'' + c_a a against the absolute acceleration, both 1 in a sound recording."""
+    from scipy.signal import savgol_filter
+
+    pair = [recording.channels.get(f"level_{kind}_x") for kind in ("acceleration", "displacement")]
+    if pair[0] is None or pair[1] is None or pair[0].shape[1] < 200:
+        return
+    width = max(7, round(SMOOTHING / recording.time_step) | 1)
+    relative = savgol_filter(pair[1], width, 3, deriv=2, delta=recording.time_step).ravel()
+    absolute = savgol_filter(pair[0], width, 3).ravel()
+    base = np.tile(savgol_filter(recording.channels[REQUIRED], width, 3), pair[0].shape[0])
+    solved = _least_squares(np.column_stack([relative, base]), absolute)
+    if solved is None or solved[2] < 0.5:
+        return
+    of_relative, of_base = (float(c) for c in solved[0])
+    if of_relative < 0.0:
+        yield "level_displacement_x and level_acceleration_x have opposite signs: is one of them turned?"
+    if of_base / abs(of_relative) < -0.5:
+        yield f"level_acceleration_x answers {REQUIRED} with the wrong sign: is one of them turned?"
+    if of_base / abs(of_relative) > 4.0:
+        times = of_base / abs(of_relative)
+        yield f"{REQUIRED} is {times:.3g} times too small: is it in g, declared as m s-2?"
+    elif abs(of_relative) < 0.25:
+        yield (
+            f"level_acceleration_x is {abs(1 / of_relative):.3g} times too small: is it in g, "
+            "declared as m s-2?"
+        )
