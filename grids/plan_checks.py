@@ -62,7 +62,9 @@ def check_cells(model: Model, fixed: Mapping[str, float], axes: Sequence[Axis]) 
     values: dict[str, Any] = {name: value for name, value in fixed.items() if name not in outside}
     for names, index in zip(along, mesh, strict=True):
         values |= {name: column[index.ravel()] for name, column in names.items()}
-    for sentence in model.check(values):
+    with np.errstate(all="ignore"):  # what is senseless may divide by zero before it is named
+        sentences = model.check(values)
+    for sentence in sentences:
         raise InputError(sentence)
 
 

@@ -52,8 +52,8 @@ def _check_order(times: FloatArray, intervals: FloatArray, where: str) -> None:
     back = int(np.argmin(intervals))
     if intervals[back] <= 0.0:
         raise InputError(
-            f"{where}: the clock goes from {times[back]:.6g} s to {times[back + 1]:.6g} s at sample {back + 2}: "
-            "it was reset or a line stands twice, split the record there"
+            f"{where}: the clock goes from {times[back]:.6g} s to {times[back + 1]:.6g} s at sample "
+            f"{back + 2}: it was reset or a line stands twice, split the record there"
         )
     gap, usual = int(np.argmax(intervals)), float(np.median(intervals))
     if intervals[gap] > 1.5 * usual:

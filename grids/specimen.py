@@ -29,6 +29,7 @@ from pydantic import Field
 
 from grids.consistency import check_names
 from grids.files import Schema, check, parse_toml, read_text
+from grids.plan_checks import check_cells
 from grids.targets import Targets, find_model
 from grids.units import to_si, with_unit
 from models.base import Mechanism
@@ -109,8 +110,7 @@ def parse_specimen(text: str, *, sensors: Mapping[str, Mechanism] | None = None)
     fixed = {**parameters, **{f"{m}.{p}": v for m, values in mechanisms.items() for p, v in values.items()}}
     if not calibrate:
         of_wall = {n: v for n, v in fixed.items() if n.partition(".")[0] not in targets.sensors}
-        for sentence in model.check(of_wall):
-            raise InputError(sentence)
+        check_cells(model, of_wall, ())
     options = {name: targets.option(name, word, f"[options] {name}") for name, word in file.options.items()}
     return Specimen(
         title=file.title,

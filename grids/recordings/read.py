@@ -49,7 +49,7 @@ def _checked(name: str, raw: Raw) -> Recording:
     if REQUIRED not in raw.channels:
         found = ", ".join([*raw.channels, *(note.partition(" is no")[0] for note in raw.notes)])
         raise InputError(
-            fX
+            f"has no {REQUIRED} (found: {found or 'no channel'}); name or map it so, zeros for free rocking."
         )
     if not any(CHANNELS[channel].response for channel in raw.channels):
         responses = [channel for channel, declared in CHANNELS.items() if declared.response]
