@@ -182,8 +182,8 @@ def advance(
 ) -> int:  # fmt: skip
     """Run every lane from step ``first`` to ``last``; returns the number of lane-steps computed.
 
-    ``record`` (4, n): a, a_z, psi, psi'' at the ends of the steps of length ``h``; shaking ends at
-    ``shaken_steps``. ``trace`` (n, m, 2) takes theta and theta' every ``every`` steps (0: never).
+    ``record`` (5, n): a, a_z, psi, psi'' at the ends of the steps of length ``h``, and 1 for the steps
+    of the shaking, which ends at ``shaken_steps``. ``trace`` (n, m, 2) takes theta and theta' every ``every`` steps (0: never).
     ``fall``: go on to pi/2 after overturning is certain (histories), instead of ending the lane.
     """
     n = given.shape[0]

@@ -57,10 +57,13 @@ def stand_on(given: Table, w: Table, lane: int, slot: int, side: float, linear: 
 @inlined
 def inputs(w: Table, slot: int, record: Table, i: int, f: float) -> tuple[float, float, float, float]:
     """a, G, psi, psi'' at the fraction f of step i."""
-    a = (1.0 - f) * record[0, i] + f * record[0, i + 1]
-    v = (1.0 - f) * record[1, i] + f * record[1, i + 1]
-    p = (1.0 - f) * record[2, i] + f * record[2, i + 1]
-    q = (1.0 - f) * record[3, i] + f * record[3, i + 1]
+    # the record may jump to zero at its end: no part of its last sample acts in the step after it
+    live = record[4, i]
+    first, second = live * (1.0 - f), live * f
+    a = first * record[0, i] + second * record[0, i + 1]
+    v = first * record[1, i] + second * record[1, i + 1]
+    p = first * record[2, i] + second * record[2, i + 1]
+    q = first * record[3, i] + second * record[3, i + 1]
     scale, pitch = w[SCALE * W + slot], w[PITCH * W + slot]
     return (
         scale * a + w[OFFSET * W + slot],
@@ -183,9 +186,7 @@ def land(
         result[lane, R_ENERGY] = max(result[lane, R_ENERGY], before)
         calm = left < 1e-6 * result[lane, R_ENERGY]
     if calm:
-        result[lane, R_DISSIPATED] += left
         result[lane, R_MODE] = DOWN
-        after = 0.0
     result[lane, R_SWING] = 0.0
     return float(after)
 
@@ -206,8 +207,14 @@ def one_step(
             theta, omega = 0.0, 0.0
             break
         if result[lane, R_MODE] == DOWN:
-            theta, omega = 0.0, 0.0
+            theta = 0.0
             at, side = onset(given, w, lane, slot, record, i, f, linear)
+            if at == f and omega != 0.0:
+                # a slow landing while the ground pushes on: the block keeps rocking
+                side = w[SIDE * W + slot]
+            else:
+                result[lane, R_DISSIPATED] += kinetic_energy(given, w, lane, slot, w[SIDE * W + slot], omega)
+                omega = 0.0
             since = result[lane, R_UP_SINCE]
             if at > f and since == since:
                 result[lane, R_UPLIFT] += (i + f) * h - since

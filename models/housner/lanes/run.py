@@ -74,18 +74,18 @@ def records(shaking: Shaking, n: int, tail: float, pitch: float | None) -> tuple
     channels = [shaking.horizontal, shaking.vertical]
     channels += list(pitch_channels(shaking, pitch)) if pitch is not None else [None, None]
     shaken = (shaking.horizontal.size - 1) * n
-    record = np.zeros((4, shaken + quiet + 2))
+    record = np.zeros((5, shaken + quiet + 2))
+    record[4, :shaken] = 1.0
     for row, samples in enumerate(channels):
         if samples is not None:
             record[row, : shaken + 1] = refine(samples, n)
     if quiet:
-        # The base comes to rest with the last sample; what remains there would act for one more step.
         record[:, shaken + 1 :] = 0.0
     padded = record[:, : (record.shape[1] // CHUNK) * CHUNK + 1]
     count = padded.shape[1] // CHUNK
     chunk = np.zeros((4, max(count, 1)))
     for c in range(count):
-        chunk[:, c] = np.max(np.abs(padded[:, c * CHUNK : (c + 1) * CHUNK + 1]), axis=1)
+        chunk[:, c] = np.max(np.abs(padded[:4, c * CHUNK : (c + 1) * CHUNK + 1]), axis=1)
     return record, chunk, shaken
 
 
