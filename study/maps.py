@@ -73,12 +73,23 @@ def select(cube: xr.Dataset, at: Mapping[str, Any] | None) -> xr.Dataset:
     return cube
 
 
+def default_axes(cube: xr.Dataset, x: str | None, y: str | None) -> tuple[str, str]:
+    """``x`` and ``y``, or the first axes longer than one that are no intensity; then the intensity."""
+    long = [str(dim) for dim, size in cube.sizes.items() if size > 1]
+    free = [*(d for d in long if d not in INTENSITIES), *(d for d in long if d in INTENSITIES)]
+    x = x or next((d for d in free if d != y), None)
+    y = y or next((d for d in free if d != x), None)
+    if x is None or y is None:
+        raise InputError(f"a map needs two axes with several values, this cube has {len(long)}: draw slices")
+    return x, y
+
+
 def middle(cube: xr.Dataset, keep: tuple[str, ...]) -> dict[str, Any]:
-    """The middle value of every axis longer than one that is not in ``keep``."""
+    """The middle value of every axis longer than one that is neither in ``keep`` nor the intensity."""
     return {
         str(dim): cube[dim].values[size // 2]
         for dim, size in cube.sizes.items()
-        if dim not in keep and size > 1
+        if dim not in (*keep, *_searched(cube, keep)) and size > 1
     }
 
 
@@ -122,7 +133,7 @@ def _map(
     chosen = select(cube, at)
     status = chosen["status"]
     # a single intensity is no grid to search: then the map says yes or no
-    searched = [i for i in INTENSITIES if i in status.dims and i not in (x, y) and status.sizes[i] > 1]
+    searched = _searched(chosen, (x, y))
     along = searched[0] if searched else None
     left = [str(dim) for dim in status.dims if dim not in (x, y, along) and status.sizes[dim] > 1]
     if left:
@@ -143,6 +154,11 @@ def _map(
         "largest": float(cube[along].max()),
     }
     return result.rename(f"{along}_{name}")
+
+
+def _searched(cube: xr.Dataset, kept: tuple[str, ...]) -> list[str]:
+    """The intensity axis along which a smallest value can be sought, if there is one."""
+    return [i for i in INTENSITIES if cube.sizes.get(i, 1) > 1 and i not in kept][:1]
 
 
 def _smallest(happens: xr.DataArray, along: str) -> xr.DataArray:

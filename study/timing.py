@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+import tracemalloc
 from dataclasses import dataclass
 from math import ceil
 
@@ -14,6 +15,7 @@ from study.evaluate import evaluate, lane_groups
 from study.keys import Setting, motions_by_name
 
 SAMPLE_SECONDS = 0.2
+FIRST_SAMPLE = 64
 LARGEST_SAMPLE = 4096
 GROUPS = 3
 BLOCKS_PER_WORKER = 8
@@ -44,13 +46,31 @@ def time_sample(plan: Plan, setting: Setting) -> Sample:
         evaluate(setting, motions, chosen)
         return time.perf_counter() - begun
 
-    first = seconds(cells := min(64, LARGEST_SAMPLE))
+    first = seconds(cells := FIRST_SAMPLE)
     spent = seconds(cells)
     compile_seconds = max(0.0, first - spent)
-    while spent < SAMPLE_SECONDS and cells < LARGEST_SAMPLE:
+    while spent < SAMPLE_SECONDS and cells < min(LARGEST_SAMPLE, grid.size):
         cells *= 2
         spent = seconds(cells)
     return Sample(cells, spent, compile_seconds)
+
+
+def bytes_per_cell(plan: Plan, setting: Setting, cells: int = 512) -> float:
+    """Memory that a task needs for each of its cells, measured on a sample."""
+    chosen = plan.grid.coordinates(_choose(plan, plan.grid.shape, cells))
+    motions = motions_by_name(plan)
+    tracemalloc.start()
+    try:
+        evaluate(setting, motions, chosen)
+        return tracemalloc.get_traced_memory()[1] / cells
+    finally:
+        tracemalloc.stop()
+
+
+def output_bytes(setting: Setting) -> int:
+    """Bytes of a cell in the cube before compression."""
+    declared = {quantity.name: quantity.dtype for quantity in models.get(setting.model).outputs}
+    return sum(np.dtype(declared[name]).itemsize for name in setting.outputs)
 
 
 def _choose(plan: Plan, shape: tuple[int, ...], cells: int) -> np.ndarray:
@@ -65,7 +85,7 @@ def _choose(plan: Plan, shape: tuple[int, ...], cells: int) -> np.ndarray:
             index[:, k] = groups[group, k]
     if not shape:
         return np.zeros(cells, dtype=np.intp)
-    return np.ravel_multi_index(tuple(index.T), shape)
+    return np.asarray(np.ravel_multi_index(tuple(index.T), shape))
 
 
 def cells_per_block(plan: Plan, sample: Sample, workers: int) -> int:

@@ -7,6 +7,7 @@ from study.figures.map_figure import plot_map
 from study.figures.motion import plot_motion
 from study.figures.onset import plot_onset_map
 from study.figures.overturning import plot_overturning_map
+from study.figures.save import save_figure
 from study.figures.slices import plot_slices
 
 __all__ = [
@@ -16,4 +17,5 @@ __all__ = [
     "plot_onset_map",
     "plot_overturning_map",
     "plot_slices",
+    "save_figure",
 ]

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import xarray as xr
 from matplotlib import colormaps
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.patches import Patch
@@ -43,7 +46,7 @@ def plot_map(values: xr.DataArray, *, words: tuple[str, str], ax: Axes | None = 
         kinds = [(words[0], COLOURS[1]), (words[1], NOTHING)]
         if np.isnan(ordered).any():
             kinds.append(("unknown", UNKNOWN))
-        _legend(ax, [Patch(facecolor=colour, edgecolor="0.4", label=text) for text, colour in kinds])
+        draw_legend(ax, [Patch(facecolor=colour, edgecolor="0.4", label=text) for text, colour in kinds])
     for which, axis, wording in (("x", x, x_words), ("y", y, y_words)):
         set_words(ax, which, wording)
         (ax.set_xlabel if which == "x" else ax.set_ylabel)(label(axis))
@@ -74,12 +77,13 @@ def _draw_smallest(
     if np.isnan(factor_values).any():
         largest = shown(values.copy(data=np.full(values.shape, values.attrs["largest"])))[0].flat[0]
         at_most = f"{nothing} up to {largest:.3g}" + ("" if unit == "1" else f" {unit}")
-        _legend(ax, [Patch(facecolor=NOTHING, edgecolor="0.4", label=at_most)])
+        draw_legend(ax, [Patch(facecolor=NOTHING, edgecolor="0.4", label=at_most)])
 
 
 def _verb(values: xr.DataArray) -> str:
     return str(values.attrs["long_name"]).partition(" that ")[2]
 
 
-def _legend(ax: Axes, patches: list[Patch]) -> None:
-    ax.legend(handles=patches, loc="lower center", bbox_to_anchor=(0.5, 1.06), ncols=3, frameon=False)
+def draw_legend(ax: Axes, handles: Sequence[Artist]) -> None:
+    """The legend above the title, where it hides nothing."""
+    ax.legend(handles=handles, loc="lower center", bbox_to_anchor=(0.5, 1.06), ncols=3, frameon=False)

@@ -8,9 +8,11 @@ from typing import Any
 import xarray as xr
 from matplotlib.axes import Axes
 
-from study.figures.map_figure import plot_map
+from study.figures.map_figure import draw_legend, plot_map
 from study.figures.style import COLOURS, positions, shown
 from study.maps import onset_map, select
+
+THRESHOLD = "threshold without vertical shaking"
 
 
 def plot_onset_map(
@@ -26,17 +28,11 @@ def plot_onset_map(
         threshold = select(cube, at)["onset_acceleration"].squeeze()
         if threshold.dims == (x,):
             low, high = ax.get_ylim()
-            line = ax.plot(positions(cube[x])[0], shown(threshold)[0], "--", color=COLOURS[6])
+            line = ax.plot(
+                positions(cube[x])[0], shown(threshold)[0], "--", color=COLOURS[6], label=THRESHOLD
+            )
             ax.set_ylim(low, high)
             legend = ax.get_legend()
-            handles = [*(legend.legend_handles if legend else []), *line]
-            texts = [*(text.get_text() for text in (legend.get_texts() if legend else []))]
-            ax.legend(
-                handles,
-                [*texts, "onset without vertical shaking"],
-                loc="lower center",
-                bbox_to_anchor=(0.5, 1.06),
-                ncols=3,
-                frameon=False,
-            )
+            handles = [handle for handle in (legend.legend_handles if legend else []) if handle is not None]
+            draw_legend(ax, [*handles, *line])
     return ax

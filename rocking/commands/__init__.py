@@ -1,0 +1,29 @@
+"""The commands, one file each."""
+
+from __future__ import annotations
+
+import typer
+
+from rocking.commands import check, export, map, motions, plan, run, simulate, status
+from rocking.commands.base import Commands
+
+COMMANDS = (
+    plan.plan,
+    run.run,
+    status.status,
+    check.check,
+    export.export,
+    map.map_,
+    motions.motions,
+    simulate.simulate,
+)
+
+app = typer.Typer(
+    cls=Commands,
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    help="Parameter studies, maps and simulations of rocking walls.",
+)
+for command in COMMANDS:
+    app.command(command.__name__.rstrip("_"))(command)

@@ -1,0 +1,53 @@
+"""``rocking plan F``: what a plan asks for and what it costs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from rocking.commands.base import human_bytes, human_time
+
+
+def plan(
+    plan: Annotated[Path, typer.Argument(help="Plan file (TOML).")],
+    workers: Annotated[int | None, typer.Option(help="Blocks at once (default: one a core).")] = None,
+) -> None:
+    """Check a plan and print axes, cells, blocks, bytes, memory a task and an estimate of the time."""
+    from rich.console import Console
+    from rich.table import Table
+
+    from grids.plan import read_plan
+    from study.keys import Setting
+    from study.schedulers import check_scheduler, count_workers
+    from study.timing import bytes_per_cell, cells_per_block, output_bytes, time_sample
+
+    check_scheduler("threads", workers)
+    checked = read_plan(plan)
+    setting = Setting.of(checked)
+    sample = time_sample(checked, setting)
+    n = count_workers("threads", workers)
+    most = cells_per_block(checked, sample, n)
+    blocks = checked.grid.rectangles(most)
+    table = Table("axis", "points", "from", "to", "unit", title=f"{checked.name}: model {checked.model}")
+    for axis in checked.axes:
+        ends = [f"{v:.6g}" if isinstance(v, float) else str(v) for v in axis.values[[0, -1]].tolist()]
+        table.add_row(axis.name, str(axis.size), *ends, axis.unit)
+    console = Console()
+    console.print(table)
+    total = sample.seconds_per_cell * checked.grid.size
+    largest = max(block.size for block in blocks)
+    rows = {
+        "motions": ", ".join(motion.name for motion in checked.motions),
+        "cells": f"{checked.grid.size:,}",
+        "blocks": f"{len(blocks):,} of at most {largest:,} cells",
+        "cube": f"{human_bytes(checked.grid.size * output_bytes(setting))} before compression",
+        "memory a task": human_bytes(largest * bytes_per_cell(checked, setting)),
+        "time": f"{human_time(total)} on one core, {human_time(total / n)} on {n} "
+        f"({sample.cells} cells in {sample.seconds:.3f} s; compiling {human_time(sample.compile_seconds)})",
+    }
+    for name, text in rows.items():
+        console.print(f"{name:<14} {text}", highlight=False)
+    for note in checked.notes:
+        console.print(f"note: {note}", highlight=False)

@@ -1,0 +1,94 @@
+"""Simulate one specimen under a motion, a recording's base motion, or none."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from models.errors import InputError
+from models.shaking import Shaking
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from grids.motions import Motion
+    from grids.recordings import Recording
+    from grids.specimen import Specimen
+
+FREE_TIME_STEP = 1e-3
+"""s, step of a history without shaking."""
+
+
+def simulate(
+    specimen: Specimen | str | Path,
+    motion: Motion | Recording | str | Path | None = None,
+    *,
+    duration: float | None = None,
+    integrator: str = "lanes",
+    component: str | None = None,
+    scale: float = 1.0,
+) -> xr.Dataset:
+    """History of a specimen: every observable over ``time``, events over ``event``.
+
+    ``specimen`` and ``motion`` are what the readers return, or what they read: a specimen file; a
+    shipped motion, a motion file, or a recording, whose measured base motion is used. Without a
+    motion, ``duration`` (s) of free motion from the specimen's initial state. The specimen says
+    whether the vertical component acts (default: the model's). Raises InputError.
+    """
+    from grids.specimen import read_specimen
+    from study.history import simulate_specimen
+
+    if isinstance(specimen, str | Path):
+        specimen = read_specimen(specimen)
+    if duration is not None and not duration > 0.0:
+        raise InputError(f"duration is {duration!r} s: give a positive time")
+    if motion is None:
+        if duration is None:
+            raise InputError("no motion and no duration: name a motion, or give the time of free motion in s")
+        shaking = Shaking.silence(duration, FREE_TIME_STEP)
+    else:
+        shaking = _shaking(specimen, motion, component)
+    return simulate_specimen(specimen, shaking, scale=scale, duration=duration, integrator=integrator)
+
+
+def _shaking(specimen: Specimen, motion: Motion | Recording | str | Path, component: str | None) -> Shaking:
+    import models
+    from grids.motions import read_motion
+    from grids.recordings import Recording, read_recording
+
+    model = models.get(specimen.model)
+    vertical = specimen.vertical
+    if isinstance(motion, str | Path) and is_recording(Path(motion)):
+        motion = read_recording(motion)
+    if isinstance(motion, Recording):
+        if component is not None:
+            raise InputError(
+                f"recording {motion.name}: its base motion has one component: leave '{component}' out"
+            )
+        if vertical is None:
+            vertical = model.vertical_by_default and "base_acceleration_z" in motion.channels
+        return motion.shaking(vertical)
+    if isinstance(motion, str | Path):
+        wanted = vertical if vertical is not None or model.vertical_by_default else False
+        motion = read_motion(motion, component=component, vertical=wanted)
+    use = model.vertical_by_default if vertical is None else vertical
+    return (motion if use else motion.without_vertical()).shaking()
+
+
+def is_recording(path: Path) -> bool:
+    """Whether a file holds the measured base motion under its standard name."""
+    from grids.netcdf_lock import NETCDF_LOCK
+    from grids.recordings.base import REQUIRED
+
+    if path.suffix in (".csv", ".toml"):
+        beside = path.with_suffix(".toml")
+        return beside.is_file() and REQUIRED in beside.read_text("utf-8")
+    if path.suffix != ".nc" or not path.is_file():
+        return False
+    import netCDF4
+
+    try:
+        with NETCDF_LOCK, netCDF4.Dataset(path) as dataset:
+            return REQUIRED in dataset.variables
+    except OSError:
+        return False  # the motion reader says what is wrong with the file
