@@ -133,6 +133,11 @@ def parse_plan(text: str, folder: Path, *, sensors: Mapping[str, Mechanism] | No
     varied = _varied(axes, own, file.options)
     base, notes = _from_specimen(specimen, [*own, *varied], targets)
     fixed = {**base, **own}
+    if unknown := replaced(model, specimen.calibrate if specimen else {}, {*own, *varied}):
+        raise InputError(
+            f"[study] specimen leaves {next(iter(unknown))} to calibration; "
+            "fix it in [parameters] or vary it in [axes]."
+        )
     used = {n.split(".")[0]: targets.mechanism(n.split(".")[0], n) for n in [*fixed, *varied] if "." in n}
     check_names(model, {*fixed, *varied}, used)
     options = dict(specimen.options) if specimen else {}

@@ -126,7 +126,7 @@ def parse_specimen(text: str, *, sensors: Mapping[str, Mechanism] | None = None)
 
 
 def _mechanisms(file: SpecimenFile, targets: Targets) -> dict[str, dict[str, float]]:
-    mechanisms: dict[str, dict[str, float]] = Field(default_factory=dict)
+    mechanisms: dict[str, dict[str, float]] = {}
     for name, table in file.mechanisms.items():
         targets.mechanism(name, f"[mechanisms.{name}]")
         if not table:

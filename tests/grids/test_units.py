@@ -1,0 +1,79 @@
+"""Units: what a user writes against the definitions of SI."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grids.units import factor_to_si, to_si
+from models.errors import InputError
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "expected"),
+    [
+        ("0.3 g", "m s-2", 0.3 * 9.80665),
+        ("300 g", "kg", 0.3),
+        ("2 t", "kg", 2000.0),
+        ("4.5 MPa", "N m-2", 4.5e6),
+        ("1e7 N/m^2", "N m-2", 1e7),
+        ("5 deg", "rad", math.radians(5)),
+        ("1.2 mrad", "rad", 1.2e-3),
+        ("1.67 %", "1", 0.0167),
+        ("981 cm/s2", "m s-2", 9.81),
+        ("981 cm s**-2", "m s-2", 9.81),
+        ("9.81 m/s²", "m s-2", 9.81),
+        ("10 kN s m-2", "N s m-2", 1e4),
+        ("3 Hz", "s-1", 3.0),
+        ("2 kN m/rad", "N m", 2000.0),
+        ("3 kg m2", "kg m2", 3.0),
+        ("250 ms", "s", 0.25),
+        ("0.8", "1", 0.8),
+        (".5 m", "m", 0.5),
+        ("inf", "1", math.inf),
+        (1.8, "m", 1.8),
+        (2, "kg", 2.0),
+    ],
+)
+def test_value_in_si(text: object, unit: str, expected: float) -> None:
+    assert to_si(text, unit, "x") == pytest.approx(expected, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "words"),
+    [
+        ("1.8 kg", "m", ("width", "1.8 kg", "'m' is needed")),
+        ("1.8", "m", ("width", "no unit", "1.8 m")),
+        ("5 deg", "1", ("5 deg", "pure number")),
+        ("5 %", "rad", ("5 %", "'rad'", "deg")),
+        ("wide", "m", ("wide", "0.5 m")),
+        ("1 foo", "m", ("foo", "not known")),
+        ("1 m/", "m", ("m/", "not known")),
+        ("20 degC", "kg", ("degC", "'kg'")),
+        (True, "m", ("True", "in m")),
+        ([1.0], "m", ("[1.0]", "in m")),
+        (math.nan, "m", ("nan", "not a number")),
+        ("nan m", "m", ("nan", "not a number")),
+        ("1 m; import os", "m", ("not known",)),
+    ],
+)
+def test_what_is_no_value(value: object, unit: str, words: tuple[str, ...]) -> None:
+    with pytest.raises(InputError) as error:
+        to_si(value, unit, "width")
+    assert all(word in str(error.value) for word in ("width", *words)), str(error.value)
+
+
+UNITS = st.sampled_from(
+    [("mm", "m"), ("t", "kg"), ("MPa", "N m-2"), ("deg", "rad"), ("g", "m s-2"), ("kN s/m^2", "N s m-2")]
+)
+
+
+@given(st.floats(-1e12, 1e12, allow_subnormal=False), UNITS)
+def test_there_and_back(number: float, units: tuple[str, str]) -> None:
+    unit, si = units
+    factor = factor_to_si(unit, si, "x")
+    assert to_si(f"{number!r} {unit}", si, "x") / factor == pytest.approx(number, rel=1e-14, abs=1e-300)
+    assert to_si(f"{number!r} {si}", si, "x") == number
