@@ -1,0 +1,48 @@
+# make study   set up everything and run the main job: one block with a mass on top, plan to maps
+# make test    set up everything, then lint, types and tests
+PYTHON ?= python3
+BIN := .venv/bin
+READY := .venv/.ready
+
+.PHONY: study test lint types bench kill-test agreement diagnosis-bench gallery docs clean
+
+study: $(READY)
+	$(BIN)/rocking run studies/one_block.toml
+	$(BIN)/rocking map results/one_block
+
+test: $(READY) lint types
+	$(BIN)/python -m pytest -n 2 --dist loadfile
+
+lint: $(READY)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+types: $(READY)
+	$(BIN)/mypy
+
+bench: $(READY)
+	$(BIN)/python -m benchmarks.one_block
+
+kill-test: $(READY)
+	$(BIN)/python -m benchmarks.kill_test
+
+agreement: $(READY)
+	$(BIN)/python -m benchmarks.agreement
+
+diagnosis-bench: $(READY)
+	$(BIN)/python -m benchmarks.diagnosis
+
+gallery: $(READY)
+	$(BIN)/python docs/make_gallery.py
+
+docs: $(READY)
+	$(BIN)/pip install --quiet -e ".[docs]"
+	$(BIN)/sphinx-build -W --keep-going -b html docs docs/_build/html
+
+$(READY): pyproject.toml
+	test -x $(BIN)/python || $(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[dev]"
+	touch $@
+
+clean:
+	rm -rf .venv docs/_build .mypy_cache .ruff_cache .pytest_cache
