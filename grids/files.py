@@ -49,11 +49,12 @@ def parse_toml(text: str) -> dict[str, Any]:
 
 
 def check(schema: type[SchemaT], table: dict[str, Any]) -> SchemaT:
-    """The table as ``schema``; InputError about the first thing that does not fit."""
+    """The table as ``schema``; InputError about what does not fit, misspelt keys first."""
     try:
         return schema.model_validate(table)
     except ValidationError as error:
-        raise InputError(_sentence(schema, dict(error.errors()[0]))) from None
+        found = sorted(error.errors(), key=lambda one: one["type"] != "extra_forbidden")
+        raise InputError(_sentence(schema, dict(found[0]))) from None
 
 
 def _sentence(schema: type[Schema], error: dict[str, Any]) -> str:

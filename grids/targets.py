@@ -154,7 +154,7 @@ class Targets:
         dotted = [f"{m.name}.{p.name}" for m in self.model.mechanisms.values() for p in m.parameters]
         raise InputError(
             f"{where} is not a parameter of model '{self.model.name}'; "
-            f"{nearest(name, [*parameters, *self.model.options, *dotted])}"
+            f"{nearest(name, [*parameters, *self.model.options, *dotted, *self.model.mechanisms])}"
         )
 
     def option(self, name: str, word: object, where: str) -> str:

@@ -77,9 +77,15 @@ def test_coordinates_follow_numpy_order() -> None:
 
 
 def test_cases_set_several_names_and_keep_their_rectangle() -> None:
-    case = Axis("case", np.array(["A", "B"], object), "1", "", {"width": np.array([0.2, 0.3]), "mass": np.array([1.0, 2.0])})
+    case = Axis(
+        "case",
+        np.array(["A", "B"], object),
+        "1",
+        "",
+        {"width": np.array([0.2, 0.3]), "mass": np.array([1.0, 2.0])},
+    )
     grid = Grid((case, Axis("pga", np.array([1.0, 2.0, 3.0]), "m s-2", "")))
-    assert grid.coordinates([4]) .keys() == {"width", "mass", "pga"}
+    assert grid.coordinates([4]).keys() == {"width", "mass", "pga"}
     assert grid.coordinates([4])["mass"] == 2.0
     second = grid.rectangles(3)[1]
     assert second.coordinates["case"] == ("B",)

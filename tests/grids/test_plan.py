@@ -41,7 +41,13 @@ def test_a_whole_plan() -> None:
             "[run]\ntail = '20 s'\n[outputs]\nnames = ['overturned', 'status']",
         )
     )
-    assert found.grid.dims == ("aspect_ratio", "top_mass", "pga", "formulation", "restitution.factor_on_housner")
+    assert found.grid.dims == (
+        "aspect_ratio",
+        "top_mass",
+        "pga",
+        "formulation",
+        "restitution.factor_on_housner",
+    )
     assert found.grid.shape == (5, 3, 2, 2, 3)
     assert found.fixed == {"height": 1.8, "mass": 500.0, "pivot_inset.inset_over_half_width": 0.05}
     assert np.allclose(found.axes[1].values, [1000, 2000, 4000])
@@ -139,7 +145,9 @@ def test_a_null_outside_the_range_is_allowed(fake_wall: FakeWall) -> None:
 
 
 def test_adding_values_extends_and_anything_else_is_listed() -> None:
-    def described(axes: str, parameters: str = "width = 0.3\nheight = 1.8\nmass = 500", more: str = "") -> dict:
+    def described(
+        axes: str, parameters: str = "width = 0.3\nheight = 1.8\nmass = 500", more: str = ""
+    ) -> dict:
         return describe(read(plan(axes, parameters, more)))
 
     old = described("pga = { values = [1, 3] }")
@@ -148,10 +156,16 @@ def test_adding_values_extends_and_anything_else_is_listed() -> None:
     assert compare(old, described("pga = { values = [1, 3] }", more="[run]\nblock_seconds = 9")).extends
     for new, words in [
         (described("pga = { values = [1, 2] }"), ("axis pga lost", "3.0 m s-2")),
-        (described("pga = { values = [1, 3] }", "width = 0.4\nheight = 1.8\nmass = 500"), ("width", "0.3", "0.4")),
+        (
+            described("pga = { values = [1, 3] }", "width = 0.4\nheight = 1.8\nmass = 500"),
+            ("width", "0.3", "0.4"),
+        ),
         (described("motion_scale = { values = [1, 3] }"), ("axis pga is no longer there",)),
         (described("pga = { values = [1, 3] }", more="[run]\ntail = 5"), ("tail: 10 s before, 5 s now",)),
-        (described("pga = { values = [1, 3] }", more="[outputs]\nnames = ['status']"), ("peak_rotation", "left out")),
+        (
+            described("pga = { values = [1, 3] }", more="[outputs]\nnames = ['status']"),
+            ("peak_rotation", "left out"),
+        ),
         (described("pga = { values = [1, 3] }", more="[options]\nformulation = 'linear'"), ("formulation",)),
         (
             described("pga = { values = [1, 3] }\nmass = { values = [500] }", "width = 0.3\nheight = 1.8"),
