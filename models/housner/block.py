@@ -96,7 +96,8 @@ class Block:
     @property
     def frequency_parameter(self) -> FloatArray:
         """p = sqrt(M g R / I_O) in s-1."""
-        return np.sqrt(self.mass * self.gravity * self.radius / self.pivot_inertia)
+        p: FloatArray = np.sqrt(self.mass * self.gravity * self.radius / self.pivot_inertia)
+        return p
 
     @property
     def momentum_restitution(self) -> FloatArray:
@@ -139,7 +140,8 @@ def assemble(values: Values, vertical: bool, size: int | None = None) -> Block:
     shape = np.broadcast_shapes(*(v.shape for v in given.values()), (size or 1,))
 
     def value(name: str, default: float) -> FloatArray:
-        return np.broadcast_to(given.get(name, np.asarray(default)), shape).astype(float)
+        array: FloatArray = np.broadcast_to(given.get(name, np.asarray(default)), shape).astype(float)
+        return array
 
     height = value("height", np.nan)
     width = value("width", np.nan) if "width" in given else value("aspect_ratio", np.nan) * height

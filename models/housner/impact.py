@@ -45,7 +45,9 @@ def restitution(
 ) -> FloatArray:
     """e of one impact, ``(n,)``: the law of this module; ``rate`` is theta' before it (rad s-1)."""
     base = np.where(np.isnan(block.restitution), momentum_restitution(block, old, new), block.restitution)
-    amplitude = (previous_peak / largest_peak) ** block.amplitude_exponent
+    rocked = largest_peak > 0.0
+    swing = np.where(rocked, previous_peak, 1.0) / np.where(rocked, largest_peak, 1.0)
+    amplitude = swing**block.amplitude_exponent
     speed = np.abs(rate) / (block.frequency_parameter * block.slenderness)
     worn = np.maximum(block.restitution_floor, 1.0 - block.loss_per_impact * impacts)
     ratio = (

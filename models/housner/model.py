@@ -130,7 +130,7 @@ class Housner:
         elif integrator == "newmark":
             from models.housner import newmark
 
-            found = newmark.run(block, shaking, scale, tail=tail, linear=linear)
+            found = dict(newmark.run(block, shaking, scale, tail=tail, linear=linear).outputs)
         else:
             from models.housner import reference
 
@@ -206,7 +206,7 @@ class Housner:
         quiet = tail if duration is None else max(0.0, duration - shaking.duration)
         end = shaking.duration + quiet if duration is None else duration
         count = int(round(end / shaking.time_step)) + 1
-        time = np.arange(count) * shaking.time_step
+        time: FloatArray = np.arange(count, dtype=np.float64) * shaking.time_step
         start = dict(initial or {})
         for name in start:
             if name not in self.states:
@@ -226,15 +226,19 @@ class Housner:
         elif integrator == "reference":
             from models.housner import reference
 
-            found = reference.run(
-                block, shaking, scale, tail=quiet, linear=linear, initial=start or None, duration=end
+            told = reference.run(
+                block, shaking, scale, tail=quiet, linear=linear, initial=start, duration=end, follow=True
             )
-            rotation = np.interp(time, found.time, found.rotation)
-            rate = np.interp(time, found.time, found.rate)
-            events = tuple(Event(t, kind) for t, kind in found.events)
-            outputs = {k: float(v) for k, v in found.outputs.items()}
+            rotation, rate = told.rotation[:count].copy(), told.rate[:count].copy()
+            events, outputs = told.events, dict(told.outputs)
         else:
-            raise InputError("newmark gives outputs, not histories: use lanes or reference")
+            from models.housner import newmark
+
+            many = newmark.run(
+                block, shaking, np.array([scale]), tail=quiet, linear=linear, initial=start, duration=end, follow=True
+            )
+            rotation, rate = many.rotation[0, :count].copy(), many.rate[0, :count].copy()
+            events, outputs = many.events[0], {k: float(v[0]) for k, v in many.outputs.items()}
         over = outputs["overturning_time"]
         if over == over:
             beyond = np.flatnonzero(np.abs(rotation) >= np.pi / 2)

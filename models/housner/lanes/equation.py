@@ -16,7 +16,24 @@ from __future__ import annotations
 from typing import Any
 
 from models.housner.lanes.rows import (
-    B, CB, CH, COULOMB, CRUSH, DIRECTION, GAP, H, IM, JOINT, K, LAMBDA, PEAK, QUADRATIC, RHO, SIDE, VISCOUS, W,
+    CB,
+    CH,
+    COULOMB,
+    CRUSH,
+    DIRECTION,
+    GAP,
+    IM,
+    JOINT,
+    LAMBDA,
+    PEAK,
+    QUADRATIC,
+    RHO,
+    SIDE,
+    VISCOUS,
+    B,
+    H,
+    K,
+    W,
 )  # fmt: skip
 from models.lanes.compiler import inlined
 from models.lanes.elementary import exponential_decay, sine_cosine
@@ -29,7 +46,7 @@ MOST_INSET = 0.35
 def present_half_width(w: Table, lane: int, theta: float) -> float:
     """b after crushing: inset = min(.35, rate times the largest rotation so far)."""
     largest = max(w[PEAK * W + lane], abs(theta))
-    return w[B * W + lane] * (1.0 - min(MOST_INSET, w[CRUSH * W + lane] * largest))
+    return float(w[B * W + lane] * (1.0 - min(MOST_INSET, w[CRUSH * W + lane] * largest)))
 
 
 @inlined

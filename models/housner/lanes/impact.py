@@ -6,8 +6,27 @@ from typing import Any
 
 from models.housner.lanes.equation import MOST_INSET
 from models.housner.lanes.rows import (
-    CRUSH, PEAK, Q_ALPHA, Q_ASPECT, Q_EXPONENT, Q_FACTOR, Q_FLOOR, Q_HEIGHT, Q_INERTIA, Q_LEFT, Q_LOSS,
-    Q_MASS, Q_P, Q_RESTITUTION, Q_RHO, Q_RIGHT, Q_SLOPE, R_IMPACTS, R_PEAK, R_SWING, W,
+    CRUSH,
+    PEAK,
+    Q_ALPHA,
+    Q_ASPECT,
+    Q_EXPONENT,
+    Q_FACTOR,
+    Q_FLOOR,
+    Q_HEIGHT,
+    Q_INERTIA,
+    Q_LEFT,
+    Q_LOSS,
+    Q_MASS,
+    Q_P,
+    Q_RESTITUTION,
+    Q_RHO,
+    Q_RIGHT,
+    Q_SLOPE,
+    R_IMPACTS,
+    R_PEAK,
+    R_SWING,
+    W,
 )  # fmt: skip
 from models.lanes.compiler import inlined
 
