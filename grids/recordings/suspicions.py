@@ -35,17 +35,23 @@ G_TAKEN_P2, G_TAKEN_ALPHA = 15.0, 0.04
 AHEAD = 0.04
 """s; the tool's own delay mechanism reaches this far, so less is left to it."""
 LARGEST_LEAD = 0.3
+LEAD_GAIN = 6.0
+"""Gain in log likelihood over a rotation in step, counting one sample a smoothing width."""
 LARGEST_PGA = 3.0 * GRAVITY
 
 
 @dataclass(frozen=True)
 class Rocking:
-    """The regression above: ``p2`` (s-2) with its significance, ``alpha`` (rad), share explained."""
+    """The regression above: ``p2`` (s-2) with its significance, ``alpha`` (rad), share explained.
+
+    ``independent`` counts the samples that smoothing leaves independent.
+    """
 
     p2: float
     significance: float
     alpha: float
     explained: float
+    independent: float
 
 
 def suspicions_of(recording: Recording) -> tuple[str, ...]:
@@ -115,8 +121,8 @@ def _lead(rotation: FloatArray, base: FloatArray, time_step: float, fit: Rocking
         shifted = fit_rocking(rotation[:-shift], base[shift:], time_step)
         if shifted and shifted.significance > SIGNIFICANT and shifted.explained > best_fit.explained:
             best, best_fit = shift, shifted
-    unexplained = (1.0 - best_fit.explained) / max(1.0 - fit.explained, 1e-12)
-    return best * time_step if best_fit.p2 > 0.0 and unexplained < 0.9 else 0.0
+    rest = max(1.0 - fit.explained, 1e-12) / max(1.0 - best_fit.explained, 1e-12)
+    return best * time_step if best_fit.p2 > 0.0 and fit.independent * np.log(rest) > LEAD_GAIN else 0.0
 
 
 def fit_rocking(rotation: FloatArray, base: FloatArray, time_step: float) -> Rocking | None:
@@ -139,7 +145,7 @@ def fit_rocking(rotation: FloatArray, base: FloatArray, time_step: float) -> Roc
     (of_sign, _, of_base), errors, explained = solved
     p2 = -float(of_base) * GRAVITY
     alpha = float(of_sign / of_base) / GRAVITY
-    return Rocking(p2, abs(float(of_base / errors[2])), alpha, explained)
+    return Rocking(p2, abs(float(of_base / errors[2])), alpha, explained, float(up.sum()) / width)
 
 
 def _least_squares(

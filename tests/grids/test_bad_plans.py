@@ -225,7 +225,7 @@ def test_the_good_plan_is_good(fake_wall: FakeWall, written: Callable[[str, str]
 
 def test_missing_and_unreadable_files(tmp_path: Path) -> None:
     (tmp_path / "plan.toml").write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(InputError, match="plan.toml is not UTF-8"):
+    with pytest.raises(InputError, match=r"plan\.toml is not UTF-8"):
         read_plan(tmp_path / "plan.toml")
     with pytest.raises(InputError, match=r"plam\.toml does not exist; did you mean 'plan.toml'"):
         read_plan(tmp_path / "plam.toml")

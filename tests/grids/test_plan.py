@@ -18,9 +18,7 @@ PULSE = "[motion]\npulse = { shape = 'half_sine', amplitude = '0.5 g', duration 
 
 
 def plan(axes: str = "", parameters: str = "width = 0.3\nheight = 1.8\nmass = 500", more: str = "") -> str:
-    return (
-        f"[study]\nname = 'try'\nmodel = 'housner'\n{PULSE}[parameters]\n{parameters}\n[axes]\n{axes}\n{more}"
-    )
+    return f"[study]\nname = 'try'\nmodel = 'housner'\n{PULSE}[parameters]\n{parameters}\n[axes]\n{axes}\n{more}"
 
 
 def read(text: str, folder: Path = Path()) -> Plan:
@@ -116,7 +114,7 @@ def test_several_records_make_an_axis_and_cases_may_name_them() -> None:
     assert placed.grid.dims == ("pga", "motion")
     for found in (first, placed):
         names = [motion.name for motion in found.motions]
-        assert names == [axis for axis in found.axes if axis.name == "motion"][0].values.tolist()
+        assert names == next(axis for axis in found.axes if axis.name == "motion").values.tolist()
         assert found.grid.apart == {"motion"}
     rows = "[{ motion = 'ridgecrest_2019_ccc', pga = '0.2 g' }, { motion = 'ridgecrest_2019_ccc', pga = 1 }]"
     cases = read(plan(f"case = {{ cases = {rows} }}").replace(PULSE, ""))
@@ -145,9 +143,7 @@ def test_a_null_outside_the_range_is_allowed(fake_wall: FakeWall) -> None:
 
 
 def test_adding_values_extends_and_anything_else_is_listed() -> None:
-    def described(
-        axes: str, parameters: str = "width = 0.3\nheight = 1.8\nmass = 500", more: str = ""
-    ) -> dict:
+    def described(axes: str, parameters: str = "width = 0.3\nheight = 1.8\nmass = 500", more: str = "") -> dict[str, object]:
         return describe(read(plan(axes, parameters, more)))
 
     old = described("pga = { values = [1, 3] }")
