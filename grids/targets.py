@@ -99,14 +99,24 @@ class Targets:
         return {*MECHANISMS, *self.model.mechanisms, *self.sensors}
 
     def flatten(self, table: Mapping[str, Any]) -> dict[str, Any]:
-        """Both TOML spellings of a mechanism's parameter, quoted or as a sub-table, as dotted names."""
+        """Both TOML spellings of a mechanism's parameter, quoted or as a sub-table, as dotted names.
+
+        A table under a name that is a parameter of the model too (restitution) is the mechanism's only
+        if it holds one of the mechanism's parameters.
+        """
         flat: dict[str, Any] = {}
         for name, value in table.items():
-            if name in self.mechanism_names and isinstance(value, dict):
+            if name in self.mechanism_names and isinstance(value, dict) and self._of_mechanism(name, value):
                 flat.update({f"{name}.{parameter}": entry for parameter, entry in value.items()})
             else:
                 flat[name] = value
         return flat
+
+    def _of_mechanism(self, name: str, table: Mapping[str, Any]) -> bool:
+        if name not in self.names():
+            return True
+        acting = self.model.mechanisms.get(name)
+        return acting is not None and any(parameter.name in table for parameter in acting.parameters)
 
     def mechanism(self, name: str, where: str) -> Mechanism:
         """A mechanism that may be used here; InputError says why another may not."""

@@ -54,6 +54,14 @@ def test_a_whole_plan() -> None:
     assert found.grid.apart == {"formulation"}
 
 
+def test_a_name_of_parameter_and_mechanism_is_told_apart_by_its_table() -> None:
+    absolute = read(plan("restitution = { linspace = [0.5, 0.9, 5] }"))
+    factor = read(plan("restitution.factor_on_housner = { linspace = [0.5, 0.9, 5] }"))
+    quoted = read(plan('"restitution.factor_on_housner" = { linspace = [0.5, 0.9, 5] }'))
+    assert absolute.grid.dims == ("restitution",)
+    assert factor.grid.dims == quoted.grid.dims == ("restitution.factor_on_housner",)
+
+
 def test_without_tables_the_defaults_hold() -> None:
     found = read(plan())
     assert found.grid.size == 1

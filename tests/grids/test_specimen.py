@@ -134,17 +134,13 @@ def specimens(draw: st.DrawFn) -> Specimen:
         title=draw(TITLES),
         model="fake_wall",
         parameters=parameters,
-        tolerance={
-            n: draw(st.floats(1e-6, 0.99)) for n in draw(st.sets(st.sampled_from(["height", "mass"])))
-        },
+        tolerance={n: draw(st.floats(1e-6, 0.99)) for n in draw(st.sets(st.sampled_from(["height", "mass"])))},
         calibrate={choice: (low, high)},
         vertical=draw(st.none() | st.booleans()),
         initial=draw(st.dictionaries(st.sampled_from(["rotation_1", "rotation_rate_1"]), st.floats(-1, 1))),
         options=draw(st.dictionaries(st.just("formulation"), st.sampled_from(["linear", "nonlinear"]))),
         mechanisms=draw(
-            st.sampled_from(
-                [{}, {"slip": {"friction": math.inf}}, {"pivot_inset": {"inset_over_half_width": inset}}]
-            )
+            st.sampled_from([{}, {"slip": {"friction": math.inf}}, {"pivot_inset": {"inset_over_half_width": inset}}])
         ),
     )
 
