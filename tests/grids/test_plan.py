@@ -151,7 +151,9 @@ def test_a_null_outside_the_range_is_allowed(fake_wall: FakeWall) -> None:
 
 
 def test_adding_values_extends_and_anything_else_is_listed() -> None:
-    def described(axes: str, parameters: str = "width = 0.3\nheight = 1.8\nmass = 500", more: str = "") -> dict[str, object]:
+    def described(
+        axes: str, parameters: str = "width = 0.3\nheight = 1.8\nmass = 500", more: str = ""
+    ) -> dict[str, object]:
         return describe(read(plan(axes, parameters, more)))
 
     old = described("pga = { values = [1, 3] }")
