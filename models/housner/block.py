@@ -17,7 +17,7 @@ class Block:
 
     The body has mass ``mass`` (M), its mass centre at ``height`` (h) over the base and
     ``right``/``left`` (b+, b-) horizontally from the pivots on which it stands for theta > 0 and
-    theta < 0; ``inertia`` (I) is about the mass centre. About a pivot I_O = I + M (h^2 + b^2).
+    theta < 0; ``base_half_width`` (b) is half the base, before any inset; ``inertia`` (I) is about the mass centre. About a pivot I_O = I + M (h^2 + b^2).
 
     The base acceleration is ``offset + scale a(t)``, the apparent gravity
     G = ``gravity + vertical_factor scale a_z(t)``.
@@ -28,6 +28,7 @@ class Block:
 
     mass: FloatArray
     height: FloatArray
+    base_half_width: FloatArray
     right: FloatArray
     left: FloatArray
     inertia: FloatArray
@@ -160,6 +161,7 @@ def assemble(values: Values, vertical: bool, size: int | None = None) -> Block:
     return Block(
         mass=total,
         height=centre,
+        base_half_width=width / 2.0,
         right=width / 2.0,
         left=width / 2.0,
         inertia=inertia,

@@ -248,7 +248,8 @@ class Housner:
                 fallen = largest + 1
             sign = np.sign(outputs["residual_rotation"])
             rotation[fallen:], rate[fallen:] = sign * np.pi / 2, 0.0
-        return History(time, self.observe(block, rotation[None], rate[None]), events, outputs)
+        channels = {name: one[0] for name, one in self.observe(block, rotation[None], rate[None]).items()}
+        return History(time, channels, events, outputs)
 
 
 MODEL = Housner()

@@ -66,7 +66,7 @@ def run(
     lanes.begin(dict(initial or {}))
     until = shaking.duration + tail if duration is None else duration
     step = shaking.time_step
-    count = int(np.floor(until / step + 1e-9))
+    count = round(until / step)
     history = np.zeros((2, block.size, count + 1))
     history[:, :, 0] = lanes.theta, lanes.rate
     silent = np.zeros(shaking.horizontal.size)
@@ -231,9 +231,7 @@ class _Lanes:
         if np.any(hits):
             span[hits] = self._crossing(k[hits], past[hits], span[hits], first[hits], ground)
             new[hits] = 0.0
-            second[hits] = self._acceleration(
-                k[hits], new[hits], side[hits], *ground(k[hits], past[hits] + span[hits])
-            )
+            second[hits] = self._acceleration(k[hits], new[hits], side[hits], *ground(k[hits], past[hits] + span[hits]))
         after = rate + span / 2.0 * (first + second)
         mean = (first + second) / 2.0
         turns = rate * after < 0.0
@@ -288,9 +286,7 @@ class _Lanes:
             stays &= s * self._acceleration(k, zero, s, a, gravity) <= 0.0
         rests = (after == 0.0) | ((np.abs(after) < self.slow[k]) & stays)
         kept = np.where(rests, 0.0, after)
-        self.lost[k] += 0.5 * (
-            self._corner_inertia(k, side) * before**2 - self._corner_inertia(k, -side) * kept**2
-        )
+        self.lost[k] += 0.5 * (self._corner_inertia(k, side) * before**2 - self._corner_inertia(k, -side) * kept**2)
         self.impacts[k] += 1.0
         self.rate[k], self.side[k], self.arc[k], self.up[k] = kept, -side, 0.0, ~rests
         for lane, t, rest in zip(k.tolist(), time.tolist(), rests.tolist(), strict=True):
@@ -322,9 +318,7 @@ class _Lanes:
         k = np.flatnonzero(self.up & ~self.done & ~self.failed)
         theta, rate, side = self.theta[k], self.rate[k], self.side[k]
         fallen = np.abs(theta) >= np.pi / 2.0
-        at = np.where(
-            fallen, time + h - (np.abs(theta) - np.pi / 2.0) / np.maximum(np.abs(rate), 1e-300), time + h
-        )
+        at = np.where(fallen, time + h - (np.abs(theta) - np.pi / 2.0) / np.maximum(np.abs(rate), 1e-300), time + h)
         certain = fallen.copy()
         if not shaken:
             second = self._acceleration(k, theta, side, *ground(k, np.full(k.size, h)))
@@ -343,9 +337,7 @@ class _Lanes:
         over = ~np.isnan(self.fall)
         peak = np.where(over, np.pi / 2.0, self.largest)
         moved = (self.largest > 0.0) | ~np.isnan(self.onset)
-        words = np.where(
-            self.failed, "not_converged", np.where(over, "overturned", np.where(moved, "rocking", "rest"))
-        )
+        words = np.where(self.failed, "not_converged", np.where(over, "overturned", np.where(moved, "rocking", "rest")))
         return {
             "peak_rotation": peak,
             "peak_rotation_ratio": peak / self.alpha,

@@ -20,13 +20,16 @@ from models.base import FloatArray
 def pitch(acceleration: FloatArray, time_step: float, low_pass: float) -> tuple[FloatArray, FloatArray]:
     """psi and psi'' per unit of ``pitch_per_acceleration`` at the samples of ``acceleration`` (m s-2).
 
-    ``low_pass`` in Hz, under half the sampling rate. The base is still before and after the record.
+    ``low_pass`` in Hz; from half the sampling rate on it does nothing. The base is still before and
+    after the record.
     psi'' belongs to the cubic spline through psi, so it is linear between samples.
     """
-    sections = butter(2, low_pass, fs=1.0 / time_step, output="sos")
     margin = int(np.ceil(2.0 / (low_pass * time_step)))
     padded = np.pad(acceleration, margin)
-    filtered = sosfiltfilt(sections, padded, padtype=None)
+    filtered = padded
+    if low_pass < 0.5 / time_step:
+        sections = butter(2, low_pass, fs=1.0 / time_step, output="sos")
+        filtered = sosfiltfilt(sections, padded, padtype=None)
     spline = CubicSpline(np.arange(padded.size) * time_step, filtered)
     inside = slice(margin, margin + acceleration.size)
     return filtered[inside], spline(spline.x, 2)[inside]

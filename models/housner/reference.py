@@ -55,16 +55,19 @@ def run(
     """One block (a `Block` of one lane) under ``scale`` times the shaking.
 
     ``tail``: free motion after the record, at most, in s; ``duration`` replaces record plus tail.
-    ``initial``: ``rotation_1`` (rad), ``rotation_rate_1`` (rad s-1); default at rest.
+    ``initial``: ``rotation_1`` (rad), ``rotation_rate_1`` (rad s-1), default at rest; and for laws with
+    a memory ``peak_rotation_1`` (rad) and ``impacts`` before the run, default none.
     ``follow``: the history of a block that has overturned goes on to pi/2; outputs count to
     overturning all the same. ``rtol`` is that of DOP853, the absolute tolerance is rtol times
     (alpha, p alpha, M g R alpha^2).
     """
     until = shaking.duration + tail if duration is None else duration
-    grid = shaking.time_step * np.arange(math.floor(until / shaking.time_step + 1e-9) + 1, dtype=np.float64)
+    grid = shaking.time_step * np.arange(round(until / shaking.time_step) + 1, dtype=np.float64)
     body = _Run(Equation(block, linear), grid, rtol, follow)
     start = dict(initial or {})
     body.begin(start.get("rotation_1", 0.0), start.get("rotation_rate_1", 0.0))
+    body.largest = max(body.largest, start.get("peak_rotation_1", 0.0))
+    body.earlier = start.get("impacts", 0.0)
     for piece in pieces(block, shaking, scale, until):
         body.advance(piece, shaken=piece.start < shaking.duration)
         if body.finished:
@@ -86,7 +89,7 @@ class _Run:
         self.time = self.theta = self.rate = 0.0
         self.mode, self.side = "rest", 1
         self.largest = self.arc = self.crossing = self.lost = self.uplift = self.friction = 0.0
-        self.impacts, self.onset, self.overturned = 0, math.nan, math.nan
+        self.impacts, self.earlier, self.onset, self.overturned = 0, 0.0, math.nan, math.nan
         self.failed = self.finished = False
         self.frozen: dict[str, float] | None = None
 
@@ -217,7 +220,7 @@ class _Run:
             rtol=self.rtol,
             atol=self.atol,
             max_step=most,
-            first_step=min(most, piece.end - self.time, self._hop(derivative(self.time, start)[1])),
+            first_step=min(most, piece.end - self.time, self._hop(lambda time: derivative(time, start)[1], piece.end)),
         )
         end = float(solution.t[-1])
         self._write(end, solution.sol)
@@ -231,10 +234,15 @@ class _Run:
             kind = next(n for (n, _, _), t in zip(named, solution.t_events or [], strict=True) if t.size)
             self._happen(kind, piece)
 
-    def _hop(self, second: float) -> float:
+    def _hop(self, second: Callable[[float], float], end: float) -> float:
         """First step (s) short enough that a small hop off the ground is not stepped over."""
-        if self.theta == 0.0 and self.side * second < 0.0 and self.rate != 0.0:
-            return abs(self.rate / second)
+        if self.theta != 0.0:
+            return math.inf
+        now, later = self.side * second(self.time), self.side * second(end)
+        if now > 0.0 and later < 0.0:
+            return (end - self.time) * now / (now - later)
+        if min(now, later) < 0.0 and self.rate != 0.0:
+            return abs(self.rate) / -min(now, later)
         return math.inf
 
     def _happen(self, kind: str, piece: Piece) -> None:
@@ -262,7 +270,7 @@ class _Run:
             rate=np.array([before]),
             previous_peak=np.array([self.arc]),
             largest_peak=np.array([self.largest]),
-            impacts=np.array([float(self.impacts)]),
+            impacts=np.array([self.earlier + self.impacts]),
         )
         after = float(ratio[0]) * before
         inertia_old = eq.base_inertia + eq.mass * old**2
@@ -288,15 +296,11 @@ class _Run:
         """Largest friction demand over eight points of every step just taken."""
         eq = self.equation
         nodes = solution.t  # type: ignore[attr-defined]
-        fine = np.interp(
-            np.linspace(0, nodes.size - 1, 8 * (nodes.size - 1) + 1), np.arange(nodes.size), nodes
-        )
+        fine = np.interp(np.linspace(0, nodes.size - 1, 8 * (nodes.size - 1) + 1), np.arange(nodes.size), nodes)
         for time, (theta, rate, _) in zip(fine.tolist(), solution.sol(fine).T.tolist(), strict=True):  # type: ignore[attr-defined]
             ground = piece.at(time)
             second, _ = eq.acceleration(theta, rate, self.side, direction, self.largest, ground)
-            self.friction = max(
-                self.friction, eq.friction_demand(theta, rate, second, self.side, self.largest, ground)
-            )
+            self.friction = max(self.friction, eq.friction_demand(theta, rate, second, self.side, self.largest, ground))
 
     def _write(self, end: float, dense: Callable[[FloatArray], FloatArray] | None) -> None:
         """History at the grid's times up to ``end`` (s); without ``dense`` the state stays."""

@@ -127,7 +127,10 @@ def rk4(
     half = 0.5 * step
     am, gm, pm, qm = 0.5 * (a0 + a1), 0.5 * (g0 + g1), 0.5 * (p0 + p1), 0.5 * (q0 + q1)
     k1, x1, z1, e1 = acceleration(w, lane, theta, omega, a0, g0, p0, q0, general, linear)
-    demand = friction_demand(w, lane, k1, omega, x1, z1, a0, g0, general)
+    felt = a0
+    if general is not None:
+        felt = a0 - g0 * p0 + w[H * W + lane] * q0
+    demand = friction_demand(w, lane, k1, omega, x1, z1, felt, g0, general)
     o2 = omega + half * k1
     k2, _, _, e2 = acceleration(w, lane, theta + half * omega, o2, am, gm, pm, qm, general, linear)
     o3 = omega + half * k2

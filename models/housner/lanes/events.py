@@ -9,7 +9,7 @@ import math
 from typing import Any
 
 from models.housner.declaration import MOST_IMPACTS_PER_STEP
-from models.housner.lanes.equation import acceleration, rk4
+from models.housner.lanes.equation import acceleration, friction_demand, rk4
 from models.housner.lanes.impact import kinetic_energy, pivot, restitution
 from models.housner.lanes.rows import (
     CB,
@@ -235,6 +235,18 @@ def land(
     return float(after)
 
 
+@inlined
+def demand_at_landing(
+    w: Table, slot: int, omega: float, record: Table, i: int, f: float, general: Any, linear: Any
+) -> None:
+    """The friction demand just before an impact, where it jumps."""
+    a, g, p, q = inputs(w, slot, record, i, f)
+    accel, x, z, _ = acceleration(w, slot, 0.0, omega, a, g, p, q, general, linear)
+    felt = a - g * p + w[H * W + slot] * q
+    demand = friction_demand(w, slot, accel, omega, x, z, felt, g, general)
+    w[DEMAND * W + slot] = max(w[DEMAND * W + slot], demand)
+
+
 @called
 def one_step(
     given: Table, result: Table, w: Table, lane: int, slot: int, record: Table, i: int, h: float,
@@ -295,6 +307,7 @@ def one_step(
             f += rest
             w[WORK * W + slot] += work
             theta = 0.0
+            demand_at_landing(w, slot, om1, record, i, f, general, linear)
             omega = land(given, result, w, lane, slot, om1, (i + f) * h, log, count, linear)
             continue
         if omega * om1 < 0.0:

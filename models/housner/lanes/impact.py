@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from models.housner.lanes.equation import MOST_INSET
@@ -57,7 +58,9 @@ def restitution(given: Table, result: Table, w: Table, lane: int, slot: int, sid
         e *= (result[lane, R_SWING] / result[lane, R_PEAK]) ** exponent
     e *= 1.0 - given[lane, Q_SLOPE] * abs(omega) / (given[lane, Q_P] * given[lane, Q_ALPHA])
     e *= max(given[lane, Q_FLOOR], 1.0 - given[lane, Q_LOSS] * result[lane, R_IMPACTS])
-    return float(max(e, 0.0))
+    square = inertia + mass * height * height
+    neutral = math.sqrt((square + mass * old * old) / (square + mass * new * new))
+    return float(min(max(e, 0.0), neutral))
 
 
 @inlined

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import butter, sosfiltfilt
 
 from models.base import FloatArray
 from models.housner.block import Block
 from models.housner.declaration import REST_VELOCITY
 from models.housner.lanes import rows as r
 from models.housner.lanes.advance import advance
+from models.housner.pitch import pitch as low_passed
 from models.shaking import Shaking
 
 EVENTS = ("onset", "impact", "rest", "overturned")
@@ -58,21 +58,12 @@ def refine(samples: NDArray[np.float64], n: int) -> NDArray[np.float64]:
     return np.interp(fine / n, np.arange(samples.size), samples)
 
 
-def pitch_channels(shaking: Shaking, low_pass: float) -> tuple[FloatArray, FloatArray]:
-    """Low-passed base acceleration and its second derivative (per unit of pitch_per_acceleration)."""
-    nyquist = 0.5 / shaking.time_step
-    smooth = shaking.horizontal
-    if low_pass < nyquist:
-        smooth = sosfiltfilt(butter(2, low_pass / nyquist, output="sos"), smooth)
-    return smooth, np.gradient(np.gradient(smooth, shaking.time_step), shaking.time_step)
-
-
 def records(shaking: Shaking, n: int, tail: float, pitch: float | None) -> tuple[FloatArray, FloatArray, int]:
     """The record at the ends of the steps with its quiet tail, extremes of its chunks, steps of shaking."""
     step = shaking.time_step / n
     quiet = int(np.ceil(tail / step - 1e-9))
     channels = [shaking.horizontal, shaking.vertical]
-    channels += list(pitch_channels(shaking, pitch)) if pitch is not None else [None, None]
+    channels += list(low_passed(shaking.horizontal, shaking.time_step, pitch)) if pitch is not None else [None, None]
     shaken = (shaking.horizontal.size - 1) * n
     record = np.zeros((5, shaken + quiet + 2))
     record[4, :shaken] = 1.0

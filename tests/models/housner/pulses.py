@@ -8,15 +8,14 @@ second. A jump at the first or last sample is exact (the base is at rest outside
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import numpy as np
 from scipy.linalg import solveh_banded
 
 from models.base import FloatArray
-from models.housner.block import Block
 from models.shaking import Shaking
-from tests.models.housner.adapter import outcomes
+from tests.models.housner.adapter import MODEL, outcomes
 
 LANES = 32
 
@@ -40,7 +39,7 @@ def constant(duration: float, steps: int) -> Shaking:
 
 
 def threshold(
-    block: Block,
+    values: Mapping[str, float],
     shaking: Shaking,
     low: float,
     high: float,
@@ -55,13 +54,12 @@ def threshold(
     Each round runs 32 lanes over the bracket. Close to a threshold the block lingers near its unstable
     equilibrium for ln(1/distance)/p, which sets the free motion allowed after the pulse.
     """
-    p = float(block.frequency_parameter[0])
+    p = float(MODEL.derive(values)["frequency_parameter"][0])
     while True:
         scale = np.linspace(low, high, LANES)
-        many = block.take(np.zeros(LANES, np.intp))
         close = (high - low) / (LANES * high)
         tail = (np.log(1.0 / close) + 8.0) / p
-        over = outcomes(integrator, many, shaking, scale, tail=tail, linear=linear)["overturned"].astype(bool)
+        over = outcomes(integrator, values, shaking, scale, tail=tail, linear=linear)["overturned"]
         beyond = over if overturns_above else ~over
         first = int(np.argmax(beyond))
         assert not beyond[0], f"beyond the threshold already at {low}"

@@ -1,0 +1,68 @@
+"""Measured order of every integrator: the error against the step, on one forced run with impacts."""
+
+import numpy as np
+import pytest
+
+from models.housner import newmark, reference
+from models.housner.block import Block, build
+from models.housner.lanes import run as lanes
+from models.shaking import Shaking
+from tests.models.housner.adapter import rectangle
+
+STEP = 0.08
+END = 2.4
+ALPHA = 0.25
+
+
+def forced() -> tuple[Block, Shaking]:
+    """A rough record, linear between samples .08 s apart, that lifts the block twice."""
+    time = np.arange(round(END / STEP) + 1) * STEP
+    return (
+        build(rectangle(ALPHA, 2.0, restitution=0.85), vertical=False),
+        Shaking(STEP, 4.2 * np.sin(4.0 * time) * np.exp(-0.8 * time)),
+    )
+
+
+def final_state(steps: int, integrator: str, rtol: float = 1e-13) -> np.ndarray:
+    """theta and theta'/p at the end of the record over alpha, with ``steps`` steps a sample."""
+    block, shaking = forced()
+    if integrator == "newmark":
+        result = newmark.run(block, shaking, np.ones(1), tail=0.0, substeps=steps)
+        state = np.array([result.rotation[0, -1], result.rate[0, -1] / 2.0])
+    elif integrator == "lanes":
+        size = shaking.horizontal.size
+        table = lanes.run(block, shaking, np.ones(1), samples=size, refinement=steps)
+        assert table.rotation is not None and table.rate is not None
+        state = np.array([table.rotation[0, -1], table.rate[0, -1] / 2.0])
+    else:
+        run = reference.run(block, shaking, tail=0.0, rtol=rtol)
+        state = np.array([run.rotation[-1], run.rate[-1] / 2.0])
+    return state / ALPHA
+
+
+def test_the_run_has_what_an_order_test_needs() -> None:
+    block, shaking = forced()
+    run = reference.run(block, shaking, tail=0.0, rtol=1e-13)
+    assert run.outputs["impacts"] >= 2
+    assert 0.1 < run.outputs["peak_rotation_ratio"] < 0.8
+
+
+@pytest.mark.parametrize(
+    ("integrator", "steps", "order", "best"),
+    [("lanes", (2, 4, 8, 16), 4, 1e-7), ("newmark", (4, 8, 16, 32), 2, 1e-3)],
+)
+def test_order(
+    integrator: str, steps: tuple[int, ...], order: int, best: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(lanes, "LARGEST_PHASE", np.inf)
+    exact = final_state(1, "reference")
+    errors = np.array([np.max(np.abs(final_state(n, integrator) - exact)) for n in steps])
+    measured = np.polyfit(-np.log(steps), np.log(errors), 1)[0]
+    assert measured == pytest.approx(order, abs=0.35), errors
+    assert errors[-1] < best
+
+
+def test_the_reference_follows_its_tolerance() -> None:
+    exact = final_state(1, "reference", 1e-13)
+    for rtol in (1e-6, 1e-8, 1e-10):
+        assert np.max(np.abs(final_state(1, "reference", rtol) - exact)) < 20 * rtol
