@@ -1,0 +1,84 @@
+"""Blocks, shakings and typical sizes of every mechanism of the one-block model, for the tests."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import models
+from models.base import FloatArray
+from models.housner import reference
+from models.housner.block import build
+from models.housner.lanes import run as lanes
+from models.shaking import Shaking
+
+HOUSNER = models.get("housner")
+WALL = {"width": 0.5, "height": 2.0, "mass": 900.0}
+ALPHA = float(np.arctan(0.25))
+P = float(HOUSNER.derive(WALL)["frequency_parameter"][0])
+
+TYPICAL: dict[str, dict[str, float]] = {
+    "vertical_acceleration": {"kappa": 0.8},
+    "sliding": {"friction": 0.27},
+    "pivot_inset": {"inset_over_half_width": 0.15},
+    "rounded_corner": {"radius_over_half_width": 0.2},
+    "crushing": {"inset_per_rotation": 1.5},
+    "tilt": {"tilt": 0.01},
+    "eccentricity": {"offset_over_half_width": 0.08},
+    "flexible_joint": {"angle": 0.006},
+    "added_stiffness": {"over_m_g_R": 0.3, "gap": 0.03},
+    "table_pitch": {"pitch_per_acceleration": 0.001, "low_pass_hz": 8.0},
+    "restitution": {"factor_on_housner": 0.9},
+    "velocity_restitution": {"beta": 0.3},
+    "bounce": {"contact_restitution": 0.3},
+    "viscous_damping": {"rate": 0.3},
+    "coulomb_damping": {"over_m_g_b": 0.05},
+    "quadratic_damping": {"coefficient": 2.0},
+    "degradation": {"loss_of_restitution_per_impact": 0.02, "floor": 0.8},
+    "wall_flexibility": {"first_frequency": 12.0},
+}
+REGIMES = ("sliding", "bounce", "wall_flexibility")
+"""Mechanisms that add degrees of freedom."""
+
+
+def dotted(name: str, values: Mapping[str, Any]) -> dict[str, Any]:
+    return {f"{name}.{parameter}": value for parameter, value in values.items()}
+
+
+def pulse(amplitude: float, period: float, *, rest: float = 2.5, step: float = 0.005, up: float = 0.4) -> Shaking:
+    """One full sine of acceleration (m s-2), a vertical one of twice the frequency, then quiet."""
+    time = np.arange(round((period + rest) / step) + 1) * step
+    inside = time <= period
+    across = np.where(inside, amplitude * np.sin(2 * np.pi * time / period), 0.0)
+    vertical = np.where(inside, up * amplitude * np.sin(4 * np.pi * time / period), 0.0)
+    return Shaking(step, across, vertical, vertical_acts=False)
+
+
+def free(duration: float, step: float = 0.005) -> Shaking:
+    return Shaking(step, np.zeros(round(duration / step) + 1), np.zeros(round(duration / step) + 1), False)
+
+
+def by_lanes(
+    values: Mapping[str, Any], shaking: Shaking, initial: Mapping[str, float] | None = None, refinement: int = 1
+) -> tuple[dict[str, float], FloatArray, FloatArray, NDArray[Any]]:
+    """Outputs, rotation, shift and events of one run by the kernel."""
+    block = build(values, shaking.vertical is not None and shaking.vertical_acts)
+    ran = lanes.run(
+        block, shaking, np.ones(1), initial={k: np.array([v]) for k, v in (initial or {}).items()},
+        samples=shaking.horizontal.size, log=2000, refinement=refinement,
+    )  # fmt: skip
+    assert ran.rotation is not None and ran.shift is not None and ran.events is not None
+    outputs = {k: float(v[0]) for k, v in lanes.outputs(block, ran.result).items()}
+    return outputs, ran.rotation[0], ran.shift[0], np.array(ran.events[0])
+
+
+def by_reference(
+    values: Mapping[str, Any], shaking: Shaking, initial: Mapping[str, float] | None = None
+) -> tuple[dict[str, float], FloatArray, FloatArray, NDArray[Any]]:
+    """The same by the reference."""
+    block = build(values, shaking.vertical is not None and shaking.vertical_acts)
+    ran = reference.run(block, shaking, 1.0, tail=0.0, initial=initial)
+    return ran.outputs, ran.rotation, ran.shift, np.array([(e.time, e.kind) for e in ran.events])
