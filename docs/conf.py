@@ -1,0 +1,28 @@
+"""Sphinx settings; the pages of models and mechanisms are written from the declarations at build time."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+sys.path.insert(0, str(HERE.parent))
+
+from declared import write_pages  # noqa: E402
+
+project = "rocking-study"
+author = "the rocking-study authors"
+copyright = "2026, the rocking-study authors"
+extensions = ["myst_parser", "sphinx.ext.mathjax", "sphinx.ext.autodoc"]
+myst_enable_extensions = ["dollarmath", "deflist", "colon_fence"]
+myst_heading_anchors = 3
+exclude_patterns = ["_build"]
+html_theme = "furo"
+html_title = "rocking-study"
+html_static_path = ["_static"]
+html_extra_path = ["gallery"] if any((HERE / "gallery").glob("*.html")) else []
+autodoc_typehints = "description"
+suppress_warnings = ["myst.header"]
+
+write_pages(HERE / "generated")
