@@ -14,12 +14,14 @@ class Shaking:
 
     ``horizontal`` (n,) is positive to the right and ``vertical`` (n,) positive up, both in m s-2,
     at times 0, time_step, 2 time_step ... Before the first and after the last sample the base is
-    at rest (zero acceleration).
+    at rest (zero acceleration). ``vertical_acts`` false: the base model leaves the vertical component
+    out, and only the mechanism `vertical_acceleration` looks at it.
     """
 
     time_step: float
     horizontal: NDArray[np.float64]
     vertical: NDArray[np.float64] | None = None
+    vertical_acts: bool = True
 
     def __post_init__(self) -> None:
         for name in ("horizontal", "vertical"):

@@ -58,6 +58,15 @@ def _shaking(specimen: Specimen, motion: Motion | Recording | str | Path, compon
 
     model = models.get(specimen.model)
     vertical = specimen.vertical
+    acts = "vertical_acceleration" not in specimen.mechanisms
+    if not acts:
+        # the mechanism applies the vertical motion that the base model leaves out
+        if vertical:
+            raise InputError(
+                "[mechanisms.vertical_acceleration] stands for a vertical motion that is left out; "
+                "set [motion] vertical = false or leave the mechanism out."
+            )
+        vertical = True
     if isinstance(motion, str | Path) and is_recording(Path(motion)):
         motion = read_recording(motion)
     if isinstance(motion, Recording):
@@ -67,12 +76,12 @@ def _shaking(specimen: Specimen, motion: Motion | Recording | str | Path, compon
             )
         if vertical is None:
             vertical = model.vertical_by_default and "base_acceleration_z" in motion.channels
-        return motion.shaking(vertical)
+        return motion.shaking(vertical, vertical_acts=acts)
     if isinstance(motion, str | Path):
         wanted = vertical if vertical is not None or model.vertical_by_default else False
         motion = read_motion(motion, component=component, vertical=wanted)
     use = model.vertical_by_default if vertical is None else vertical
-    return (motion if use else motion.without_vertical()).shaking()
+    return (motion if use else motion.without_vertical()).shaking(vertical_acts=acts)
 
 
 def is_recording(path: Path) -> bool:

@@ -44,7 +44,7 @@ def evaluate(setting: Setting, motions: Mapping[str, Motion], cells: Coordinates
             motion = motion.time_scaled(stretch)
         computed = model.evaluate(
             values,
-            motion.shaking(),
+            motion.shaking(vertical_acts="vertical_acceleration.kappa" not in values),
             _scale(motion, scaling, index.size),
             outputs=setting.outputs,
             tail=setting.tail,

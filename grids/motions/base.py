@@ -88,9 +88,9 @@ class Motion:
             digest.update(b"none" if values is None else values.astype("<f8").tobytes())
         return digest.hexdigest()
 
-    def shaking(self) -> Shaking:
-        """The motion as the models see it."""
-        return Shaking(self.time_step, self.horizontal, self.vertical)
+    def shaking(self, *, vertical_acts: bool = True) -> Shaking:
+        """The motion as the models see it; ``vertical_acts`` as in `Shaking`."""
+        return Shaking(self.time_step, self.horizontal, self.vertical, vertical_acts)
 
     def without_vertical(self) -> Motion:
         """The horizontal component alone."""

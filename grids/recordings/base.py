@@ -73,8 +73,8 @@ class Recording:
         """The channels that a model is compared with."""
         return tuple(name for name in self.channels if CHANNELS[name].response)
 
-    def shaking(self, vertical: bool) -> Shaking:
-        """The measured motion of the base, with its vertical component or without.
+    def shaking(self, vertical: bool, *, vertical_acts: bool = True) -> Shaking:
+        """The measured motion of the base, with its vertical component or without; see `Shaking`.
 
         Raises InputError when the vertical one is asked for and was not recorded.
         """
@@ -86,6 +86,7 @@ class Recording:
             self.time_step,
             self.channels[REQUIRED],
             self.channels["base_acceleration_z"] if vertical else None,
+            vertical_acts,
         )
 
 

@@ -17,7 +17,8 @@ class Block:
 
     The body has mass ``mass`` (M), its mass centre at ``height`` (h) over the base and
     ``right``/``left`` (b+, b-) horizontally from the pivots on which it stands for theta > 0 and
-    theta < 0; ``base_half_width`` (b) is half the base, before any inset; ``inertia`` (I) is about the mass centre. About a pivot I_O = I + M (h^2 + b^2).
+    theta < 0; ``base_half_width`` (b) is half the base, before any inset; ``inertia`` (I) is about
+    the mass centre. About a pivot I_O = I + M (h^2 + b^2).
 
     The base acceleration is ``offset + scale a(t)``, the apparent gravity
     G = ``gravity + vertical_factor scale a_z(t)``.

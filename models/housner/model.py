@@ -82,7 +82,11 @@ class Housner:
         }
 
     def _block(self, values: Values, shaking: Shaking, size: int) -> Block:
-        block = build(values, shaking.vertical is not None, size)
+        if shaking.vertical is None and np.any(values.get("vertical_acceleration.kappa", 0.0)):
+            raise InputError(
+                "vertical_acceleration.kappa needs the vertical motion of the base: give a motion that has one"
+            )
+        block = build(values, shaking.vertical is not None and shaking.vertical_acts, size)
         if block.size != size:
             raise ValueError(f"values broadcast to {block.size} lanes, {size} are asked for")
         return block

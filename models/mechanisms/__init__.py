@@ -3,8 +3,48 @@
 from __future__ import annotations
 
 from models.base import Mechanism
-from models.mechanisms import pivot_inset, restitution
+from models.mechanisms import (
+    added_stiffness,
+    bounce,
+    coulomb_damping,
+    crushing,
+    degradation,
+    eccentricity,
+    flexible_joint,
+    pivot_inset,
+    quadratic_damping,
+    restitution,
+    rounded_corner,
+    sliding,
+    table_pitch,
+    tilt,
+    velocity_restitution,
+    vertical_acceleration,
+    viscous_damping,
+    wall_flexibility,
+)
 
 MECHANISMS: dict[str, Mechanism] = {
-    module.MECHANISM.name: module.MECHANISM for module in (pivot_inset, restitution)
+    module.MECHANISM.name: module.MECHANISM
+    for module in (
+        vertical_acceleration,
+        sliding,
+        pivot_inset,
+        rounded_corner,
+        crushing,
+        tilt,
+        eccentricity,
+        flexible_joint,
+        added_stiffness,
+        table_pitch,
+        restitution,
+        velocity_restitution,
+        bounce,
+        viscous_damping,
+        coulomb_damping,
+        quadratic_damping,
+        degradation,
+        wall_flexibility,
+    )
 }
+"""In the order in which they act on a model's coefficients."""

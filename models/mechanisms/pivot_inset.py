@@ -7,9 +7,10 @@ from models.housner.block import Block
 
 
 def on_housner(block: Block, values: Values) -> Block:
-    left_over = 1.0 - values["inset_over_half_width"]
+    inset = values["inset_over_half_width"]
+    shift = inset * block.base_half_width
     return block.replace(
-        right=block.right * left_over, left=block.left * left_over, aspect=block.aspect * left_over
+        right=block.right - shift, left=block.left - shift, aspect=block.aspect * (1.0 - inset)
     )
 
 

@@ -1,0 +1,24 @@
+"""Dry friction acts on the rotation."""
+
+from __future__ import annotations
+
+from models.base import Mechanism, MechanismParameter, Values
+from models.housner.block import Block
+
+
+def on_housner(block: Block, values: Values) -> Block:
+    return block.replace(coulomb=values["over_m_g_b"] * block.mass * block.gravity * block.base_half_width)
+
+
+MECHANISM = Mechanism(
+    name="coulomb_damping",
+    effect_class="coulomb_damping",
+    parameters=(
+        MechanismParameter("over_m_g_b", "m_c", "1", "couple of dry friction over M g b", 0.0, 0.1),
+    ),
+    equation="couple -m_c M g b sign(theta'); it holds the block where it stops as long as it can",
+    signature="between impacts, with the sign of theta'",
+    sentence="dry friction of {over_m_g_b:.4f} M g b acts against the rotation",
+    acts={"housner": on_housner},
+    source="Coulomb's law on a couple",
+)

@@ -1,0 +1,28 @@
+"""The mass centre stands beside the middle of the base."""
+
+from __future__ import annotations
+
+from models.base import Mechanism, MechanismParameter, Values
+from models.housner.block import Block
+
+
+def on_housner(block: Block, values: Values) -> Block:
+    shift = values["offset_over_half_width"] * block.base_half_width
+    return block.replace(right=block.right - shift, left=block.left + shift)
+
+
+MECHANISM = Mechanism(
+    name="eccentricity",
+    effect_class="eccentricity",
+    parameters=(
+        MechanismParameter(
+            "offset_over_half_width", "eps", "1", "mass centre off the middle over the half width, positive to +x",
+            -0.2, 0.2,
+        ),
+    ),
+    equation="b+ = b (1 - eps), b- = b (1 + eps); the inertia about the mass centre stays",
+    signature="differs left and right; restitution and frequency of both sides differ too",
+    sentence="the mass centre lies {offset_over_half_width:+.1%} of the half width off the middle (positive to +x)",
+    acts={"housner": on_housner},
+    source="geometry; impact between unequal sides: models/housner/impact.py",
+)  # fmt: skip

@@ -1,0 +1,28 @@
+"""The corner on which the block stands slides when friction cannot hold it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from models.base import Mechanism, MechanismParameter, Values
+from models.housner.block import Block
+
+
+def on_housner(block: Block, values: Values) -> Block:
+    return block.replace(friction=values["friction"])
+
+
+MECHANISM = Mechanism(
+    name="sliding",
+    effect_class="sliding",
+    parameters=(
+        MechanismParameter(
+            "friction", "mu", "1", "Coulomb friction at the base", 0.03, 1.5, null=np.inf, fit_inverse=True
+        ),
+    ),
+    equation="|H| <= mu N; while the contact slips with velocity u', H = -mu N sign(u')",
+    signature="only where the friction demand |H|/N exceeds mu",
+    sentence="the block slides on its base at a friction coefficient of {friction:.3f}",
+    acts={"housner": on_housner},
+    source="Shenton (J. Eng. Mech. 122, 1996); law at impacts: models/housner/slip.py",
+)

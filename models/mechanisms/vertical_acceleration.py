@@ -1,0 +1,34 @@
+"""The vertical motion of the base acts, though the base model leaves it out."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from models.base import Mechanism, MechanismParameter, Values
+from models.errors import InputError
+from models.housner.block import Block
+
+
+def on_housner(block: Block, values: Values) -> Block:
+    if np.all(np.asarray(values["kappa"]) == 0.0):
+        return block
+    if np.any(block.vertical_factor != 0.0):
+        raise InputError(
+            "vertical_acceleration.kappa stands for a vertical motion that the base model leaves out, but it "
+            "acts already; set [motion] vertical = false or leave the mechanism out"
+        )
+    return block.replace(vertical_factor=values["kappa"])
+
+
+MECHANISM = Mechanism(
+    name="vertical_acceleration",
+    effect_class="vertical_acceleration",
+    parameters=(
+        MechanismParameter("kappa", "kappa", "1", "share of the measured vertical acceleration that acts", 0.0, 1.5),
+    ),
+    equation="G = g (1 + kappa a_z/g) in place of g",
+    signature="between impacts at constant sign of theta, coherent with the vertical acceleration",
+    sentence="{kappa:.2f} times the measured vertical acceleration acts on the block",
+    acts={"housner": on_housner},
+    source="Yim, Chopra, Penzien (Earthquake Engng Struct. Dyn. 8, 1980)",
+)

@@ -1,0 +1,24 @@
+"""A dashpot acts on the rotation."""
+
+from __future__ import annotations
+
+from models.base import Mechanism, MechanismParameter, Values
+from models.housner.block import Block
+
+
+def on_housner(block: Block, values: Values) -> Block:
+    return block.replace(viscous=values["rate"])
+
+
+MECHANISM = Mechanism(
+    name="viscous_damping",
+    effect_class="viscous_damping",
+    parameters=(
+        MechanismParameter("rate", "d", "s-1", "dashpot couple over the inertia about the corner", 0.0, 1.0),
+    ),
+    equation="couple -d I_O theta'",
+    signature="between impacts, with theta'",
+    sentence="a dashpot takes {rate:.3f} of the angular velocity per second",
+    acts={"housner": on_housner},
+    source="linear viscous couple",
+)
