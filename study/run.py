@@ -110,7 +110,8 @@ def run(
         missing = {key: block for key, block in blocks.items() if key not in finished}
         tasks = (make_task(plan, setting, folder, key, block) for key, block in missing.items())
         counter = _Counter(blocks, missing, progress)
-        _compute(tasks, store, scheduler, workers, counter)
+        if missing:
+            _compute(tasks, store, scheduler, workers, counter)
         cube = write_cube(plan, setting, manifest, store, started=started, scheduler=scheduler)
     return Report(
         folder=folder,
@@ -192,14 +193,13 @@ def _compute(
 ) -> None:
     """Run every task; a worker that dies without an answer fails its block only where that is known."""
     queue: Iterator[Task] = iter(tasks)
-    first = next(queue, None)
-    if first is None:
-        return
+    running: dict[Future[Outcome], Task] = {}
     with open_executor(scheduler, workers) as (executor, n):
-        running: dict[Future[Outcome], Task] = {executor.submit(run_task, first): first}
-        while running:
+        while True:
             for task in islice(queue, AHEAD * n - len(running)):
                 running[executor.submit(run_task, task)] = task
+            if not running:
+                return
             done, _ = wait(running, return_when=FIRST_COMPLETED)
             for future in done:
                 counter.add(_outcome(future, running.pop(future), store))

@@ -8,6 +8,7 @@ library is not safe between threads, so every open..close holds `NETCDF_LOCK`.
 from __future__ import annotations
 
 import os
+import time
 import uuid
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -21,6 +22,8 @@ from grids.netcdf_lock import NETCDF_LOCK
 from study.provenance import attribute
 
 COMPRESSION: dict[str, Any] = {"compression": "zlib", "complevel": 1, "shuffle": True}
+
+LEFTOVER_SECONDS = 3600.0
 
 
 def flush(path: Path) -> None:
@@ -78,14 +81,20 @@ class BlockStore:
         return {path.stem for path in self.blocks.glob("*.nc") if not path.name.startswith(".")}
 
     def failures(self) -> dict[str, str]:
-        """Why blocks failed, by key."""
-        return {path.stem: path.read_text("utf-8") for path in sorted(self.failed.glob("*.txt"))}
+        """Why blocks failed, by key; a block that a later attempt finished is none."""
+        finished = self.finished()
+        reasons = {path.stem: path.read_text("utf-8") for path in sorted(self.failed.glob("*.txt"))}
+        return {key: reason for key, reason in reasons.items() if key not in finished}
 
     def sweep(self) -> None:
-        """Remove what killed runs left half written; only the holder of the study's lock may do so."""
+        """Remove what killed runs left half written.
+
+        Young files stay: a cluster's worker may still be at work for a run that was killed.
+        """
         for folder in (self.folder, self.blocks, self.failed):
             for leftover in folder.glob(".*.tmp"):
-                leftover.unlink(missing_ok=True)
+                if time.time() - leftover.stat().st_mtime > LEFTOVER_SECONDS:
+                    leftover.unlink(missing_ok=True)
 
     def write(
         self,

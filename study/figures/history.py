@@ -39,9 +39,9 @@ def plot_history(history: xr.Dataset, channel: str = "rotation_1", *, ax: Axes |
     ax.set_xlim(time[0], time[-1])
     ax.set_xlabel("time [s]")
     ax.set_ylabel(label(values))
-    ax.set_title(str(history.attrs.get("title", "")), fontsize="medium")
+    ax.set_title(str(history.attrs.get("title", "")), fontsize="medium", loc="left")
     if ax.get_legend_handles_labels()[0]:
-        ax.legend(loc="upper right", fontsize="small", ncols=4)
+        ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize="small", ncols=4, frameon=False)
     return ax
 
 

@@ -5,15 +5,23 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
 import xarray as xr
 from matplotlib import colormaps
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
 
 from study.figures.style import COLOURS, MAP_COLOURS, label, new_axes, positions, set_words, shown
 from study.maps import slices
+from study.status import OVERTURNED
 
 MARKERS = "osD^vPX*"
 FEW = 8
+
+
+ALWAYS = ("overturned", "overturning_time", "status")
+"""Outputs that say something of an overturned wall, too."""
 
 
 def plot_slices(
@@ -21,34 +29,54 @@ def plot_slices(
 ) -> Axes:
     """Draw an output over ``x``, one curve for each value of the axis left open (at most one).
 
-    Arguments as in `study.maps.slices`.
+    Arguments as in `study.maps.slices`. Overturned cells are gaps in the curve, marked by a cross on
+    the upper border: their values (a peak rotation of pi/2) would hide the others.
     """
     ax = new_axes(ax)
     curves = slices(cube, output, x, at)
+    fallen = slices(cube, "status", x, at).values == OVERTURNED
     across, words = positions(curves[x])
     order = across.argsort()
-    if curves.ndim == 1:
-        ax.plot(across[order], shown(curves)[0][order], "o-", color=COLOURS[0], markersize=3)
-    else:
+    values = np.array(shown(curves)[0], dtype=float)
+    if output not in ALWAYS:
+        values[fallen] = np.nan
+    rows, flags = np.atleast_2d(values)[:, order], np.atleast_2d(fallen)[:, order]
+    names, few = _names(curves), len(rows) <= FEW
+    for k, (row, gone) in enumerate(zip(rows, flags, strict=True)):
+        colour = COLOURS[k] if few else colormaps[MAP_COLOURS](k / (len(rows) - 1))
+        ax.plot(
+            across[order], row, f"{MARKERS[k] if few else ''}-", color=colour, markersize=3, label=names[k]
+        )
+        if output not in ALWAYS and gone.any():
+            border = np.ones(int(gone.sum()))
+            place = {"transform": ax.get_xaxis_transform(), "clip_on": False}
+            ax.plot(across[order][gone], border, "x", color=colour, **place)
+    if output not in ALWAYS and fallen.any():
+        ax.plot([], [], "x", color="0.3", label="overturned")
+    handles, texts = ax.get_legend_handles_labels()
+    if not few:
         other = curves[str(curves.dims[0])]
-        values, names = positions(other)
-        few = len(values) <= FEW
-        shades = colormaps[MAP_COLOURS]
-        for k, curve in enumerate(curves):
-            colour = COLOURS[k % len(COLOURS)] if few else shades(k / (len(values) - 1))
-            ax.plot(
-                across[order],
-                shown(curve)[0][order],
-                f"{MARKERS[k % len(MARKERS)]}-" if few else "-",
-                color=colour,
-                markersize=3,
-                label=names[k] if names else f"{values[k]:.4g}",
-            )
-        ax.legend(title=label(other), fontsize="small", ncols=1 if few else 2)
+        scale = Normalize(*np.array(positions(other)[0])[[0, -1]])
+        bar = ax.figure.colorbar(ScalarMappable(scale, colormaps[MAP_COLOURS]), ax=ax)
+        bar.set_label(label(other))
+        handles, texts = handles[len(rows) :], texts[len(rows) :]
+    if texts and (curves.ndim > 1 or len(texts) > 1):
+        title = label(curves[str(curves.dims[0])]) if few and curves.ndim > 1 else None
+        place = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.0)} if few else {"loc": "upper left"}
+        ax.legend(handles, texts, title=title, fontsize="small", frameon=False, **place)
     set_words(ax, "x", words)
     ax.set_xlabel(label(curves[x]))
     ax.set_ylabel(label(curves))
     ax.grid(alpha=0.3)
     if curves.attrs.get("selection"):
-        ax.set_title(curves.attrs["selection"], fontsize="medium")
+        ax.set_title(curves.attrs["selection"], fontsize="medium", pad=10)
     return ax
+
+
+def _names(curves: xr.DataArray) -> list[str]:
+    """What the legend calls each curve."""
+    if curves.ndim == 1:
+        return [str(curves.name).replace("_", " ")]
+    other = curves[str(curves.dims[0])]
+    values, words = positions(other)
+    return words or [f"{value:.4g}" for value in values]

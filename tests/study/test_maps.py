@@ -1,0 +1,117 @@
+"""Maps against brute force on cubes of random outcomes; selections; figures that can be drawn."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+import pytest
+import xarray as xr
+
+import study.accessor  # noqa: F401
+from models.errors import InputError
+from study.figures import plot_onset_map, plot_overturning_map, plot_slices, save_figure
+from study.maps import default_axes, middle
+from study.status import OVERTURNED, ROCKING, UNKNOWN
+from tests.study.cubes import known_cube
+
+matplotlib.use("agg")
+
+
+@pytest.fixture(params=range(5))
+def cube(request: pytest.FixtureRequest) -> xr.Dataset:
+    return known_cube(np.random.default_rng(request.param))
+
+
+def brute_force(cube: xr.Dataset, flags: tuple[int, ...]) -> np.ndarray:
+    """Smallest PGA by going up in PGA, cell by cell: stop at the first hit, or at the first unknown."""
+    found = np.full((cube.sizes["top_mass"], cube.sizes["aspect_ratio"]), np.nan)
+    for i in range(cube.sizes["aspect_ratio"]):
+        for j in range(cube.sizes["top_mass"]):
+            for k in np.argsort(cube["pga"].values):
+                status = int(cube["status"].values[i, j, k])
+                if status in UNKNOWN:
+                    break
+                if status in flags:
+                    found[j, i] = cube["pga"].values[k]
+                    break
+    return found
+
+
+def test_smallest_intensity_equals_brute_force(cube: xr.Dataset) -> None:
+    overturning = cube.rocking.overturning_map(x="aspect_ratio", y="top_mass")
+    onset = cube.rocking.onset_map(x="aspect_ratio", y="top_mass")
+    assert overturning.dims == onset.dims == ("top_mass", "aspect_ratio")
+    np.testing.assert_array_equal(overturning.values, brute_force(cube, (OVERTURNED,)))
+    np.testing.assert_array_equal(onset.values, brute_force(cube, (ROCKING, OVERTURNED)))
+    assert overturning.attrs["units"] == "m s-2"
+
+
+def test_yes_or_no_over_the_intensity_equals_the_flags(cube: xr.Dataset) -> None:
+    drawn = cube.rocking.overturning_map(x="aspect_ratio", y="pga", top_mass=1900.0)
+    status = cube["status"].values[:, 2, :].T
+    np.testing.assert_array_equal(drawn.values == 1.0, status == OVERTURNED)
+    np.testing.assert_array_equal(np.isnan(drawn.values), np.isin(status, UNKNOWN))
+
+
+def test_onset_never_lies_above_overturning(cube: xr.Dataset) -> None:
+    overturning = cube.rocking.overturning_map(x="top_mass", y="aspect_ratio").values
+    onset = cube.rocking.onset_map(x="top_mass", y="aspect_ratio").values
+    both = np.isfinite(overturning)
+    assert np.all(onset[both] <= overturning[both])
+
+
+def test_slices_are_the_cube(cube: xr.Dataset) -> None:
+    curve = cube.rocking.slices("peak_rotation", x="pga", aspect_ratio=0.1, top_mass=4100.0)
+    np.testing.assert_array_equal(curve.values, cube["peak_rotation"].values[0, -1])
+    assert cube.rocking.slices("peak_rotation", x="pga", aspect_ratio=0.1).dims == ("top_mass", "pga")
+
+
+@pytest.mark.parametrize(
+    ("ask", "words"),
+    [
+        (lambda c: c.rocking.onset_map(x="aspect_ration", y="pga"), "did you mean 'aspect_ratio'"),
+        (lambda c: c.rocking.onset_map(x="pga", y="pga"), "choose two axes"),
+        (lambda c: c.rocking.onset_map(x="pga", y="top_mass"), "aspect_ratio must be selected"),
+        (lambda c: c.rocking.onset_map(x="pga", y="top_mass", pga=1.0), "leave it out"),
+        (lambda c: c.rocking.onset_map(x="pga", y="top_mass", aspect_ratio="wide"), "needs a number"),
+        (lambda c: c.rocking.slices("peak_rotaton", x="pga"), "did you mean 'peak_rotation'"),
+        (lambda c: c.rocking.slices("peak_rotation", x="pga"), "select all but one"),
+    ],
+)
+def test_a_wrong_question_gets_one_sentence(cube: xr.Dataset, ask: object, words: str) -> None:
+    with pytest.raises(InputError, match=words) as caught:
+        ask(cube)  # type: ignore[operator]
+    assert "\n" not in str(caught.value)
+
+
+def test_default_axes_leave_the_intensity_to_be_searched(cube: xr.Dataset) -> None:
+    assert default_axes(cube, None, None) == ("aspect_ratio", "top_mass")
+    assert default_axes(cube, "pga", None) == ("pga", "aspect_ratio")
+    assert middle(cube, ("aspect_ratio", "top_mass")) == {}
+    assert middle(cube, ("aspect_ratio", "pga")) == {"top_mass": 2000.0}
+
+
+def test_figures_are_written_with_units_on_their_axes(cube: xr.Dataset, tmp_path: Path) -> None:
+    seen = []
+
+    def draw(make: object) -> object:
+        seen.append(make())  # type: ignore[operator]
+        return seen[-1]
+
+    for k, make in enumerate(
+        [
+            lambda: plot_overturning_map(cube, "aspect_ratio", "top_mass"),
+            lambda: plot_onset_map(cube, "aspect_ratio", "pga", {"top_mass": 0.0}),
+            lambda: plot_slices(cube, "peak_rotation", "pga", {"top_mass": 0.0}),
+            lambda: plot_slices(cube, "peak_rotation", "pga", {"top_mass": 0.0, "aspect_ratio": 0.2}),
+        ]
+    ):
+        path = save_figure(lambda make=make: draw(make), tmp_path / f"{k}.png")  # type: ignore[misc]
+        assert path.stat().st_size > 5000
+    assert seen[0].get_ylabel() == "top mass [kg]"
+    assert seen[1].get_ylabel() == seen[2].get_xlabel() == "PGA [g]"
+    with pytest.raises(InputError, match="end the name in"):
+        save_figure(lambda: plot_onset_map(cube, "aspect_ratio", "top_mass"), tmp_path / "map.xyz")
+    assert not matplotlib.pyplot.get_fignums()
