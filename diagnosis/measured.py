@@ -1,0 +1,171 @@
+"""What was measured, arranged by windows: the arrays that every prediction is compared with."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.noise import base_noise, response_noise, smooth
+from diagnosis.windows import SMOOTHING, Window, cut
+from grids.recordings.base import REQUIRED, FloatArray, Recording
+from models.base import Model
+from models.errors import InputError
+from models.shaking import Shaking
+
+RATE_WIDTH = 0.04
+"""s on either side of a window's start over which its rate is estimated."""
+NOT_COMPARED = ("contact_1", "contact_2")
+
+
+@dataclass(frozen=True)
+class Measured:
+    """W windows of some recordings, C channels, at most N samples a window.
+
+    ``values`` and ``mask`` (W, C, N); ``sigma`` (W, C); ``base`` (W, N), the measured base acceleration;
+    ``states`` (W, S), the model's states at the windows' starts as the measurement suggests;
+    ``memory``: what happened before each window (W,), for laws with a memory.
+    ``reference_peak``: largest rotation_1 (rad) of the first recording.
+    """
+
+    model: Model
+    recordings: tuple[Recording, ...]
+    shakings: tuple[Shaking, ...]
+    base_noise: tuple[float, ...]
+    windows: tuple[Window, ...]
+    channels: tuple[str, ...]
+    values: FloatArray
+    mask: NDArray[np.bool_]
+    sigma: FloatArray
+    base: FloatArray
+    states: FloatArray
+    state_size: FloatArray
+    memory: dict[str, FloatArray]
+    reference_peak: float
+
+    @property
+    def recording_of(self) -> NDArray[np.int64]:
+        return np.array([w.recording for w in self.windows], np.int64)
+
+    @property
+    def first(self) -> NDArray[np.int64]:
+        return np.array([w.first for w in self.windows], np.int64)
+
+    @property
+    def count(self) -> FloatArray:
+        """Samples compared in each window, all channels together (W,)."""
+        return self.mask.sum(axis=(1, 2)).astype(float)
+
+    def times(self, window: int) -> FloatArray:
+        """Times (N,) of a window's samples, in s."""
+        cutout = self.windows[window]
+        step = self.recordings[cutout.recording].time_step
+        return (cutout.first + np.arange(self.values.shape[2])) * step
+
+
+def arrange(
+    model: Model, recordings: Sequence[Recording], vertical: bool, reference_peak: float | None = None
+) -> Measured:
+    """Cut the recordings in windows. Raises InputError when nothing can be compared."""
+    observed = [q.name for q in model.observables if q.name not in NOT_COMPARED]
+    channels = tuple(c for c in observed if all(c in r.channels for r in recordings))
+    if not channels:
+        raise InputError(
+            f"no channel of {model.name} ({', '.join(observed)}) is in every recording: record rotation_1 at least."
+        )
+    states: tuple[str, ...] = model.states
+    for state in states:
+        needed = state.replace("_rate", "")
+        if needed not in channels:
+            raise InputError(
+                f"{needed} is missing in a recording: a window cannot start without it; record or map it."
+            )
+    lead = channels[0]
+    windows: list[Window] = []
+    for k, recording in enumerate(recordings):
+        if model.chaotic:
+            windows += cut(recording.channels[lead], response_noise(recording, lead), recording.time_step, k)
+        else:
+            windows.append(Window(k, 0, recording.time.size))
+    if not windows:
+        raise InputError(
+            f"{lead} never rises above 8 times its noise in {', '.join(r.name for r in recordings)}: "
+            "nothing can be compared; shake harder, or measure with less noise."
+        )
+    longest = max(w.samples for w in windows)
+    shape = (len(windows), len(channels), longest)
+    values, mask = np.zeros(shape), np.zeros(shape, bool)
+    sigma, base = np.ones(shape[:2]), np.zeros((shape[0], longest))
+    noise = {(k, c): response_noise(r, c) for k, r in enumerate(recordings) for c in channels}
+    for w, window in enumerate(windows):
+        recording = recordings[window.recording]
+        part = slice(window.first, window.first + window.samples)
+        for c, name in enumerate(channels):
+            values[w, c, : window.samples] = recording.channels[name][part]
+            mask[w, c, : window.samples] = True
+            sigma[w, c] = noise[window.recording, name]
+        last = min(window.first + longest, recording.time.size)
+        base[w, : last - window.first] = recording.channels[REQUIRED][window.first : last]
+    shaken_up = vertical or all("base_acceleration_z" in r.channels for r in recordings)
+    start = np.stack([_start(recordings, windows, state) for state in states], axis=1)
+    peak = float(np.max(np.abs(smooth(recordings[0].channels[lead], recordings[0].time_step, SMOOTHING))))
+    return Measured(
+        model=model,
+        recordings=tuple(recordings),
+        shakings=tuple(r.shaking(shaken_up, vertical_acts=vertical) for r in recordings),
+        base_noise=tuple(base_noise(r) for r in recordings),
+        windows=tuple(windows),
+        channels=channels,
+        values=values,
+        mask=mask,
+        sigma=sigma,
+        base=base,
+        states=start,
+        state_size=np.maximum(np.std(start, axis=0), 1e-12),
+        memory=_memory(recordings, windows, channels, noise),
+        reference_peak=peak if reference_peak is None else reference_peak,
+    )
+
+
+def _start(recordings: Sequence[Recording], windows: Sequence[Window], state: str) -> FloatArray:
+    """A state at the windows' starts, from a parabola through the samples around them."""
+    derivative = "_rate" in state and state not in recordings[0].channels
+    channel = state.replace("_rate", "") if derivative else state
+    found = np.empty(len(windows))
+    for w, window in enumerate(windows):
+        recording = recordings[window.recording]
+        step, signal = recording.time_step, recording.channels[channel]
+        reach = max(3, int(round(RATE_WIDTH / step)))
+        low, high = max(0, window.first - reach), min(signal.size, window.first + reach + 1)
+        fit = np.polynomial.polynomial.polyfit((np.arange(low, high) - window.first) * step, signal[low:high], 2)
+        found[w] = fit[1] if derivative else fit[0]
+    return found
+
+
+def _memory(
+    recordings: Sequence[Recording],
+    windows: Sequence[Window],
+    channels: Sequence[str],
+    noise: dict[tuple[int, str], float],
+) -> dict[str, FloatArray]:
+    """Largest rotation and number of impacts before each window, from the smoothed measurement."""
+    memory: dict[str, FloatArray] = {}
+    if "rotation_1" not in channels:
+        return memory
+    peaks, impacts = [], []
+    for k, recording in enumerate(recordings):
+        signal = smooth(recording.channels["rotation_1"], recording.time_step, SMOOTHING)
+        level = 2.0 * noise[k, "rotation_1"]
+        side = np.where(signal > level, 1, np.where(signal < -level, -1, 0))
+        held = side[np.maximum.accumulate(np.where(side != 0, np.arange(side.size), 0))]
+        crossed = np.cumsum(np.concatenate([[0], (held[1:] != held[:-1]) & (held[:-1] != 0)]))
+        largest = np.maximum.accumulate(np.abs(signal))
+        for window in windows:
+            if window.recording == k:
+                peaks.append(largest[window.first])
+                impacts.append(crossed[window.first])
+    memory["peak_rotation_1"] = np.array(peaks, float)
+    memory["impacts"] = np.array(impacts, float)
+    return memory

@@ -1,0 +1,89 @@
+"""A causal Butterworth filter in the response channels.
+
+The filter acts on the signal taken as linear between samples, so that a corner above the Nyquist
+frequency of the recording keeps its meaning. What came before the first sample is taken as the
+parabola through the first samples: a window starts at a peak, where motion is just that.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.sensors.base import Channels, Surroundings
+from models.base import FloatArray, Mechanism, MechanismParameter, Values
+
+LEAD_IN = 0.2
+"""s of parabola before the first sample."""
+FITTED = 8
+"""Samples through which the parabola is laid."""
+System = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]
+
+
+@lru_cache(maxsize=4096)
+def discrete(corner_hz: float, order: int, kind: str, time_step: float) -> System:
+    """State space (A, B, C, D) of the filter for an input linear between samples."""
+    from scipy.signal import butter, cont2discrete, tf2ss
+
+    numerator, denominator = butter(order, 2.0 * np.pi * corner_hz, btype=kind, analog=True)
+    a, b, c, d, _ = cont2discrete(tf2ss(numerator, denominator), time_step, method="foh")
+    return a, b, c, d
+
+
+def stages(values: Values) -> list[tuple[float, int, str]]:
+    order = int(round(values["order"]))
+    found = []
+    if np.isfinite(values["corner_hz"]):
+        found.append((float(values["corner_hz"]), order, "lowpass"))
+    if values["high_pass_hz"] > 0.0:
+        found.append((float(values["high_pass_hz"]), order, "highpass"))
+    return found
+
+
+def run(system: System, signal: FloatArray, time_step: float) -> FloatArray:
+    """Output of the filter for signals (..., samples), each led in by its own parabola."""
+    from scipy.signal import lfilter, ss2tf
+
+    a, b, c, d = system
+    numerator, denominator = ss2tf(a, b, c, d)
+    count = int(np.ceil(LEAD_IN / time_step))
+    few = min(FITTED, signal.shape[-1])
+    steps = np.arange(few)
+    bend = np.linalg.pinv(np.vander(steps, 3, increasing=True).astype(float))
+    coefficients = np.tensordot(signal[..., :few], bend, axes=(-1, -1))
+    before = coefficients @ np.vander(np.arange(-count, 0), 3, increasing=True).astype(float).T
+    whole = np.concatenate([before, signal], axis=-1)
+    first = whole[..., :1]
+    unit = np.linalg.solve(np.eye(a.shape[0]) - a, b[:, 0])
+    steady = float(c[0] @ unit + d[0, 0])
+    return np.asarray(lfilter(numerator[0], denominator, whole - first, axis=-1) + steady * first)[..., count:]
+
+
+def respond(channels: Channels, values: Values, around: Surroundings) -> Channels:
+    for corner, order, kind in stages(values):
+        system = discrete(corner, order, kind, around.time_step)
+        channels = {name: run(system, x, around.time_step) for name, x in channels.items()}
+    return channels
+
+
+MECHANISM = Mechanism(
+    name="filter",
+    effect_class="filter",
+    parameters=(
+        MechanismParameter(
+            "corner_hz", "f_c", "Hz", "corner of the low-pass of the response channels", 0.5, 60.0,
+            null=np.inf, fit_inverse=True,
+        ),
+        MechanismParameter("order", "n_f", "1", "order of the Butterworth filter", 1.0, 4.0, null=2.0, shape=True),
+        MechanismParameter(
+            "high_pass_hz", "f_h", "Hz", "corner of a high-pass of the response channels", 0.0, 5.0, shape=True
+        ),
+    ),
+    equation="recorded = causal Butterworth low-pass (corner_hz, order) of true, every response channel",
+    signature="at impacts and above the corner; a lag of all channels",
+    sentence="the response channels went through a causal low-pass of order {order:.0f} at {corner_hz:.3g} Hz",
+    acts={"response": respond},
+    source="anti-alias and display filters of loggers",
+)  # fmt: skip

@@ -1,0 +1,115 @@
+"""What a fit may change: base parameters within tolerances or ranges, and parameters of mechanisms."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from grids.specimen import Specimen
+from models.base import FloatArray, Mechanism, MechanismParameter, Model
+
+STEPS_OF_RANGE = 20.0
+LOG_SPAN = 3.0
+"""A range [low, high] wider than this ratio is fitted in its logarithm."""
+WIDEST_PRIOR = 4.0
+"""Standard deviations that a toleranced parameter may depart from its nominal value."""
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """One fitted number. The fit works with a coordinate of order one:
+
+    linear: value = scale u;  log: value = exp(scale u);  inverse: value = 1/(scale u), infinite at u = 0.
+    ``prior`` is (mean, standard deviation) of the value, for linear ones.
+    """
+
+    name: str
+    unit: str
+    low: float
+    high: float
+    start: float
+    scale: float
+    kind: Literal["linear", "log", "inverse"] = "linear"
+    prior: tuple[float, float] | None = None
+
+    def value(self, u: float) -> float:
+        if self.kind == "linear":
+            return float(self.scale * u)
+        if self.kind == "log":
+            return float(np.exp(self.scale * u))
+        return float(1.0 / (self.scale * u)) if u > 0.0 else np.inf
+
+    def coordinate(self, value: float) -> float:
+        if self.kind == "linear":
+            return float(value / self.scale)
+        if self.kind == "log":
+            return float(np.log(value) / self.scale)
+        return 0.0 if np.isinf(value) else float(1.0 / (value * self.scale))
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Of the coordinate, low first. An inverse one may reach its null."""
+        if self.kind == "inverse":
+            return 0.0, self.coordinate(self.low)
+        return self.coordinate(self.low), self.coordinate(self.high)
+
+
+def clip(unknowns: Sequence[Unknown], u: FloatArray) -> FloatArray:
+    bounds = np.array([x.bounds for x in unknowns]).reshape(-1, 2)
+    return np.clip(u, bounds[:, 0], bounds[:, 1])
+
+
+def values_of(unknowns: Sequence[Unknown], u: FloatArray) -> dict[str, float]:
+    return {x.name: x.value(float(c)) for x, c in zip(unknowns, u, strict=True)}
+
+
+def of_specimen(specimen: Specimen, model: Model) -> tuple[Unknown, ...]:
+    """Toleranced parameters with their priors, and those to calibrate within their ranges."""
+    units = {p.name: p.unit for p in model.parameters}
+    found = []
+    for name, relative in specimen.tolerance.items():
+        nominal = specimen.parameters[name]
+        sd = abs(relative * nominal)
+        reach = WIDEST_PRIOR * sd
+        found.append(
+            Unknown(name, units[name], nominal - reach, nominal + reach, nominal, sd, prior=(nominal, sd))
+        )
+    for name, (low, high) in specimen.calibrate.items():
+        unit = units[name] if name in units else "1"
+        if low > 0.0 and high / low > LOG_SPAN:
+            found.append(Unknown(name, unit, low, high, float(np.sqrt(low * high)), 0.1, "log"))
+        else:
+            found.append(Unknown(name, unit, low, high, (low + high) / 2.0, (high - low) / STEPS_OF_RANGE))
+    return tuple(found)
+
+
+def of_parameter(mechanism: Mechanism, parameter: MechanismParameter, start: float | None = None) -> Unknown:
+    """A mechanism's parameter over its range, from its null or from ``start``."""
+    name = f"{mechanism.name}.{parameter.name}"
+    at = parameter.null if start is None else start
+    if parameter.fit_inverse:
+        scale = 1.0 / (parameter.low * STEPS_OF_RANGE)
+        return Unknown(name, parameter.unit, parameter.low, parameter.high, at, scale, "inverse")
+    low, high = min(parameter.low, parameter.null), max(parameter.high, parameter.null)
+    return Unknown(name, parameter.unit, low, high, at, (high - low) / STEPS_OF_RANGE)
+
+
+def fixed_values(specimen: Specimen) -> dict[str, float]:
+    """Values that stay: parameters and the mechanisms already switched on."""
+    values: dict[str, float] = dict(specimen.parameters)
+    for mechanism, parameters in specimen.mechanisms.items():
+        values |= {f"{mechanism}.{name}": value for name, value in parameters.items()}
+    return values
+
+
+def split(values: Mapping[str, float], names: Sequence[str]) -> dict[str, dict[str, float]]:
+    """The values of some mechanisms by mechanism and parameter."""
+    found: dict[str, dict[str, float]] = {}
+    for key, value in values.items():
+        mechanism, dot, parameter = key.partition(".")
+        if dot and mechanism in names:
+            found.setdefault(mechanism, {})[parameter] = value
+    return found
