@@ -39,8 +39,8 @@ def test_linear_lanes_agree_with_the_linear_reference(case: Case) -> None:
     values, shaking, scale = case
     assume(not MODEL.check(values))
     scale = np.array([scale])
-    slow = outcomes("reference", values, shaking, scale, linear=True)
-    assume(slow["peak_rotation_ratio"][0] < 0.8)
     fast = outcomes("lanes", values, shaking, scale, linear=True)
+    assume(fast["peak_rotation_ratio"][0] < 0.8)
+    slow = outcomes("reference", values, shaking, scale, linear=True)
     np.testing.assert_allclose(fast["peak_rotation"][0], slow["peak_rotation"][0], rtol=1e-5)
     assert fast["impacts"][0] == slow["impacts"][0]
