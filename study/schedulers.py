@@ -19,6 +19,7 @@ from typing import Any
 from models.errors import InputError, nearest
 
 SCHEDULERS = ("synchronous", "threads", "processes")
+CONNECT_SECONDS = 10
 
 
 def check_scheduler(scheduler: str, workers: int | None) -> None:
@@ -89,7 +90,7 @@ def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
     from distributed import Client
 
     try:
-        client: Any = Client(address, timeout="10s", set_as_default=False)  # type: ignore[no-untyped-call]
+        client: Any = Client(address, timeout=CONNECT_SECONDS, set_as_default=False)  # type: ignore[no-untyped-call]
     except (OSError, ValueError) as error:
         raise InputError(
             f"no dask cluster answers at '{address}' ({type(error).__name__}): "
