@@ -1,0 +1,1 @@
+"""Two rigid blocks, one on the other, that rock on a rigid base and on each other."""

@@ -1,0 +1,194 @@
+"""The coefficients of two stacked blocks: what every integrator of the model starts from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+
+from models.base import FloatArray, Values
+
+
+@dataclass(frozen=True)
+class Stack:
+    """Geometry, inertia and laws of n walls with a block on top, one array ``(n,)`` a field, SI units.
+
+    Block 1 (the wall) has its mass centre at ``centre_1`` (h1) over the base and its top at
+    ``height_1`` (2 h1); block 2 has its mass centre at ``centre_2`` (h2) over that. ``inertia_1``,
+    ``inertia_2`` are about the mass centres. The joints' pivots lie at +-``base_pivot`` (b1) and
+    +-``top_pivot`` (b2) from their middle; the mass centres lie ``shift_1`` and ``shift_2`` to the
+    right of it.
+
+    The base acceleration is ``offset + scale a(t)``, the apparent gravity
+    G = ``gravity + vertical_factor scale a_z(t)``.
+    ``base_restitution``, ``top_restitution``: given ratio of the relative angular velocities at a
+    joint (nan: by projection), times ``base_factor``, ``top_factor``; see `models.stacked.impact`.
+    ``viscous``: couple on block 1 over the inertia of both about the corner and over theta_1', s-1.
+    """
+
+    mass_1: FloatArray
+    inertia_1: FloatArray
+    centre_1: FloatArray
+    height_1: FloatArray
+    mass_2: FloatArray
+    inertia_2: FloatArray
+    centre_2: FloatArray
+    base_pivot: FloatArray
+    top_pivot: FloatArray
+    shift_1: FloatArray
+    shift_2: FloatArray
+    gravity: FloatArray
+    offset: FloatArray
+    vertical_factor: FloatArray
+    base_restitution: FloatArray
+    top_restitution: FloatArray
+    base_factor: FloatArray
+    top_factor: FloatArray
+    viscous: FloatArray
+
+    @property
+    def size(self) -> int:
+        return int(self.mass_1.size)
+
+    def replace(self, **changes: Any) -> Stack:
+        """A copy with fields replaced; values broadcast to ``(n,)``."""
+        arrays = {k: np.broadcast_to(np.asarray(v, float), self.mass_1.shape) for k, v in changes.items()}
+        return replace(self, **arrays)
+
+    def take(self, index: Any) -> Stack:
+        """The walls selected by an index array or mask."""
+        return replace(self, **{f.name: getattr(self, f.name)[index] for f in fields(self)})
+
+    def one(self, lane: int = 0) -> Stack:
+        """One wall with plain floats in its fields, for code that runs a wall at a time."""
+        return replace(self, **{f.name: float(getattr(self, f.name)[lane]) for f in fields(self)})
+
+    @property
+    def mass(self) -> FloatArray:
+        """M = m1 + m2 in kg."""
+        return self.mass_1 + self.mass_2
+
+    @property
+    def centre(self) -> FloatArray:
+        """Height in m of the mass centre of both as one body."""
+        return (self.mass_1 * self.centre_1 + self.mass_2 * (self.height_1 + self.centre_2)) / self.mass
+
+    @property
+    def shift(self) -> FloatArray:
+        """The mass centre of both as one body, in m to the right of the middle."""
+        return (self.mass_1 * self.shift_1 + self.mass_2 * self.shift_2) / self.mass
+
+    @property
+    def half_width(self) -> FloatArray:
+        """b in m of both as one body: from its mass centre to the nearer pivot of the base."""
+        return self.base_pivot - np.abs(self.shift)
+
+    @property
+    def half_width_2(self) -> FloatArray:
+        """b in m of block 2: from its mass centre to the nearer pivot of the top joint."""
+        return self.top_pivot - np.abs(self.shift_2)
+
+    @property
+    def slenderness(self) -> FloatArray:
+        """alpha = atan(b/h) in rad of both as one body."""
+        return np.arctan2(self.half_width, self.centre)
+
+    @property
+    def slenderness_2(self) -> FloatArray:
+        """alpha in rad of block 2 on a base of its own."""
+        return np.arctan2(self.half_width_2, self.centre_2)
+
+    def corner_inertia(self, side: Any) -> FloatArray:
+        """I_O in kg m2 of both as one body about the base pivot on ``side`` (1 or -1)."""
+        arm_1, arm_2 = side * self.base_pivot - self.shift_1, side * self.base_pivot - self.shift_2
+        return (
+            self.inertia_1
+            + self.mass_1 * (self.centre_1**2 + arm_1**2)
+            + self.inertia_2
+            + self.mass_2 * ((self.height_1 + self.centre_2) ** 2 + arm_2**2)
+        )
+
+    @property
+    def frequency_parameter(self) -> FloatArray:
+        """p = sqrt(M g R / I_O) in s-1 of both as one body, about the nearer pivot."""
+        side = np.where(self.shift >= 0.0, 1.0, -1.0)
+        radius = np.hypot(self.half_width, self.centre)
+        return np.sqrt(self.mass * self.gravity * radius / self.corner_inertia(side))
+
+    @property
+    def frequency_parameter_2(self) -> FloatArray:
+        """p in s-1 of block 2 on a base of its own."""
+        radius = np.hypot(self.half_width_2, self.centre_2)
+        return np.sqrt(self.mass_2 * self.gravity * radius / (self.inertia_2 + self.mass_2 * radius**2))
+
+    @property
+    def momentum_restitution(self) -> FloatArray:
+        """e of both as one body, the smaller of both directions; 1 - 2 M b^2/I_O without eccentricity."""
+        far = np.maximum(self.corner_inertia(1.0), self.corner_inertia(-1.0))
+        return 1.0 - 2.0 * self.mass * self.base_pivot * (self.base_pivot + np.abs(self.shift)) / far
+
+
+def assemble(values: Values, vertical: bool, size: int | None = None) -> Stack:
+    """The stack of the parameters alone, without mechanisms; ``values`` broadcast to ``(n,)``.
+
+    Both are solid rectangles: I = m (length^2 + height^2)/12. The top joint is as long as the
+    shorter of the two, so a top block longer than the wall rocks on the wall's corners.
+    """
+    given = {name: np.atleast_1d(np.asarray(value, float)) for name, value in values.items()}
+    shape = np.broadcast_shapes(*(v.shape for v in given.values()), (size or 1,))
+
+    def value(name: str, default: float = np.nan) -> FloatArray:
+        return np.broadcast_to(given.get(name, np.asarray(default)), shape).astype(float)
+
+    height, top_length, top_height = value("wall_height"), value("top_length"), value("top_height")
+    length = value("wall_length") if "wall_length" in given else value("aspect_ratio") * height
+    density = value("wall_density") * length * height * value("wall_thickness")
+    mass = value("wall_mass") if "wall_mass" in given else density
+    top = value("top_mass")
+    zero, one = np.zeros(shape), np.ones(shape)
+    return Stack(
+        mass_1=mass,
+        inertia_1=mass * (length**2 + height**2) / 12.0,
+        centre_1=height / 2.0,
+        height_1=height,
+        mass_2=top,
+        inertia_2=top * (top_length**2 + top_height**2) / 12.0,
+        centre_2=top_height / 2.0,
+        base_pivot=length / 2.0,
+        top_pivot=np.minimum(length, top_length) / 2.0,
+        shift_1=zero,
+        shift_2=zero,
+        gravity=value("gravity", 9.80665),
+        offset=zero,
+        vertical_factor=one if vertical else zero,
+        base_restitution=value("base_restitution"),
+        top_restitution=value("top_restitution"),
+        base_factor=one,
+        top_factor=one,
+        viscous=zero,
+    )
+
+
+def at_joint(values: Values, name: str, joint: str) -> Any:
+    """A mechanism's parameter at ``joint`` (base, top): ``name_joint`` if given, else ``name``."""
+    return values.get(f"{name}_{joint}", values[name])
+
+
+def build(values: Values, vertical: bool, size: int | None = None) -> Stack:
+    """The stack with the mechanisms that ``values`` switch on, in the order of the catalogue."""
+    from models.mechanisms import MECHANISMS
+
+    plain: Mapping[str, Any] = {k: v for k, v in values.items() if "." not in k}
+    switched: dict[str, dict[str, Any]] = {}
+    for key, value in values.items():
+        mechanism, dot, parameter = key.partition(".")
+        if dot:
+            switched.setdefault(mechanism, {})[parameter] = value
+    shape = np.broadcast_shapes(*(np.shape(v) for v in values.values()), (size or 1,))
+    stack = assemble(plain, vertical, int(np.prod(shape)))
+    for name, mechanism_ in MECHANISMS.items():
+        if name in switched:
+            stack = mechanism_.acts["stacked"](stack, {**mechanism_.nulls, **switched[name]})
+    return stack
