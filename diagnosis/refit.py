@@ -1,0 +1,100 @@
+"""Refitting a model with mechanisms switched on, and moving between fits."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diagnosis.candidates import Candidate
+from diagnosis.fit import ITERATIONS, Fitted, fit
+from models.base import FloatArray
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """A fit with some mechanisms switched on; none for the base model."""
+
+    candidates: tuple[Candidate, ...]
+    fitted: Fitted
+
+    @property
+    def loss(self) -> float:
+        return self.fitted.loss
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(c.name for c in self.candidates)
+
+    @property
+    def classes(self) -> tuple[str, ...]:
+        return tuple(c.effect_class for c in self.candidates)
+
+    @property
+    def size(self) -> int:
+        """Unknowns that belong to mechanisms."""
+        return sum(len(c.unknowns) for c in self.candidates)
+
+    def part(self, candidate: Candidate) -> FloatArray:
+        """Fitted coordinates of one of the candidates."""
+        names = [x.name for x in self.fitted.misfit.unknowns]
+        return np.array([self.fitted.u[names.index(x.name)] for x in candidate.unknowns])
+
+
+def extend(
+    explanation: Explanation, candidate: Candidate, start: FloatArray, iterations: int = ITERATIONS
+) -> Explanation:
+    """Fit with one more mechanism, from the explanation's optimum and the candidate's ``start``."""
+    base = explanation.fitted
+    misfit = replace(
+        base.misfit,
+        unknowns=(*base.misfit.unknowns, *candidate.unknowns),
+        fixed={**base.misfit.fixed, **candidate.held},
+    )
+    return Explanation(
+        (*explanation.candidates, candidate),
+        fit(misfit, np.concatenate([base.u, start]), base.states, iterations),
+    )
+
+
+def without(explanation: Explanation, candidate: Candidate, iterations: int = ITERATIONS) -> Explanation:
+    """Fit without one of the mechanisms, from the explanation's own optimum."""
+    base = explanation.fitted
+    gone = {x.name for x in candidate.unknowns}
+    keep = [i for i, x in enumerate(base.misfit.unknowns) if x.name not in gone]
+    misfit = replace(
+        base.misfit,
+        unknowns=tuple(base.misfit.unknowns[i] for i in keep),
+        fixed={k: v for k, v in base.misfit.fixed.items() if k not in candidate.held},
+    )
+    rest = tuple(c for c in explanation.candidates if c is not candidate)
+    return Explanation(rest, fit(misfit, base.u[keep], base.states, iterations))
+
+
+def again(explanation: Explanation, iterations: int = ITERATIONS) -> Explanation:
+    """The same fit taken further from where it stands."""
+    f = explanation.fitted
+    return replace(explanation, fitted=fit(f.misfit, f.u, f.states, iterations))
+
+
+def from_other(explanation: Explanation, other: Explanation, iterations: int = ITERATIONS) -> Explanation:
+    """The same model refitted from another one's base parameters and states (a cross restart)."""
+    mine, theirs = explanation.fitted, other.fitted.values
+    u = np.array(
+        [
+            x.coordinate(theirs[x.name]) if x.name in theirs else c
+            for x, c in zip(mine.misfit.unknowns, mine.u, strict=True)
+        ]
+    )
+    tried = Explanation(explanation.candidates, fit(mine.misfit, u, other.fitted.states, iterations))
+    return min((explanation, tried), key=lambda e: e.loss)
+
+
+def gain_by_window(before: Explanation, after: Explanation) -> FloatArray:
+    """Gain in 2 log likelihood of each window (W,)."""
+    return before.fitted.window_losses - after.fitted.window_losses
+
+
+def best_of(explanations: Sequence[Explanation]) -> Explanation:
+    return min(explanations, key=lambda e: e.loss)

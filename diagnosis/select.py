@@ -1,0 +1,223 @@
+"""Which mechanisms are missing: refits of the strongest, forward selection, backward check, rivals.
+
+The fit of the base may be stuck; a rival's optimum then shows it, and the base is refitted from
+there. An effect counts when its gain in 2 log likelihood passes the threshold and still does without
+the window that speaks loudest for it (and, with more than two recordings, without any one of them).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from diagnosis.candidates import Candidate
+from diagnosis.refit import Explanation, again, best_of, extend, from_other, gain_by_window, without
+from diagnosis.screen import Score, open_screen, score
+from models.base import FloatArray
+
+MISSING = 15.0
+"""Gain in 2 log likelihood that one more mechanism must bring."""
+GAP = 10.0
+"""Rivals: all within this gain of the best."""
+PER_SHAPE = 2.0
+"""What every unknown beyond the first costs a mechanism."""
+WORTH = 4.0
+"""Screen statistic under which a refit is not tried (the strongest FEWEST are tried all the same)."""
+FEWEST, MOST = 5, 16
+FIRST_POOL = 4
+SECOND_TRIES = 8
+MOST_EFFECTS = 3
+POOL_SHARE = 0.25
+"""Singles whose gain is this share of the best one's are tried as parts of a pair."""
+
+Progress = Callable[[str, float], None]
+
+
+@dataclass
+class Search:
+    """What has been found so far; it grows, so that a stopped search leaves its state."""
+
+    base: Explanation
+    candidates: tuple[Candidate, ...]
+    scores: list[Score] = field(default_factory=list)
+    singles: list[Explanation] = field(default_factory=list)
+    tried: list[Explanation] = field(default_factory=list)
+    best: Explanation | None = None
+
+    @property
+    def chosen(self) -> Explanation:
+        return self.base if self.best is None else self.best
+
+    def gain(self, explanation: Explanation) -> float:
+        """Gain over the base, less what shape parameters cost."""
+        return self.base.loss - adjusted(explanation)
+
+
+def adjusted(explanation: Explanation) -> float:
+    """Loss plus the price of parameters beyond the first of each mechanism."""
+    return explanation.loss + PER_SHAPE * (explanation.size - len(explanation.candidates))
+
+
+def survives(before: Explanation, after: Explanation, threshold: float = MISSING) -> bool:
+    """Whether the gain passes without its loudest window and, of more than two, any one recording."""
+    gains = gain_by_window(before, after)
+    total = before.loss - adjusted(after) + (adjusted(before) - before.loss)
+    loudest = float(gains.max(initial=0.0))
+    if total - loudest < 0.5 * threshold:
+        return False
+    measured = after.fitted.misfit.predictor.measured
+    if len(measured.recordings) > 2:
+        each = [float(gains[measured.recording_of == r].sum()) for r in range(len(measured.recordings))]
+        return total - max(each) >= 0.3 * threshold
+    return True
+
+
+def search(base: Explanation, candidates: Sequence[Candidate], progress: Progress) -> Iterator[Search]:
+    """Yields the growing search after each stage; the last one is the answer."""
+    found = Search(base, tuple(candidates))
+    yield found
+    progress("screening the mechanisms", 0.1)
+    _singles(found, progress)
+    yield found
+    if not found.singles:
+        return
+    best = min(found.singles, key=adjusted)
+    if found.gain(best) < MISSING or not survives(found.base, best):
+        return
+    found.best = best
+    yield found
+    _pairs(found, progress)
+    yield found
+    _more(found, progress)
+    yield found
+    _backward(found)
+    yield found
+
+
+def _refits(
+    explanation: Explanation, scores: Sequence[Score], fewest: int, most: int
+) -> list[Explanation]:
+    """The strongest of a screen, each from its starts."""
+    wanted = [s for k, s in enumerate(scores) if s.starts and (k < fewest or s.statistic >= WORTH)][:most]
+    return [best_of([extend(explanation, s.candidate, start) for start in s.starts]) for s in wanted]
+
+
+def _singles(found: Search, progress: Progress) -> None:
+    found.scores = score(open_screen(found.base.fitted), found.candidates)
+    wanted = [s for k, s in enumerate(found.scores) if s.starts and (k < FEWEST or s.statistic >= WORTH)][:MOST]
+    for k, entry in enumerate(wanted):
+        progress(f"refitting {entry.candidate.name}", 0.15 + 0.3 * k / len(wanted))
+        fits = [extend(found.base, entry.candidate, start) for start in entry.starts]
+        found.singles.append(best_of(fits))
+    found.singles.sort(key=adjusted)
+    if not found.singles or found.gain(found.singles[0]) < MISSING:
+        return
+    leader = found.singles[0]
+    restarted = from_other(found.base, leader)
+    if restarted.loss < found.base.loss - 1.0:
+        found.base = restarted
+    for k, single in enumerate(found.singles):
+        if single is not leader and found.gain(single) > 0.1 * found.gain(leader):
+            found.singles[k] = from_other(single, leader)
+    found.singles = sorted((again(e, 6) for e in found.singles), key=adjusted)
+    found.tried += found.singles
+
+
+def pool(found: Search) -> list[Explanation]:
+    """The best single of each of the strongest classes."""
+    best = found.gain(found.singles[0])
+    chosen: list[Explanation] = []
+    for single in found.singles:
+        if len(chosen) == FIRST_POOL or found.gain(single) < max(MISSING, POOL_SHARE * best):
+            break
+        if single.classes[0] not in {c.classes[0] for c in chosen}:
+            chosen.append(single)
+    return chosen
+
+
+def _pairs(found: Search, progress: Progress) -> None:
+    singles = pool(found)
+    pairs: list[Explanation] = []
+    for k, single in enumerate(singles):
+        progress(f"looking for a second effect beside {single.names[0]}", 0.5 + 0.25 * k / len(singles))
+        pairs += _extended(found, single)
+    if not pairs or found.best is None:
+        return
+    found.tried += pairs
+    pair = min(pairs, key=adjusted)
+    alone = best_of([e for e in found.singles if e.names[0] in pair.names] or [found.best])
+    if adjusted(found.best) - adjusted(pair) >= MISSING and survives(alone, pair):
+        found.best = again(pair, 6)
+
+
+def _extended(found: Search, explanation: Explanation) -> list[Explanation]:
+    """Refits with one more mechanism of another class."""
+    others = [c for c in found.candidates if c.effect_class not in explanation.classes]
+    scores = score(open_screen(explanation.fitted), others)
+    return _refits(explanation, scores, 2, SECOND_TRIES)
+
+
+def _more(found: Search, progress: Progress) -> None:
+    """A third effect, by the same rule."""
+    while found.best is not None and 2 <= len(found.best.candidates) < MOST_EFFECTS:
+        progress("looking for a further effect", 0.8)
+        further = _extended(found, found.best)
+        if not further:
+            return
+        found.tried += further
+        best = min(further, key=adjusted)
+        if adjusted(found.best) - adjusted(best) < MISSING or not survives(found.best, best):
+            return
+        found.best = best
+
+
+def _backward(found: Search) -> None:
+    """Drop what is no longer needed; try other mechanisms in the place of each effect."""
+    if found.best is None or len(found.best.candidates) < 2:
+        return
+    dropping = True
+    while dropping and len(found.best.candidates) > 1:
+        dropping = False
+        for candidate in found.best.candidates:
+            rest = without(found.best, candidate)
+            if adjusted(rest) - adjusted(found.best) < MISSING:
+                found.best, dropping = rest, True
+                break
+    if len(found.best.candidates) < 2:
+        return
+    for candidate in found.best.candidates:
+        rest = without(found.best, candidate)
+        found.tried += _extended(found, rest)
+    same = [e for e in found.tried if len(e.candidates) == len(found.best.candidates)]
+    better = min(same, key=adjusted)
+    if adjusted(better) < adjusted(found.best):
+        found.best = better
+
+
+def rivals(found: Search) -> list[tuple[Explanation, Candidate, float]]:
+    """Explanations with one effect exchanged, within the gap: (explanation, the other effect, gap)."""
+    if found.best is None:
+        return []
+    best, near = found.best, []
+    seen = set(best.names)
+    for other in sorted(found.tried, key=adjusted):
+        if len(other.candidates) != len(best.candidates):
+            continue
+        gap = adjusted(other) - adjusted(best)
+        new = [c for c in other.candidates if c.name not in best.names]
+        if gap > GAP or len(new) != 1 or new[0].name in seen:
+            continue
+        seen.add(new[0].name)
+        near.append((other, new[0], max(gap, 0.0)))
+    return near
+
+
+def evidence(found: Search) -> FloatArray:
+    """Gain of each effect over the best model without it (n_effects,)."""
+    if found.best is None:
+        return np.zeros(0)
+    if len(found.best.candidates) == 1:
+        return np.array([found.base.loss - found.best.loss])
+    return np.array([without(found.best, c).loss - found.best.loss for c in found.best.candidates])
