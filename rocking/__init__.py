@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from grids.motions import read_motion
     from grids.recordings import read_recording
-    from grids.specimen import read_specimen
     from rocking.catalogue import mechanisms, models
+    from rocking.instruments import read_specimen
     from rocking.simulation import simulate
     from study.open import open_study
     from study.run import run
@@ -28,7 +28,7 @@ _WHERE = {
     "open_study": "study.open",
     "read_motion": "grids.motions",
     "read_recording": "grids.recordings",
-    "read_specimen": "grids.specimen",
+    "read_specimen": "rocking.instruments",
     "run": "study.run",
     "simulate": "rocking.simulation",
 }

@@ -139,7 +139,13 @@ def _manifest(plan: Plan, setting: Setting, folder: Path, plan_folder: str, work
             )
         if plan.grid.size == old.cells:
             return old
-    most_cells = cells_per_block(plan, time_sample(plan, setting), workers)
+    try:
+        sample = time_sample(plan, setting)
+    except InputError:
+        raise
+    except Exception:
+        sample = None  # the blocks will say what fails
+    most_cells = cells_per_block(plan, sample, workers)
     new = Manifest.start(plan, most_cells, plan_folder) if old is None else old.extended(plan, most_cells)
     write_text(folder / "study.toml", plan.text)
     new.save(folder)

@@ -88,10 +88,12 @@ def _choose(plan: Plan, shape: tuple[int, ...], cells: int) -> np.ndarray:
     return np.asarray(np.ravel_multi_index(tuple(index.T), shape))
 
 
-def cells_per_block(plan: Plan, sample: Sample, workers: int) -> int:
+def cells_per_block(plan: Plan, sample: Sample | None, workers: int) -> int:
     """Cells that take about ``block_seconds``; fewer in a short study, so that every worker has some
-    blocks and progress shows, but none under a second."""
+    blocks and progress shows, but none under a second. Without a sample only the workers count."""
     size = plan.grid.size
+    if sample is None:
+        return ceil(size / (BLOCKS_PER_WORKER * workers))
     total = sample.seconds_per_cell * size
     blocks = max(total / plan.block_seconds, min(total / SHORTEST_BLOCK, BLOCKS_PER_WORKER * workers), 1.0)
     return ceil(size / blocks)

@@ -37,29 +37,35 @@ def run(
         MofNCompleteColumn(),
         TextColumn("{task.fields[rate]}  {task.fields[left]} left  {task.fields[failures]} failed blocks"),
     )
+    show = _Shower(Bar(*columns, console=Console(stderr=True)))
     try:
-        with Bar(*columns, console=Console(stderr=True)) as bar:
-            show = _Shower(bar)
-            report = run_study(plan, results=results, scheduler=scheduler, workers=workers, progress=show)
+        report = run_study(plan, results=results, scheduler=scheduler, workers=workers, progress=show)
     except KeyboardInterrupt:
         typer.echo("stopped; finished blocks are kept, run again to continue", err=True)
         raise typer.Exit(INTERRUPTED) from None
     except WorkerLost as error:
         typer.echo(f"error: {error}", err=True)
         raise typer.Exit(FAILURES) from None
+    finally:
+        show.stop()
     typer.echo(str(report))
     if report.failed:
         raise typer.Exit(FAILURES)
 
 
 class _Shower:
-    """Shows progress on a bar that begins with the first report."""
+    """Shows progress on a bar that appears with the first report, after the plan was accepted."""
 
     def __init__(self, bar: Bar) -> None:
         self.bar = bar
         self.task = bar.add_task("cells", total=None, rate="", left="?", failures=0)
 
+    def stop(self) -> None:
+        if self.bar.live.is_started:
+            self.bar.stop()
+
     def __call__(self, progress: Progress) -> None:
+        self.bar.start()
         left = progress.seconds_left
         self.bar.update(
             self.task,

@@ -1,0 +1,196 @@
+"""The command line as a user meets it: what it prints, writes and refuses, and its exit codes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from typer.testing import CliRunner, Result
+
+from rocking.commands import app
+from tests.study.plans import plan_text
+
+SPECIMEN = """
+title = "wall 3"
+model = "housner"
+[parameters]
+height = "1.8 m"
+width = "0.4 m"
+mass = 800
+[initial]
+rotation_1 = "4 deg"
+"""
+
+
+def rocking(*words: object) -> Result:
+    return CliRunner().invoke(app, [str(word) for word in words])
+
+
+@pytest.fixture(autouse=True)
+def current_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "120")
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a finished study."""
+    home = tmp_path_factory.mktemp("finished")
+    (home / "small.toml").write_text(plan_text())
+    result = rocking("run", home / "small.toml", "--results", home / "results")
+    assert result.exit_code == 0, result.output
+    assert "168 cells" in result.stdout
+    return home / "results" / "small"
+
+
+def test_plan_prints_what_it_costs() -> None:
+    Path("small.toml").write_text(plan_text())
+    result = rocking("plan", "small.toml")
+    assert result.exit_code == 0
+    for word in ("aspect_ratio", "top_mass", "168", "blocks", "cube", "memory a task", "time", "on one core"):
+        assert word in result.stdout
+    assert not Path("results").exists()
+
+
+def test_run_goes_on_without_a_flag(finished: Path) -> None:
+    plan = finished.parent.parent / "small.toml"
+    result = rocking("run", plan, "--results", finished.parent, "--scheduler", "synchronous")
+    assert result.exit_code == 0 and "0 computed" in result.stdout
+
+
+def test_status_check_export_and_map(finished: Path) -> None:
+    assert "168 of 168 cells (100.0%)" in rocking("status", finished).stdout
+    assert "equal bit for bit" in rocking("check", finished, "--cells", 20).stdout
+    result = rocking("export", finished, "--out", "cells.csv", "--select", "pga=0.3 g", "--output", "impacts")
+    assert result.exit_code == 0, result.output
+    lines = Path("cells.csv").read_text().splitlines()
+    assert len(lines) == 1 + 21 and "impacts" in lines[0] and "peak_rotation" not in lines[0]
+    result = rocking("map", finished, "--x", "aspect_ratio", "--y", "pga", "--out", "maps")
+    assert result.exit_code == 0, result.output
+    for name in ("overturning_map", "onset_map"):
+        assert (Path("maps") / f"{name}.png").stat().st_size > 5000
+
+
+def test_check_says_when_a_cube_is_wrong(finished: Path) -> None:
+    import shutil
+
+    import netCDF4
+
+    shutil.copytree(finished, "copy")
+    with netCDF4.Dataset("copy/cube.nc", "a") as dataset:
+        dataset["impacts"][:] = 77
+    result = rocking("check", "copy", "--cells", 10)
+    assert result.exit_code == 1 and "77" in result.stdout
+
+
+def test_a_failed_block_gives_exit_code_1(monkeypatch: pytest.MonkeyPatch) -> None:
+    import study.task
+    import study.timing
+
+    def failing(*_: object) -> None:
+        raise ZeroDivisionError("division by zero")
+
+    for room in (study.task, study.timing):
+        monkeypatch.setattr(room, "evaluate", failing)
+    Path("small.toml").write_text(plan_text())
+    result = rocking("run", "small.toml")
+    assert result.exit_code == 1
+    assert "blocks failed" in result.stdout
+    assert list(Path("results/small/failed").glob("*.txt"))
+    assert "ZeroDivisionError" in rocking("status", "results/small").stdout
+
+
+def test_simulate_writes_a_history_that_is_a_recording() -> None:
+    from rocking import read_recording
+
+    Path("wall.toml").write_text(SPECIMEN)
+    result = rocking(
+        "simulate", "wall.toml", "--motion", "ridgecrest_2019_clc", "--out", "h.nc", "--figure", "h.png"
+    )
+    assert result.exit_code == 0, result.output
+    assert Path("h.png").stat().st_size > 5000
+    with xr.open_dataset("h.nc") as history:
+        assert history["rotation_1"].dims == ("time",)
+        np.testing.assert_allclose(history["rotation_1"][0], np.radians(4.0))
+        words = history["event_kind"].attrs["flag_meanings"].split()
+        impacts = history["event_time"][history["event_kind"] == words.index("impact")]
+        assert impacts.size > 3
+        # between two samples around an impact the rotation changes sign or touches zero
+        at = np.searchsorted(history["time"].values, impacts.values[:3])
+        rotation = history["rotation_1"].values
+        assert np.all(rotation[at - 1] * rotation[at] <= 1e-6)
+    recording = read_recording("h.nc")
+    assert {"rotation_1", "base_acceleration_x"} <= set(recording.channels)
+    again = rocking("simulate", "wall.toml", "--motion", "h.nc", "--out", "again.nc")
+    assert again.exit_code == 0, again.output
+    with xr.open_dataset("h.nc") as one, xr.open_dataset("again.nc") as two:
+        n = one.sizes["time"]
+        np.testing.assert_allclose(two["rotation_1"][:n], one["rotation_1"], atol=1e-9)
+
+
+def test_simulate_free_rocking() -> None:
+    Path("wall.toml").write_text(SPECIMEN)
+    assert rocking("simulate", "wall.toml", "--duration", 2, "--out", "free.nc").exit_code == 0
+    with xr.open_dataset("free.nc") as history:
+        assert float(history["time"][-1]) == pytest.approx(2.0)
+        assert float(np.abs(history["rotation_1"]).max()) <= np.radians(4.0) * (1 + 1e-12)
+        assert np.all(history["base_acceleration_x"] == 0.0)
+
+
+def test_motions_lists_reads_draws_and_converts() -> None:
+    assert rocking("motions").stdout.count("PGA") == 3
+    result = rocking("motions", "ridgecrest_2019_clc", "--figure", "m.png", "--out", "m.nc")
+    assert result.exit_code == 0, result.output
+    assert "Arias intensity" in result.stdout and Path("m.png").stat().st_size > 5000
+    assert rocking("motions", "m.nc").exit_code == 0
+
+
+@pytest.mark.parametrize(
+    ("words", "part"),
+    [
+        (("run", "no.toml"), "no.toml"),
+        (("plan", "no.toml"), "no.toml"),
+        (("run", "small.toml", "--scheduler", "thread"), "did you mean 'threads'"),
+        (("run", "small.toml", "--workers", "0"), "give 1 or more"),
+        (("status", "results/none"), "holds no study"),
+        (("check", "results/none"), "run the study first"),
+        (("map", "results/none"), "run the study first"),
+        (("export", "results/none", "--out", "a.csv"), "run the study first"),
+        (("simulate", "wall.toml", "--out", "h.nc"), "no motion and no duration"),
+        (("simulate", "wall.toml", "--out", "h.csv", "--duration", "1"), "end the name in .nc"),
+        (("simulate", "wall.toml", "--out", "h.nc", "--duration", "-1"), "give a positive time"),
+        (
+            ("simulate", "wall.toml", "--out", "h.nc", "--duration", "1", "--integrator", "lane"),
+            "did you mean",
+        ),
+        (("simulate", "wall.toml", "--out", "h.nc", "--motion", "ridgecrest_2019_cl"), "did you mean"),
+        (("motions", "no_such_record"), "no_such_record"),
+        (("motions", "--figure", "m.png"), "name one"),
+        (("motions", "ridgecrest_2019_clc", "--figure", "m.xyz"), "end the name in"),
+    ],
+)
+def test_mistakes_are_one_sentence_and_exit_code_2(words: tuple[str, ...], part: str) -> None:
+    Path("small.toml").write_text(plan_text())
+    Path("wall.toml").write_text(SPECIMEN)
+    result = rocking(*words)
+    assert result.exit_code == 2, result.output
+    assert part in result.stderr
+    assert result.stderr.startswith("error: ") and result.stderr.count("\n") == 1
+    assert sorted(path.name for path in Path().iterdir()) == ["small.toml", "wall.toml"]
+
+
+@pytest.mark.parametrize(
+    ("entry", "part"),
+    [
+        ("pga", "write axis=value"),
+        ("pgs=1", "did you mean 'pga'"),
+        ("pga=0.3 kg", "kg"),
+        ("top_mass=heavy", "top_mass"),
+    ],
+)
+def test_bad_selections(finished: Path, entry: str, part: str) -> None:
+    result = rocking("export", finished, "--out", "a.csv", "--select", entry)
+    assert result.exit_code == 2 and part in result.stderr
+    assert not Path("a.csv").exists()
