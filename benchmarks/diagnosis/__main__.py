@@ -1,0 +1,48 @@
+"""python -m benchmarks.diagnosis: concealed cases of our own, or those of a folder, made, answered, scored."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from benchmarks.diagnosis.suite import EVALUATION_SEED
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.diagnosis", description=__doc__)
+    parser.add_argument(
+        "what", nargs="?", choices=("own", "concealed", "methods"), default="own",
+        help="cases of our own (default), the block's of a folder, or what other methods say of our own",
+    )  # fmt: skip
+    parser.add_argument("--out", type=Path, default=Path("results/bench"), help="folder of the results")
+    parser.add_argument("--jobs", type=int, default=2, help="processes")
+    parser.add_argument("--minutes", type=float, default=600.0, help="begin no case after this time")
+    parser.add_argument("--run", default="answers", help="name of this run: another one answers anew")
+    parser.add_argument("--cases", type=int, help="only the first so many of our own cases")
+    parser.add_argument("--seed", type=int, default=EVALUATION_SEED, help="of our own cases")
+    parser.add_argument("--half", choices=("odd", "even"), help="which cases of the folder")
+    parser.add_argument("--folder", type=Path, help="concealed cases (default: those of the data folder)")
+    given = parser.parse_args()
+    common = {"jobs": given.jobs, "minutes": given.minutes, "run": given.run, "say": say}
+    if given.what == "concealed":
+        if given.half is None:
+            parser.error("concealed needs --half odd or --half even")
+        from benchmarks.diagnosis.concealed import concealed
+
+        concealed(given.folder, given.half, given.out, **common)
+    elif given.what == "methods":
+        from benchmarks.diagnosis.methods import compare
+
+        compare(given.out, seed=given.seed, cases=given.cases, **common)
+    else:
+        from benchmarks.diagnosis.bench import bench
+
+        bench(given.out, seed=given.seed, cases=given.cases, **common)
+
+
+def say(text: str) -> None:
+    print(text, flush=True)
+
+
+if __name__ == "__main__":
+    main()

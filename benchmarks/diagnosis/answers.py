@@ -1,0 +1,91 @@
+"""The answer of the diagnosis to one case folder, as plain data, written before any key is opened."""
+
+from __future__ import annotations
+
+import hashlib
+import time
+import traceback
+from collections.abc import Callable
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from benchmarks.diagnosis.files import read_json, write_json
+from diagnosis.result import Diagnosis, Effect
+
+ROOMS = ("models", "grids/recordings", "diagnosis")
+ROOT = Path(__file__).resolve().parents[2]
+NOTHING: dict[str, Any] = {"effects": [], "rivals": [], "constancy": [], "located": [], "base": {}}
+
+Answering = Callable[[Path], dict[str, Any]]
+
+
+def fingerprint() -> str:
+    """sha256 (12 digits) of the sources that an answer depends on."""
+    digest = hashlib.sha256()
+    for room in ROOMS:
+        for path in sorted((ROOT / room).rglob("*.py")):
+            digest.update(path.relative_to(ROOT).as_posix().encode())
+            digest.update(path.read_bytes())
+    return digest.hexdigest()[:12]
+
+
+def diagnosed(folder: Path) -> dict[str, Any]:
+    """What `diagnosis.diagnose` says of a case folder."""
+    from diagnosis import diagnose
+    from diagnosis.sensors import SENSORS
+    from grids.recordings import read_recording
+    from grids.specimen import read_specimen
+
+    specimen = read_specimen(folder / "specimen.toml", sensors=SENSORS)
+    training = [read_recording(folder / f"train_{k}.nc") for k in (1, 2)]
+    return plain(diagnose(specimen, training, [read_recording(folder / "test_1.nc")]))
+
+
+def plain(found: Diagnosis) -> dict[str, Any]:
+    """The parts of a diagnosis that are scored or read afterwards."""
+
+    def effect(one: Effect) -> dict[str, Any]:
+        entry = asdict(one)
+        entry["class"] = entry.pop("effect_class")
+        return entry
+
+    return {
+        "verdict": found.verdict,
+        "statement": found.statement,
+        "effects": [effect(one) for one in found.effects],
+        "rivals": [
+            {"name": rival.name, "class": rival.effect_class, "evidence_gap": rival.evidence_gap}
+            for rival in found.rivals
+        ],
+        "constancy": [asdict(one) for one in found.constancy],
+        "located": [asdict(one) for one in found.located],
+        "base": {name: asdict(value) for name, value in found.base.items()},
+        "fit": {"train": asdict(found.train), "holdout": None if found.holdout is None else asdict(found.holdout)},
+        "p_value": found.p_value,
+        "null_band": found.null_band,
+        "screen": [asdict(one) for one in found.screen],
+    }
+
+
+def answer(folder: Path, path: Path, answering: Answering = diagnosed) -> dict[str, Any]:
+    """The answer to ``folder``, from ``path`` if it is there already; else found, timed and written.
+
+    A failure is an answer too: verdict ``failed`` and its traceback.
+    """
+    if path.is_file():
+        return read_json(path)
+    begin = time.perf_counter()
+    try:
+        found = answering(folder)
+    except Exception:
+        found = {"verdict": "failed", "statement": traceback.format_exc(), **NOTHING}
+    seconds = time.perf_counter() - begin
+    whole = {**found, "seconds": seconds, "sources": fingerprint()}
+    write_json(path, whole)
+    return whole
+
+
+def sha256(path: Path) -> str:
+    """Of a file."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()

@@ -1,0 +1,308 @@
+"""Concealed cases of one block, by seed: what is asked for, and how it is made.
+
+A case is a folder in the format of the concealed recordings (specimen.toml, train_1.nc, train_2.nc,
+test_1.nc) and, elsewhere, its key. The truth of a catalogue effect comes from the model's plain reference
+(`models.housner.reference`, DOP853); that of a law outside the catalogue from `truth`, a program of its
+own. Sizes follow `size`. A motion is scaled so that the block without the effect reaches .1-.5 alpha
+and impacts more than 8 times without overturning; with the effect it must still rock.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmarks.diagnosis import instruments, shakings, size, specimens, truth
+from benchmarks.diagnosis.effects import CATALOGUE, Hidden
+from benchmarks.diagnosis.open_laws import LAWS, Law
+from benchmarks.diagnosis.suite import Wish
+from models.housner import reference
+from models.housner.block import build
+from models.housner.lanes import run as lanes
+from models.shaking import Shaking
+
+FloatArray = NDArray[np.float64]
+
+RECORDINGS = ("train_1", "train_2", "test_1")
+LOW_PASS = {100.0: 14.0, 200.0: 22.0, 250.0: 25.0, 500.0: 30.0}
+"""Motion's corner (Hz) by sampling frequency (Hz)."""
+PEAK = (0.1, 0.5)
+PEAK_WITH_EFFECT = (0.06, 0.65)
+FEWEST_IMPACTS = 8
+SCALES = np.geomspace(1.05, 6.0, 40)
+"""PGA over the onset acceleration that are tried."""
+ATTEMPTS = 60
+SHARES = np.geomspace(1.0 / 100.0, 1.0, 60)
+"""Shares of the way to the end of a range that are tried for nominal size."""
+WITHIN = 0.1
+"""Of nominal size, in its logarithm."""
+MOST_BEYOND = 6
+"""Sizes in a row beyond one and a half times the nominal one, after which the search ends."""
+WEAKEST = 3.0
+"""Size at the end of the range under which the draw is given up."""
+TAIL = 1.0
+VERTICAL_SHARE = 0.2
+"""Of the cases in which the base also shakes vertically, and the specimen says so."""
+
+
+@dataclass(frozen=True)
+class Track:
+    """One recording in the making: the true base motion, and the largest rotation (rad) without effects."""
+
+    motion: str
+    shaking: Shaking
+    plain_peak: float
+
+
+@dataclass(frozen=True)
+class Effects:
+    """What is hidden: the block's mechanisms, the instruments' faults, or a law outside the catalogue."""
+
+    mechanisms: Mapping[str, float]
+    sensors: Mapping[str, Mapping[str, float]]
+    law: truth.Applied | None = None
+    active: tuple[tuple[float, float], ...] = ()
+
+
+@dataclass(frozen=True)
+class Case:
+    """A finished case: recorded channels by recording and name, and the key."""
+
+    specimen: str
+    sampling_hz: float
+    channels: Mapping[str, Mapping[str, FloatArray]]
+    key: Mapping[str, Any]
+
+
+class Unsuitable(Exception):
+    """A draw whose block hardly rocks, or overturns: another one is drawn."""
+
+
+def make(wish: Wish, seed: int) -> Case:
+    """The case, the same for the same wish and seed. Raises RuntimeError when no draw was suitable."""
+    rng = np.random.default_rng([seed, wish.number])
+    for _ in range(ATTEMPTS):
+        try:
+            return _Draft(wish, rng).case(seed)
+        except Unsuitable:
+            continue
+    raise RuntimeError(f"{wish.label} ({wish.kind} {wish.names}): no suitable draw in {ATTEMPTS}")
+
+
+class _Draft:
+    """One attempt at a case."""
+
+    def __init__(self, wish: Wish, rng: np.random.Generator) -> None:
+        self.wish, self.rng = wish, rng
+        self.block = specimens.draw(rng)
+        self.sampling_hz = float(rng.choice(list(LOW_PASS)))
+        left_out = "vertical_acceleration" in wish.names
+        told = wish.kind != "open" and not left_out and rng.uniform() < VERTICAL_SHARE
+        self.vertical_channel, self.vertical_told = left_out or told, told
+        self.tracks = [self._track() for _ in RECORDINGS]
+        if "saturation" in wish.names:  # its level refers to the first training recording, the largest one
+            self.tracks[:2] = sorted(self.tracks[:2], key=lambda track: -track.plain_peak)
+
+    def _track(self) -> Track:
+        """A motion at a scale, drawn among those at which the block without effects rocks well."""
+        name, unit = shakings.draw(self.rng, LOW_PASS[self.sampling_hz])
+        true = self.block.true
+        onset = specimens.GRAVITY * true["width"] / true["height"]
+        if not self.vertical_channel:
+            unit = Shaking(unit.time_step, unit.horizontal)
+        block = build(true, self.vertical_told, SCALES.size)
+        found = lanes.outputs(block, lanes.run(block, unit, onset * SCALES, tail=TAIL).result)
+        ratio = found["peak_rotation_ratio"]
+        good = (ratio > PEAK[0]) & (ratio < PEAK[1]) & (found["impacts"] > FEWEST_IMPACTS) & ~found["overturned"]
+        if not np.any(good):
+            raise Unsuitable
+        chosen = int(self.rng.choice(np.flatnonzero(good)))
+        shaking = shakings.scaled(unit, onset * float(SCALES[chosen]), self.vertical_channel)
+        return Track(name, shaking, float(found["peak_rotation"][chosen]))
+
+    def case(self, seed: int) -> Case:
+        peak = self.tracks[0].plain_peak
+        effects, told, weak = self._effects(peak)
+        motions = [self._truth(k, effects, exact=True) for k in range(len(RECORDINGS))]
+        alpha = math.atan2(self.block.true["width"], self.block.true["height"])
+        channels, notes = {}, {}
+        scale = self._sensor_peak(effects, peak, motions)
+        for k, name in enumerate(RECORDINGS):
+            rotation, rate, impacts = motions[k]
+            if not self._rocks(rotation, impacts):
+                raise Unsuitable
+            largest = float(np.max(np.abs(rotation))) / alpha
+            strength = self._strength(k, effects, rotation[:: shakings.FINE], rate[:: shakings.FINE], scale)
+            channels[name], noise = self._recorded(k, effects, rotation, scale)
+            notes[name] = {
+                "motion": self.tracks[k].motion, "pga": self.tracks[k].shaking.pga, "peak_over_alpha": largest,
+                "impacts": impacts, "noise_std": noise, "strength": strength,
+            }  # fmt: skip
+            if effects.active:
+                notes[name]["active_interval"] = effects.active[k]
+        key = {
+            "kind": self.wish.kind, "model": "housner", "seed": seed, "number": self.wish.number,
+            "noise_fraction_of_peak": self.wish.noise, "relative_size": self.wish.relative_size,
+            "sampling_hz": self.sampling_hz, "weak": weak, "effects": told, "over_peak": scale,
+            "true_parameters": dict(self.block.true), "recordings": notes,
+        }  # fmt: skip
+        return Case(self._specimen(), self.sampling_hz, channels, key)
+
+    def _specimen(self) -> str:
+        lines = [f'title = "{self.wish.label}"', 'model = "housner"', "", "[parameters]"]
+        lines += [f"{name} = {value!r}" for name, value in self.block.nominal.items()]
+        lines += ["", "[tolerance]", *(f"{name} = {value!r}" for name, value in specimens.TOLERANCE.items())]
+        if self.vertical_told:
+            lines += ["", "[motion]", "vertical = true"]
+        return "\n".join(lines) + "\n"
+
+    # what is hidden
+
+    def _effects(self, peak: float) -> tuple[Effects, list[dict[str, Any]], bool]:
+        """The effects at their sizes, as the key tells them, and whether one could not reach its size."""
+        if self.wish.kind == "open":
+            return self._open(LAWS[self.wish.names[0]], peak)
+        both, told, weak = Effects({}, {}), [], False
+        for name in self.wish.names:
+            row = CATALOGUE[name]
+            end = float(self.rng.choice(row.ends))
+            shapes = row.shapes(self.rng, peak)
+
+            def with_value(value: float, row: Hidden = row, shapes: dict[str, float] = shapes) -> Effects:
+                numbers = {row.parameter: value, **shapes}
+                if row.sensor:
+                    return Effects({}, {row.name: numbers})
+                return Effects({f"{row.name}.{k}": v for k, v in numbers.items()}, {})
+
+            share, reached = self._nominal(lambda x, row=row, end=end, w=with_value: w(row.at(x, end)), peak)
+            value = row.at(share, end)
+            if self.wish.relative_size == 0.5:
+                value = row.half(value)
+            alone = with_value(value)
+            both = Effects({**both.mechanisms, **alone.mechanisms}, {**both.sensors, **alone.sensors})
+            told.append(
+                {"name": name, "class": row.effect_class, "parameters": {row.parameter: value, **shapes},
+                 "primary": row.parameter}
+            )  # fmt: skip
+            weak = weak or not reached
+        return both, told, weak
+
+    def _open(self, law: Law, peak: float) -> tuple[Effects, list[dict[str, Any]], bool]:
+        end = law.end * (float(self.rng.choice([-1.0, 1.0])) if law.either else 1.0)
+        numbers = law.draw(self.rng)
+        active = []
+        for track in self.tracks:
+            length = track.shaking.duration
+            start = self.rng.uniform(0.25, 0.5)
+            active.append((start * length, (start + self.rng.uniform(0.15, 0.3)) * length))
+
+        def with_size(share: float) -> Effects:
+            return Effects({}, {}, truth.Applied(law, share * end, numbers, active[0], peak), tuple(active))
+
+        share, reached = self._nominal(with_size, peak)
+        share *= self.wish.relative_size
+        return with_size(share), [{"name": law.name, "class": "open", "parameters": {"size": share * end}}], not reached
+
+    def _nominal(self, effects_at: Callable[[float], Effects], peak: float) -> tuple[float, bool]:
+        """Share (0-1) of the way to the end of the range that has nominal size; 1 and False if none has.
+
+        Rocking from rest is chaotic: the peak, hence the noise, jumps with the parameter. So shares are
+        tried in turn, and the one that comes closest while the block still rocks is taken.
+        """
+        best, miss, last, beyond = 1.0, math.inf, 0.0, 0
+        for share in SHARES:
+            effects = effects_at(share)
+            motions = [self._truth(k, effects, exact=False) for k in range(2)]
+            if not all(self._rocks(rotation, impacts) for rotation, _, impacts in motions):
+                continue
+            last = max(self._strength(k, effects, motions[k][0], motions[k][1], peak) for k in range(2))
+            if abs(math.log(max(last, 1e-9) / size.NOMINAL)) < miss:
+                best, miss = share, abs(math.log(max(last, 1e-9) / size.NOMINAL))
+            beyond = beyond + 1 if last > 1.5 * size.NOMINAL else 0
+            if beyond == MOST_BEYOND:
+                break
+        if miss < WITHIN:
+            return best, True
+        if share == SHARES[-1] and WEAKEST < last < size.NOMINAL:
+            return 1.0, False
+        raise Unsuitable
+
+    def _rocks(self, rotation: FloatArray, impacts: int) -> bool:
+        alpha = math.atan2(self.block.true["width"], self.block.true["height"])
+        ratio = float(np.max(np.abs(rotation))) / alpha
+        return PEAK_WITH_EFFECT[0] < ratio < PEAK_WITH_EFFECT[1] and impacts > FEWEST_IMPACTS
+
+    # what moves and what is measured
+
+    def _truth(self, k: int, effects: Effects, exact: bool) -> tuple[FloatArray, FloatArray, int]:
+        """Rotation, rate and impacts: on the fine grid by the slow route, else on that of the shaking."""
+        shaking = self.tracks[k].shaking
+        true = self.block.true
+        if effects.law is not None:
+            law = replace(effects.law, active=effects.active[k])
+            fine = shakings.fine(shaking.horizontal)
+            step = shaking.time_step / shakings.FINE
+            ran = truth.run(true["width"], true["height"], specimens.GRAVITY, fine, step, law)
+            every = 1 if exact else shakings.FINE
+            return ran.rotation[::every], ran.rate[::every], ran.impacts
+        block = build({**true, **effects.mechanisms}, self.vertical_told)
+        if exact:
+            fine_shaking = Shaking(
+                shaking.time_step / shakings.FINE,
+                shakings.fine(shaking.horizontal),
+                None if shaking.vertical is None else shakings.fine(shaking.vertical),
+            )
+            found = reference.run(block, fine_shaking, tail=0.0, rtol=1e-8)
+            if found.outputs["overturned"]:
+                raise Unsuitable
+            return found.rotation, found.rate, int(found.outputs["impacts"])
+        ran_lanes = lanes.run(block, shaking, np.ones(1), samples=shaking.horizontal.size)
+        assert ran_lanes.rotation is not None and ran_lanes.rate is not None
+        impacts = int(lanes.outputs(block, ran_lanes.result)["impacts"][0])
+        return ran_lanes.rotation[0], ran_lanes.rate[0], impacts
+
+    def _sensor_peak(self, effects: Effects, plain: float, motions: list[tuple[FloatArray, FloatArray, int]]) -> float:
+        """Largest rotation of the first recording before its sensors: without a mechanism, the plain model's."""
+        return plain if not effects.mechanisms else float(np.max(np.abs(motions[0][0])))
+
+    def _strength(self, k: int, effects: Effects, rotation: FloatArray, rate: FloatArray, peak: float) -> float:
+        shaking = self.tracks[k].shaking
+        step = shaking.time_step
+        recorded = instruments.response(rotation, shaking.horizontal, step, effects.sensors, peak)
+        noise = self.wish.noise * float(np.max(np.abs(recorded)))
+        measured = Shaking(
+            step,
+            instruments.base(shaking.horizontal, effects.sensors),
+            shaking.vertical if self.vertical_told else None,
+        )
+        windows = size.windows(rotation, rate, step, noise)
+        return size.over_noise(self.block.true, specimens.TOLERANCE, measured, recorded, windows, noise)
+
+    def _recorded(
+        self, k: int, effects: Effects, rotation: FloatArray, peak: float
+    ) -> tuple[dict[str, FloatArray], dict[str, float]]:
+        """Channels as written to the file, and the standard deviation of the noise in each."""
+        shaking, rng = self.tracks[k].shaking, self.rng
+        step = shaking.time_step / shakings.FINE
+        base = shakings.fine(shaking.horizontal)
+        signals = {
+            "base_acceleration_x": instruments.base(base, effects.sensors),
+            "rotation_1": instruments.response(rotation, base, step, effects.sensors, peak),
+        }
+        if shaking.vertical is not None:
+            signals["base_acceleration_z"] = shakings.fine(shaking.vertical)
+        fraction = float(rng.uniform(0.002, 0.005))
+        channels, noise = {}, {}
+        for name, signal in signals.items():
+            sampled = instruments.logged(signal, step, self.sampling_hz, shaking.duration)
+            if name == "rotation_1":
+                sampled = instruments.clip(sampled, effects.sensors, peak)
+            share = self.wish.noise if name == "rotation_1" else fraction
+            noise[name] = share * float(np.max(np.abs(signal)))
+            channels[name] = sampled + noise[name] * rng.normal(size=sampled.size)
+        return channels, noise

@@ -1,0 +1,133 @@
+"""What a run of the benchmark writes: results/bench/*.json, a table, the confusion matrix."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from benchmarks.diagnosis.scores import Scored, confusion, score
+from benchmarks.diagnosis.suite import GROUPS
+
+FIGURES = (
+    "false_alarm", "class_first", "rivals_cover", "rivals_mean", "pairs_both", "interval_coverage",
+    "open_recall", "open_false", "seconds_median",
+)  # fmt: skip
+MORE = (
+    "mismatch_alarm", "detected", "class_first_detected", "class_first_weak", "rivals_cover_detected", "pairs_one",
+    "base_coverage", "open_detected", "seconds_most",
+)  # fmt: skip
+
+
+def value(figure: Any) -> float | None:
+    """The number of a figure, None where there was no case."""
+    number = figure["value"] if isinstance(figure, Mapping) else figure
+    return None if math.isnan(number) else float(number)
+
+
+def summary(cases: Sequence[Scored]) -> dict[str, Any]:
+    """Plain numbers by name, and the intervals of the shares under ``intervals``."""
+    figures = score(cases)
+    numbers = {name: value(figures[name]) for name in (*FIGURES, *MORE)}
+    shares = {name: figure for name, figure in figures.items() if isinstance(figure, Mapping) and "of" in figure}
+    intervals = {
+        name: {**share, "value": value(share)} for name, share in shares.items()
+    }
+    return {"cases": figures["cases"], "by_kind": figures["by_kind"], **numbers, "intervals": intervals}
+
+
+def grouped(cases: Sequence[Scored]) -> dict[str, Any]:
+    """The figures at 1 % noise and nominal size, the others by group, and by model."""
+
+    def group(noise: float, relative_size: float) -> list[Scored]:
+        return [
+            case for case in cases
+            if (case.key["noise_fraction_of_peak"], case.key["relative_size"]) == (noise, relative_size)
+        ]  # fmt: skip
+
+    def figures(chosen: Sequence[Scored]) -> dict[str, Any]:
+        first, half, fine = ([c for c in group(g.noise, g.relative_size) if c in chosen] for g in GROUPS)
+        with_half = summary(half)
+        intervals = with_half.pop("intervals")
+        return {
+            **summary(first),
+            "half_size_3_percent": {
+                **{f"{name}_half": number for name, number in with_half.items()},
+                "intervals": {f"{name}_half": share for name, share in intervals.items()},
+            },
+            "nominal_size_half_percent": summary(fine),
+        }
+
+    models = sorted({str(case.key["model"]) for case in cases})
+    return {
+        **figures(cases),
+        "by_model": {model: figures([c for c in cases if c.key["model"] == model]) for model in models},
+        "sources": dict(Counter(str(case.answer.get("sources")) for case in cases)),
+        "failed": [case.case for case in cases if case.verdict == "failed"],
+    }
+
+
+def table(figures: Mapping[str, Any], title: str) -> str:
+    """The shares with their intervals, a line each."""
+    lines = [f"{title}: {figures['cases']} cases {figures['by_kind']}"]
+    for name in (*FIGURES, *MORE):
+        share = figures["intervals"].get(name)
+        if share is None:
+            number = figures[name]
+            lines.append(f"  {name:24s} {'-' if number is None else f'{number:8.2f}'}")
+        elif share["of"]:
+            lines.append(
+                f"  {name:24s} {share['value']:8.3f}  [{share['low95']:.3f}, {share['high95']:.3f}]"
+                f"  {share['count']} of {share['of']}"
+            )
+    return "\n".join(lines)
+
+
+def wrong(cases: Sequence[Scored]) -> str:
+    """A line for every case that was not answered rightly: what was hidden and what was said."""
+    lines = []
+    for case in cases:
+        said = " + ".join(effect["name"] for effect in case.answer["effects"]) or "-"
+        rivals = ", ".join(f"{r['name']} ({r['evidence_gap']:.0f})" for r in case.answer["rivals"])
+        hidden = " + ".join(effect["name"] for effect in case.key["effects"]) or "-"
+        right = {
+            "null": not case.detected,
+            "mismatch": not case.detected,
+            "single": case.first_class in case.truth and case.verdict != "not_in_library",
+            "pair": set(case.truth) <= {effect["class"] for effect in case.answer["effects"]},
+            "open": case.verdict == "not_in_library",
+        }[case.kind]
+        if not right:
+            hidden = hidden if case.kind != "open" else "outside the catalogue"
+            lines.append(
+                f"{case.case} {case.kind}{' (weak)' if case.weak else ''}: {hidden}; said {case.verdict}: {said}"
+                + (f"; rivals {rivals}" if rivals else "")
+            )
+    return "\n".join(lines)
+
+
+def draw_confusion(cases: Sequence[Scored], path: Path) -> None:
+    """The confusion matrix of nulls, singles and open cases as a figure."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    rows, columns, counts = confusion(cases)
+    figure, axes = pyplot.subplots(figsize=(0.35 * len(columns) + 3.5, 0.3 * len(rows) + 2.5))
+    axes.imshow(counts, cmap="Blues", aspect="auto")
+    for i, row in enumerate(counts):
+        for j, count in enumerate(row):
+            if count:
+                axes.text(j, i, str(count), ha="center", va="center", fontsize=7,
+                          color="white" if count > counts.max() / 2 else "black")  # fmt: skip
+    axes.set_xticks(range(len(columns)), columns, rotation=90, fontsize=7)
+    axes.set_yticks(range(len(rows)), rows, fontsize=7)
+    axes.set_xlabel("class named first")
+    axes.set_ylabel("class hidden")
+    figure.tight_layout()
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(path, dpi=150)
+    pyplot.close(figure)

@@ -1,0 +1,78 @@
+"""Runs cases on several processes within a time, and goes on where it stopped."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import time
+from collections.abc import Callable, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from pathlib import Path
+
+from benchmarks.diagnosis.answers import Answering, answer, diagnosed
+from benchmarks.diagnosis.cases import make
+from benchmarks.diagnosis.files import read_json, write_case
+from benchmarks.diagnosis.scores import Scored
+from benchmarks.diagnosis.suite import Wish
+
+
+def one_thread() -> None:
+    """Called first in every process: a case may use one core."""
+    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"):
+        os.environ[name] = "1"
+
+
+def run_case(wish: Wish, seed: int, cases: Path, answers: Path, answering: Answering = diagnosed) -> str:
+    """Make the case unless it is there, answer it unless that is done; the answer's verdict."""
+    folder, key = cases / wish.label, cases / "keys" / f"{wish.label}.json"
+    if not key.is_file():
+        write_case(make(wish, seed), folder, key)
+    return str(answer(folder, answers / f"{wish.label}.json", answering)["verdict"])
+
+
+def run_all(
+    wishes: Sequence[Wish],
+    seed: int,
+    cases: Path,
+    answers: Path,
+    *,
+    jobs: int,
+    minutes: float,
+    say: Callable[[str], None],
+    answering: Answering = diagnosed,
+) -> None:
+    """Run the cases in order; none is begun after ``minutes``. ``answering`` must be a module's function."""
+    end = time.monotonic() + 60.0 * minutes
+    waiting = [w for w in wishes if not (answers / f"{w.label}.json").is_file()]
+    say(f"{len(wishes) - len(waiting)} of {len(wishes)} cases were answered before")
+    context = multiprocessing.get_context("spawn")
+    one_thread()
+    with ProcessPoolExecutor(jobs, mp_context=context) as pool:
+        running: dict[Future[str], Wish] = {}
+        while waiting or running:
+            while waiting and len(running) < jobs and time.monotonic() < end:
+                wish = waiting.pop(0)
+                running[pool.submit(run_case, wish, seed, cases, answers, answering)] = wish
+            if not running:
+                return
+            for done in wait(running, return_when=FIRST_COMPLETED).done:
+                wish = running.pop(done)
+                say(f"{wish.label} {wish.kind} {' + '.join(wish.names)}: {_outcome(done)}")
+
+
+def _outcome(done: Future[str]) -> str:
+    try:
+        return done.result()
+    except RuntimeError as error:
+        return f"not made: {error}"
+
+
+def answered(wishes: Sequence[Wish], cases: Path, answers: Path) -> list[tuple[Wish, Scored]]:
+    """Every case that has an answer, beside its key."""
+    found = []
+    for wish in wishes:
+        path = answers / f"{wish.label}.json"
+        if path.is_file():
+            key = read_json(cases / "keys" / f"{wish.label}.json")
+            found.append((wish, Scored(wish.label, read_json(path), key)))
+    return found

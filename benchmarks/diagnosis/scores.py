@@ -1,0 +1,176 @@
+"""From answers and keys to figures, every share with its exact (Clopper-Pearson) interval."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+from scipy.stats import binomtest
+
+Answer = Mapping[str, Any]
+Key = Mapping[str, Any]
+SILENT = ("null", "mismatch")
+"""Kinds in which nothing is missing."""
+
+
+@dataclass(frozen=True)
+class Scored:
+    """An answer beside its key."""
+
+    case: str
+    answer: Answer
+    key: Key
+
+    @property
+    def kind(self) -> str:
+        return str(self.key["kind"])
+
+    @property
+    def verdict(self) -> str:
+        return str(self.answer["verdict"])
+
+    @property
+    def detected(self) -> bool:
+        return self.verdict != "nothing_missing"
+
+    @property
+    def weak(self) -> bool:
+        return bool(self.key.get("weak", False))
+
+    @property
+    def truth(self) -> list[str]:
+        """Classes of the hidden effects."""
+        return [effect["class"] for effect in self.key["effects"]]
+
+    @property
+    def first_class(self) -> str:
+        """Class of the strongest effect named; the verdict where none is."""
+        effects = self.answer["effects"]
+        return str(effects[0]["class"]) if self.detected and effects else self.verdict
+
+    @property
+    def named(self) -> set[str]:
+        """Classes of all effects and rivals of the answer."""
+        return {entry["class"] for entry in [*self.answer["effects"], *self.answer["rivals"]]}
+
+    @property
+    def names(self) -> set[str]:
+        """Names of all effects and rivals of the answer."""
+        return {entry["name"] for entry in [*self.answer["effects"], *self.answer["rivals"]]}
+
+
+@dataclass(frozen=True)
+class Share:
+    """``count`` of ``of``, and the exact 95 % interval of the probability; nan of none."""
+
+    count: int
+    of: int
+    value: float
+    low95: float
+    high95: float
+
+    @classmethod
+    def of_flags(cls, flags: Iterable[bool]) -> Share:
+        found = list(flags)
+        if not found:
+            return cls(0, 0, float("nan"), 0.0, 1.0)
+        interval = binomtest(sum(found), len(found)).proportion_ci(0.95, "exact")
+        return cls(sum(found), len(found), sum(found) / len(found), float(interval.low), float(interval.high))
+
+
+def covered(case: Scored) -> list[bool]:
+    """For every hidden parameter of an effect named rightly: whether its interval holds the truth.
+
+    Parameters over the peak are compared in rad. A parameter that only shapes an effect counts too.
+    """
+    flags = []
+    hidden = {effect["name"]: effect for effect in case.key["effects"]}
+    for effect in case.answer["effects"]:
+        if effect["name"] not in hidden:
+            continue
+        found = effect["parameters"]
+        for name, value in hidden[effect["name"]]["parameters"].items():
+            if name not in found:
+                continue
+            factor = 1.0
+            if name.endswith("_over_peak") and "reference_peak" in found and "over_peak" in case.key:
+                factor = case.key["over_peak"] / found["reference_peak"]["estimate"]
+            flags.append(found[name]["low95"] <= value * factor <= found[name]["high95"])
+    return flags
+
+
+def base_covered(case: Scored) -> list[bool]:
+    """Whether the intervals of the calibrated base parameters hold the truth."""
+    truth = case.key["true_parameters"]
+    return [v["low95"] <= truth[n] <= v["high95"] for n, v in case.answer["base"].items() if n in truth]
+
+
+def score(cases: Sequence[Scored]) -> dict[str, Any]:
+    """All figures of one set of cases: shares with intervals, means, and times."""
+
+    def of(*kinds: str) -> list[Scored]:
+        return [case for case in cases if case.kind in kinds]
+
+    nulls, singles, pairs, opens = of(*SILENT), of("single"), of("pair"), of("open")
+    full = [case for case in singles if not case.weak]
+    seen = [case for case in full if case.detected]
+    inside = [*nulls, *singles, *pairs]
+
+    def share(chosen: Sequence[Scored], test: Callable[[Scored], bool]) -> dict[str, Any]:
+        return asdict(Share.of_flags(test(case) for case in chosen))
+
+    def first_right(case: Scored) -> bool:
+        return case.first_class in case.truth
+
+    def among(case: Scored) -> bool:
+        return case.detected and bool(set(case.truth) & case.named)
+
+    seconds = [float(case.answer["seconds"]) for case in cases if "seconds" in case.answer]
+    return {
+        "cases": len(cases),
+        "by_kind": dict(Counter(case.kind for case in cases)),
+        "false_alarm": share(of("null"), lambda case: case.detected),
+        "mismatch_alarm": share(of("mismatch"), lambda case: case.detected),
+        "detected": share(full, lambda case: case.detected),
+        "class_first": share(full, first_right),
+        "class_first_detected": share(seen, first_right),
+        "class_first_weak": share([case for case in singles if case.weak], first_right),
+        "rivals_cover": share(full, among),
+        "rivals_cover_detected": share(seen, among),
+        "rivals_mean": float(np.mean([len(case.names) for case in seen])) if seen else float("nan"),
+        "pairs_both": share(
+            pairs, lambda case: set(case.truth) <= {effect["class"] for effect in case.answer["effects"]}
+        ),
+        "pairs_one": share(pairs, among),
+        "interval_coverage": asdict(Share.of_flags(flag for case in cases for flag in covered(case))),
+        "base_coverage": asdict(Share.of_flags(flag for case in nulls for flag in base_covered(case))),
+        "open_recall": share(opens, lambda case: case.verdict == "not_in_library"),
+        "open_detected": share(opens, lambda case: case.detected),
+        "open_false": share(inside, lambda case: case.verdict == "not_in_library"),
+        "seconds_median": float(np.median(seconds)) if seconds else float("nan"),
+        "seconds_most": max(seconds, default=float("nan")),
+    }
+
+
+def confusion(cases: Sequence[Scored]) -> tuple[list[str], list[str], np.ndarray]:
+    """Truth (rows: null, classes, open) against the first class named (columns): counts."""
+
+    def true_label(case: Scored) -> str:
+        return {"single": case.truth[0] if case.truth else "", "open": "not_in_library"}.get(
+            case.kind, "nothing_missing"
+        )
+
+    def said(case: Scored) -> str:
+        return case.verdict if case.verdict == "not_in_library" else case.first_class
+
+    chosen = [case for case in cases if case.kind != "pair"]
+    tail = ["not_in_library", "nothing_missing"]
+    rows = sorted({true_label(c) for c in chosen} - set(tail)) + tail
+    columns = sorted(({said(c) for c in chosen} | set(rows)) - set(tail)) + tail
+    counts = np.zeros((len(rows), len(columns)), int)
+    for case in chosen:
+        counts[rows.index(true_label(case)), columns.index(said(case))] += 1
+    return rows, columns, counts

@@ -1,0 +1,81 @@
+"""Which cases are asked for, and in which order: any beginning of the list is a fair share of all."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from benchmarks.diagnosis.effects import CATALOGUE
+from benchmarks.diagnosis.open_laws import LAWS
+
+Kind = Literal["null", "single", "pair", "open"]
+
+DEVELOPMENT_SEED = 20_000
+"""Seeds of cases looked at while developing; the evaluation's own is never one of them."""
+EVALUATION_SEED = 7_310_926
+
+
+@dataclass(frozen=True)
+class Wish:
+    """What case ``number`` is to hold: catalogue names (or one law's), at which noise and size."""
+
+    number: int
+    kind: Kind
+    names: tuple[str, ...]
+    noise: float
+    relative_size: float
+
+    @property
+    def label(self) -> str:
+        return f"case_{self.number:04d}"
+
+
+@dataclass(frozen=True)
+class Group:
+    """Cases of one noise (share of the peak) and one size over the nominal, by kind."""
+
+    noise: float
+    relative_size: float
+    counts: dict[Kind, int]
+
+
+GROUPS = (
+    Group(0.01, 1.0, {"null": 100, "single": 135, "pair": 40, "open": 40}),
+    Group(0.03, 0.5, {"null": 30, "single": 81, "pair": 10, "open": 13}),
+    Group(0.005, 1.0, {"null": 15, "single": 27}),
+)
+
+
+def suite(seed: int) -> list[Wish]:
+    """All cases, numbered in the order in which they are run; ``seed`` draws the pairs and the order."""
+    rng = np.random.default_rng(seed)
+    placed: list[tuple[float, Kind, tuple[str, ...], Group]] = []
+    for group in GROUPS:
+        for kind, count in group.counts.items():
+            for k, names in enumerate(_names(kind, count, rng)):
+                placed.append(((k + float(rng.uniform())) / count, kind, names, group))
+    placed.sort(key=lambda item: item[0])
+    return [
+        Wish(number, kind, names, group.noise, group.relative_size)
+        for number, (_, kind, names, group) in enumerate(placed)
+    ]
+
+
+def _names(kind: Kind, count: int, rng: np.random.Generator) -> list[tuple[str, ...]]:
+    """Every effect as often as every other one; pairs of two classes at random."""
+    if kind == "null":
+        return [()] * count
+    if kind == "pair":
+        pairs: list[tuple[str, ...]] = []
+        while len(pairs) < count:
+            first, second = rng.choice(list(CATALOGUE), 2, replace=False).tolist()
+            if CATALOGUE[first].effect_class != CATALOGUE[second].effect_class:
+                pairs.append((first, second))
+        return pairs
+    known = list(CATALOGUE) if kind == "single" else list(LAWS)
+    drawn: list[tuple[str, ...]] = []
+    while len(drawn) < count:
+        drawn += [(known[i],) for i in rng.permutation(len(known))]
+    return drawn[:count]
