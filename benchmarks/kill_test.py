@@ -71,9 +71,7 @@ def local_cluster() -> Iterator[str]:
         script = Path(folder) / "cluster.py"
         script.write_text(CLUSTER)
         pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL}
-        with subprocess.Popen(
-            [sys.executable, str(script)], text=True, env=_environment(), **pipes
-        ) as process:
+        with subprocess.Popen([sys.executable, str(script)], text=True, env=_environment(), **pipes) as process:
             try:
                 yield process.stdout.readline().strip()
             finally:
@@ -103,9 +101,7 @@ def finish(plan: Path, results: Path, scheduler: str) -> None:
             raise RuntimeError(f"run on {scheduler} ended with {process.returncode}: {complaint.decode()}")
 
 
-def kill_study(
-    plan: Path, results: Path, scheduler: str, kills: int, draw: random.Random, finding: Finding
-) -> None:
+def kill_study(plan: Path, results: Path, scheduler: str, kills: int, draw: random.Random, finding: Finding) -> None:
     """Start and kill runs of one study until it is finished or ``kills`` is reached, then finish it."""
     folder = results / "killed"
     shutil.rmtree(folder, ignore_errors=True)
@@ -114,10 +110,11 @@ def kill_study(
     while finding.kills < kills:
         with start_run(plan, results, scheduler) as process:
             before = _count(folder)
-            # imports and the timed sample take a while; kill between the start of the blocks and some blocks on
-            while process.poll() is None and _count(folder) == before and not _working(folder):
-                time.sleep(0.005)
-            time.sleep(draw.uniform(0.0, 0.5))
+            # imports and the timed sample take a while: wait for some new blocks, then strike
+            wanted = before + draw.randint(0, 3)
+            while process.poll() is None and _count(folder) < wanted:
+                time.sleep(0.002)
+            time.sleep(draw.uniform(0.0, 0.2))
             ended = process.poll() is not None
             if not ended:
                 _kill(process, draw)
@@ -131,11 +128,6 @@ def kill_study(
 
 def _count(folder: Path) -> int:
     return len(BlockStore(folder).finished())
-
-
-def _working(folder: Path) -> bool:
-    """Whether a block is being written at this moment."""
-    return any(folder.glob("blocks/.*.tmp"))
 
 
 def _kill(process: subprocess.Popen[bytes], draw: random.Random) -> None:

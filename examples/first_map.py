@@ -10,6 +10,4 @@ print(cube.rocking.overturning_map(x="aspect_ratio", y="top_mass"))
 
 from study.figures import plot_overturning_map, save_figure  # noqa: E402
 
-save_figure(
-    lambda: plot_overturning_map(cube, x="aspect_ratio", y="top_mass"), report.folder / "first_map.png"
-)
+save_figure(lambda: plot_overturning_map(cube, x="aspect_ratio", y="top_mass"), report.folder / "first_map.png")

@@ -71,9 +71,7 @@ def _shaking(specimen: Specimen, motion: Motion | Recording | str | Path, compon
         motion = read_recording(motion)
     if isinstance(motion, Recording):
         if component is not None:
-            raise InputError(
-                f"recording {motion.name}: its base motion has one component: leave '{component}' out"
-            )
+            raise InputError(f"recording {motion.name}: its base motion has one component: leave '{component}' out")
         if vertical is None:
             vertical = model.vertical_by_default and "base_acceleration_z" in motion.channels
         return motion.shaking(vertical, vertical_acts=acts)

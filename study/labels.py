@@ -119,9 +119,7 @@ def _constant(values: NDArray[Any], axis: int) -> bool:
     return bool(np.all((values == first) | (np.isnan(values) & np.isnan(first))))
 
 
-def _derive(
-    plan: Plan, model: Model, axes: list[Axis], positions: list[NDArray[np.intp]]
-) -> dict[str, NDArray[Any]]:
+def _derive(plan: Plan, model: Model, axes: list[Axis], positions: list[NDArray[np.intp]]) -> dict[str, NDArray[Any]]:
     """Derived constants over the product of some positions of each axis."""
     shape = tuple(p.size for p in positions)
     index = np.array(list(product(*positions)), dtype=np.intp).reshape(-1, len(axes))

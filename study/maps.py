@@ -50,9 +50,7 @@ def slices(cube: xr.Dataset, output: str, x: str, at: Mapping[str, Any] | None =
     if x not in chosen.dims:
         raise InputError(f"'{x}' is the abscissa: leave it out of the selection")
     if len(others) > 1:
-        raise InputError(
-            f"{', '.join(others)} are open: select all but one, for instance {_example(cube, others)}"
-        )
+        raise InputError(f"{', '.join(others)} are open: select all but one, for instance {_example(cube, others)}")
     place = _place(select(cube, at), (x, *others))
     curves = chosen.squeeze([d for d in chosen.dims if d not in (x, *others)]).transpose(*others, x)
     return curves.assign_attrs(selection=place)

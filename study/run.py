@@ -188,15 +188,11 @@ class _Counter:
         if self.report is not None:
             seconds = time.perf_counter() - self.begun
             self.report(
-                Progress(
-                    self.cells, self.done, self.reused, self.blocks, self.blocks_done, self.failures, seconds
-                )
+                Progress(self.cells, self.done, self.reused, self.blocks, self.blocks_done, self.failures, seconds)
             )
 
 
-def _compute(
-    tasks: Iterable[Task], store: BlockStore, scheduler: str, workers: int | None, counter: _Counter
-) -> None:
+def _compute(tasks: Iterable[Task], store: BlockStore, scheduler: str, workers: int | None, counter: _Counter) -> None:
     """Run every task; a worker that dies without an answer fails its block only where that is known."""
     queue: Iterator[Task] = iter(tasks)
     running: dict[Future[Outcome], Task] = {}

@@ -93,8 +93,7 @@ def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
         client: Any = Client(address, timeout=CONNECT_SECONDS, set_as_default=False)  # type: ignore[no-untyped-call]
     except (OSError, ValueError) as error:
         raise InputError(
-            f"no dask cluster answers at '{address}' ({type(error).__name__}): "
-            "start it, or correct the address"
+            f"no dask cluster answers at '{address}' ({type(error).__name__}): start it, or correct the address"
         ) from None
     with client:
         threads = sum(client.nthreads().values())

@@ -31,9 +31,7 @@ class State:
             f"failed blocks: {len(self.failures)}",
             "cube.nc is written" if self.cube else "no cube yet: run the plan to go on",
         ]
-        lines += [
-            f"  failed/{key}.txt: {text.strip().splitlines()[-1]}" for key, text in self.failures.items()
-        ]
+        lines += [f"  failed/{key}.txt: {text.strip().splitlines()[-1]}" for key, text in self.failures.items()]
         return "\n".join(lines)
 
 

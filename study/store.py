@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from grids.netcdf_lock import NETCDF_LOCK
+from models.errors import InputError
 from study.provenance import attribute
 
 COMPRESSION: dict[str, Any] = {"compression": "zlib", "complevel": 1, "shuffle": True}
@@ -58,7 +59,7 @@ def _write_utf8(path: Path, text: str) -> None:
     path.write_text(text, encoding="utf-8")
 
 
-class DamagedBlock(RuntimeError):
+class DamagedBlock(InputError):
     """A block's file cannot be read (a failing disk, a half copied folder)."""
 
 

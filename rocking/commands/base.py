@@ -19,12 +19,12 @@ INTERRUPTED = 130
 
 
 class Commands(TyperGroup):
-    """The group of commands, which turns an InputError into a sentence on stderr."""
+    """The group of commands, which turns a mistake (or a folder nobody may write to) into a sentence."""
 
     def invoke(self, ctx: Any) -> Any:
         try:
             return super().invoke(ctx)
-        except InputError as error:
+        except (InputError, PermissionError) as error:
             typer.echo(f"error: {error}", err=True)
             raise typer.Exit(USER_ERROR) from None
 

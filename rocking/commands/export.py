@@ -13,12 +13,8 @@ from rocking.commands.base import read_selection
 def export(
     folder: Annotated[Path, typer.Argument(help="A study's folder, results/NAME.")],
     out: Annotated[Path, typer.Option(help="File to write, .csv or .nc.")],
-    output: Annotated[
-        list[str] | None, typer.Option(help="Output to keep (may be repeated; default: all).")
-    ] = None,
-    select: Annotated[
-        list[str] | None, typer.Option(help="AXIS=VALUE, nearest value (may be repeated).")
-    ] = None,
+    output: Annotated[list[str] | None, typer.Option(help="Output to keep (may be repeated; default: all).")] = None,
+    select: Annotated[list[str] | None, typer.Option(help="AXIS=VALUE, nearest value (may be repeated).")] = None,
 ) -> None:
     """Write all cells of a cube, or some of them, as a table or a smaller cube."""
     from study.export import export as export_cube

@@ -28,9 +28,7 @@ def plot_onset_map(
         threshold = select(cube, at)["onset_acceleration"].squeeze()
         if threshold.dims == (x,):
             low, high = ax.get_ylim()
-            line = ax.plot(
-                positions(cube[x])[0], shown(threshold)[0], "--", color=COLOURS[6], label=THRESHOLD
-            )
+            line = ax.plot(positions(cube[x])[0], shown(threshold)[0], "--", color=COLOURS[6], label=THRESHOLD)
             ax.set_ylim(low, high)
             legend = ax.get_legend()
             handles = [handle for handle in (legend.legend_handles if legend else []) if handle is not None]

@@ -44,13 +44,11 @@ def plot_slices(
     names, few = _names(curves), len(rows) <= FEW
     for k, (row, gone) in enumerate(zip(rows, flags, strict=True)):
         colour = COLOURS[k] if few else colormaps[MAP_COLOURS](k / (len(rows) - 1))
-        ax.plot(
-            across[order], row, f"{MARKERS[k] if few else ''}-", color=colour, markersize=3, label=names[k]
-        )
+        ax.plot(across[order], row, f"{MARKERS[k] if few else ''}-", color=colour, markersize=3, label=names[k])
         if output not in ALWAYS and gone.any():
             border = np.ones(int(gone.sum()))
-            place = {"transform": ax.get_xaxis_transform(), "clip_on": False}
-            ax.plot(across[order][gone], border, "x", color=colour, **place)
+            crosses = ax.plot(across[order][gone], border, "x", color=colour, clip_on=False)
+            crosses[0].set_transform(ax.get_xaxis_transform())
     if output not in ALWAYS and fallen.any():
         ax.plot([], [], "x", color="0.3", label="overturned")
     handles, texts = ax.get_legend_handles_labels()
@@ -62,8 +60,8 @@ def plot_slices(
         handles, texts = handles[len(rows) :], texts[len(rows) :]
     if texts and (curves.ndim > 1 or len(texts) > 1):
         title = label(curves[str(curves.dims[0])]) if few and curves.ndim > 1 else None
-        place = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.0)} if few else {"loc": "upper left"}
-        ax.legend(handles, texts, title=title, fontsize="small", frameon=False, **place)
+        corner = (1.01, 1.0) if few else (0.0, 1.0)
+        ax.legend(handles, texts, title=title, fontsize="small", loc="upper left", bbox_to_anchor=corner)
     set_words(ax, "x", words)
     ax.set_xlabel(label(curves[x]))
     ax.set_ylabel(label(curves))

@@ -106,9 +106,7 @@ def test_simulate_writes_a_history_that_is_a_recording() -> None:
     from rocking import read_recording
 
     Path("wall.toml").write_text(SPECIMEN)
-    result = rocking(
-        "simulate", "wall.toml", "--motion", "ridgecrest_2019_clc", "--out", "h.nc", "--figure", "h.png"
-    )
+    result = rocking("simulate", "wall.toml", "--motion", "ridgecrest_2019_clc", "--out", "h.nc", "--figure", "h.png")
     assert result.exit_code == 0, result.output
     assert Path("h.png").stat().st_size > 5000
     with xr.open_dataset("h.nc") as history:

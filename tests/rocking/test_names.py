@@ -22,9 +22,7 @@ def test_import_takes_less_than_half_a_second() -> None:
     )
     times, loaded = [], set()
     for _ in range(3):
-        found = subprocess.run(
-            [sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT
-        )
+        found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
         first, second = found.stdout.split("\n")[:2]
         times.append(float(first))
         loaded |= set(second.split())

@@ -68,9 +68,7 @@ def test_blocks_and_schedulers_leave_no_trace(
     assert_identical(open_study(report.folder), reference)
 
 
-def test_a_finished_study_computes_nothing_again(
-    tmp_path: Path, block_size: Size, counted: list[int]
-) -> None:
+def test_a_finished_study_computes_nothing_again(tmp_path: Path, block_size: Size, counted: list[int]) -> None:
     block_size(50)
     first = run(small_plan(), results=tmp_path)
     before = open_study(first.folder)
