@@ -1,0 +1,21 @@
+"""Figures of a diagnosis: functions that take its parts, draw, and return Axes; none calls show()."""
+
+from __future__ import annotations
+
+from diagnosis.figures.before_after import plot_before_after
+from diagnosis.figures.fits import plot_fits
+from diagnosis.figures.parameters import plot_parameters
+from diagnosis.figures.phase_plane import plot_phase_plane
+from diagnosis.figures.raster import plot_raster
+from diagnosis.figures.recording import plot_recording
+from diagnosis.figures.suspects import plot_suspects
+
+__all__ = [
+    "plot_before_after",
+    "plot_fits",
+    "plot_parameters",
+    "plot_phase_plane",
+    "plot_raster",
+    "plot_recording",
+    "plot_suspects",
+]

@@ -1,0 +1,44 @@
+"""The answer of a diagnosis in files: JSON, page, figures, specimen, curves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from diagnosis.report.extended import extend
+from diagnosis.report.fit_file import write_fit
+from diagnosis.report.json_file import as_mapping, diagnosis_json
+from diagnosis.result import Diagnosis
+from grids.recordings import Recording
+from grids.specimen import Specimen
+
+__all__ = ["as_mapping", "diagnosis_json", "extend", "write_answer"]
+
+
+def write_answer(
+    diagnosis: Diagnosis,
+    specimen: Specimen,
+    train: Sequence[Recording],
+    holdout: Sequence[Recording],
+    folder: str | Path,
+) -> list[Path]:
+    """Write ``diagnosis.json``, ``extended.toml``, ``fit.nc``, ``report.html`` and ``figures/`` to ``folder``.
+
+    ``specimen``, ``train`` and ``holdout`` are those the diagnosis was made of. Returns the paths,
+    the figures as their folder. The small files come first, so that a full disk leaves the answer.
+    """
+    from diagnosis.report.page import report_page
+    from diagnosis.report.pictures import pictures, write_figures
+    from grids.write_specimen import specimen_text
+    from study.store import write_text
+
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    paths = [folder / name for name in ("diagnosis.json", "extended.toml", "report.html")]
+    write_text(paths[0], diagnosis_json(diagnosis))
+    write_text(paths[1], specimen_text(extend(specimen, diagnosis)))
+    fit = write_fit(diagnosis, folder / "fit.nc")
+    drawn = pictures(diagnosis, specimen, (*train, *holdout))
+    write_text(paths[2], report_page(diagnosis, specimen, train, holdout, drawn))
+    write_figures(drawn, folder / "figures")
+    return [*paths, fit, folder / "figures"]

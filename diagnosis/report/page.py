@@ -1,0 +1,152 @@
+"""``report.html``: one page that opens anywhere, without a network."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+import models
+from diagnosis.report import words
+from diagnosis.report.suspects import Suspect, suspect_of
+from diagnosis.result import Diagnosis, Rival, Windows
+from grids.recordings import CHANNELS, Recording, noise_levels
+from grids.specimen import Specimen
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+    from diagnosis.report.svg import Picture
+
+HEADLINES = {
+    "missing": "Something is missing from the model: {names}",
+    "cannot_tell_apart": "Something is missing, and these recordings cannot tell what",
+    "not_in_library": "Something is missing that is not in the library",
+    "nothing_missing": "Nothing is missing from the model",
+}
+
+
+def report_page(
+    diagnosis: Diagnosis,
+    specimen: Specimen,
+    train: Sequence[Recording],
+    holdout: Sequence[Recording],
+    drawn: Mapping[str, Picture],
+) -> str:
+    """The page as text, with the pictures ``drawn``. What it says of the fit stands in ``diagnosis``."""
+    model = models.get(specimen.model)
+    effects = [suspect_of(effect.name) for effect in diagnosis.effects]
+    return _environment().get_template("report.html.j2").render(
+        d=diagnosis,
+        specimen=specimen,
+        model=model,
+        headline=HEADLINES[diagnosis.verdict].format(names=words.listed(words.plain(e.name) for e in effects)),
+        effects=[
+            (effect, entry, entry.says({name: value.estimate for name, value in effect.parameters.items()}))
+            for effect, entry in zip(diagnosis.effects, effects, strict=True)
+        ],
+        rivals=_rivals(diagnosis),
+        recordings=[_read_row(r, held) for held, rs in ((False, train), (True, holdout)) for r in rs],
+        horizons=_horizons(diagnosis),
+        windows=_window_counts(diagnosis.windows),
+        parameters=_parameters(diagnosis, specimen),
+        pictures={name: picture.page() for name, picture in drawn.items()},
+        held_out_names={trace.recording for trace in diagnosis.traces if trace.held_out},
+    )
+
+
+@functools.cache
+def _environment() -> Environment:
+    from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
+
+    environment = Environment(
+        loader=PackageLoader("diagnosis.report", "templates"),
+        autoescape=select_autoescape(["html", "j2"]),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {
+        "plain": words.plain, "channel": words.channel, "where": words.where, "number": words.number,
+        "percent": words.percent, "chance": words.chance, "unit": words.unit_text, "listed": words.listed,
+        "estimate": words.estimate_texts, "stated": words.stated,
+    }  # fmt: skip
+    return environment
+
+
+def _read_row(recording: Recording, held_out: bool) -> dict[str, Any]:
+    channels = []
+    for name, noises in noise_levels(recording).items():
+        unit = CHANNELS[name].unit
+        peak = float(np.max(np.abs(recording.channels[name])))
+        sigma = float(np.median([noise.sigma for noise in noises]))
+        channels.append(
+            {
+                "name": name,
+                "peak": words.quantity(peak, unit),
+                "noise": words.quantity(sigma, unit, 2) if sigma > 0.0 else "none",
+                "share": words.percent(sigma / peak) if peak > 0.0 else "–",
+                "white": all(noise.white for noise in noises),
+            }
+        )
+    return {"recording": recording, "held_out": held_out, "channels": channels}
+
+
+def _rivals(diagnosis: Diagnosis) -> list[tuple[Rival, Suspect, str]]:
+    """Each rival with the library's entry and what it would mean, from its own refit where there is one."""
+    refitted = {tried.name: tried.estimate or {} for tried in diagnosis.screen}
+    found = []
+    for rival in diagnosis.rivals:
+        entry = suspect_of(rival.name)
+        found.append((rival, entry, entry.says(refitted.get(rival.name, {}))))
+    return found
+
+
+def _window_counts(windows: Sequence[Windows]) -> dict[str, int]:
+    """Windows in all, and those where the models miss the recording by more than the noise explains."""
+    from diagnosis.figures.levels import BORDERS
+
+    return {
+        "all": sum(strip.before.size for strip in windows),
+        "before": sum(int((strip.before >= BORDERS[0]).sum()) for strip in windows),
+        "after": sum(int((strip.after >= BORDERS[0]).sum()) for strip in windows),
+    }
+
+
+def _horizons(diagnosis: Diagnosis) -> list[tuple[str, str, str]]:
+    return [
+        (name, f"{words.number(before, 2)} s", f"{words.number(after, 2)} s")
+        for name, (before, after) in diagnosis.prediction_horizon.items()
+    ]
+
+
+def _parameters(diagnosis: Diagnosis, specimen: Specimen) -> list[Mapping[str, Any]]:
+    """Effects first, then the base: estimate and interval as texts, what was stated, bounds hit."""
+    rows: list[Mapping[str, Any]] = []
+    for effect in diagnosis.effects:
+        declared = suspect_of(effect.name).meanings
+        for name, value in effect.parameters.items():
+            rows.append(
+                {
+                    "name": f"{words.plain(effect.name)}: {words.plain(name)}",
+                    "meaning": declared.get(name, ""),
+                    "value": value,
+                    "stated": "",
+                    "new": True,
+                }
+            )
+    meanings = {p.name: p.meaning for p in models.get(specimen.model).parameters}
+    for name, value in diagnosis.base.items():
+        stated = ""
+        if name in specimen.parameters:
+            stated = words.stated(specimen.parameters[name], value.unit)
+            if name in specimen.tolerance:
+                stated += f" ± {words.stated(100 * specimen.tolerance[name], '1')} %"
+        elif name in specimen.calibrate:
+            low, high = specimen.calibrate[name]
+            stated = f"{words.stated(low, '1')} to {words.stated(high, value.unit)}"
+        meaning = meanings.get(name, "")
+        rows.append({"name": words.plain(name), "meaning": meaning, "value": value, "stated": stated, "new": False})
+    return rows

@@ -1,0 +1,60 @@
+"""The figures of a report, by name: for the page and as files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from pathlib import Path
+
+from diagnosis.figures import (
+    plot_before_after,
+    plot_fits,
+    plot_parameters,
+    plot_phase_plane,
+    plot_raster,
+    plot_recording,
+    plot_suspects,
+)
+from diagnosis.report.svg import Draw, Picture, picture
+from diagnosis.result import Diagnosis
+from grids.recordings import Recording
+from grids.specimen import Specimen
+from study.store import write_text
+
+
+def drawings(diagnosis: Diagnosis, specimen: Specimen, recordings: Sequence[Recording]) -> dict[str, Draw]:
+    """What can be drawn of this diagnosis: functions that take ``width`` (inches) and ``palette``, by name."""
+    found: dict[str, Draw] = {}
+    for recording in recordings:
+        found[f"read_{recording.name}"] = partial(plot_recording, recording)
+    if diagnosis.windows:
+        found["raster"] = partial(plot_raster, diagnosis.windows, diagnosis.located)
+    rotations = [t.channel for t in diagnosis.traces if t.channel.startswith("rotation_")]
+    if rotations:
+        found["phase_plane"] = partial(
+            plot_phase_plane, diagnosis.traces, diagnosis.windows, channel=rotations[0]
+        )
+    if diagnosis.screen:
+        named = {effect.name for effect in diagnosis.effects}
+        found["suspects"] = partial(plot_suspects, diagnosis.screen, diagnosis.null_band, named=named)
+    found["fits"] = partial(plot_fits, diagnosis.train, diagnosis.holdout)
+    for trace in diagnosis.traces:
+        found[f"{trace.recording}_{trace.channel}"] = partial(plot_before_after, trace)
+    if any(specimen.parameters.get(name) for name in diagnosis.base):
+        found["parameters"] = partial(
+            plot_parameters, diagnosis.base, specimen.parameters, specimen.tolerance
+        )
+    return found
+
+
+def pictures(
+    diagnosis: Diagnosis, specimen: Specimen, recordings: Sequence[Recording]
+) -> dict[str, Picture]:
+    """Every drawing, by name."""
+    return {name: picture(draw, name) for name, draw in drawings(diagnosis, specimen, recordings).items()}
+
+
+def write_figures(drawn: Mapping[str, Picture], folder: Path) -> None:
+    """Every drawing as SVG, for a paper or a slide."""
+    for name, figure in drawn.items():
+        write_text(folder / f"{name}.svg", figure.file())

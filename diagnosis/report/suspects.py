@@ -1,0 +1,46 @@
+"""What the library says of a mechanism, in words for the report."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from models.base import Mechanism
+
+OTHER_BASES = {
+    "second_body": "a second body moves: the two-body model explains the recordings, the single block does not",
+    "compliant_base": "the base is compliant: the model on an elastic layer explains the recordings",
+}
+
+
+@dataclass(frozen=True)
+class Suspect:
+    """A mechanism or another base model: equation, where its residual lives, meanings of parameters."""
+
+    name: str
+    sentence: str
+    equation: str = ""
+    signature: str = ""
+    source: str = ""
+    meanings: Mapping[str, str] = field(default_factory=dict)
+    nulls: Mapping[str, float] = field(default_factory=dict)
+
+    def says(self, estimates: Mapping[str, float]) -> str:
+        """The library's sentence with the estimates in place; shapes that were not fitted at their default.
+
+        The equation where there is nothing to put in place.
+        """
+        values = {**self.nulls, **{name.rpartition(".")[2]: value for name, value in estimates.items()}}
+        return self.sentence.format(**values) if estimates else self.equation or self.sentence
+
+
+def suspect_of(name: str) -> Suspect:
+    """The entry of the library, or of another base model, by name."""
+    from diagnosis.sensors import SENSORS
+    from models.mechanisms import MECHANISMS
+
+    found: Mechanism | None = {**MECHANISMS, **SENSORS}.get(name)
+    if found is None:
+        return Suspect(name, OTHER_BASES.get(name, name.replace("_", " ")))
+    meanings = {p.name: p.meaning for p in found.parameters}
+    return Suspect(name, found.sentence, found.equation, found.signature, found.source, meanings, found.nulls)

@@ -1,0 +1,91 @@
+"""What a diagnosis writes: JSON by the design's schema, a specimen that reads back, every curve."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import get_args
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from diagnosis.report import diagnosis_json, extend
+from diagnosis.result import Effect, Estimate, Verdict
+from rocking import read_specimen
+from tests.diagnosis.report.example import diagnosis, recordings, specimen
+from tests.diagnosis.report.schema import AnswerFile
+
+
+@pytest.mark.parametrize("verdict", get_args(Verdict))
+def test_json_is_what_the_design_says(verdict: Verdict) -> None:
+    found = diagnosis(verdict)
+    read = AnswerFile.model_validate_json(diagnosis_json(found))
+    assert read.verdict == verdict and read.statement == found.statement
+    assert [e.name for e in read.effects] == [e.name for e in found.effects]
+    assert [place.share for place in read.located] == [place.share for place in found.located]
+
+
+def test_json_knows_no_infinity_and_takes_numpy_numbers() -> None:
+    bend = Effect(
+        "wall_flexibility", "wall_flexibility", {"first_frequency": Estimate(40.0, 12.0, np.inf, "Hz")},
+        np.float64(31.0), np.float64(0.002),
+    )  # fmt: skip
+    next_experiment = {"amplitude": np.float32(0.5), "records": np.array([1, 2])}
+    found = replace(diagnosis(), effects=(bend,), holdout=None, next_experiment=next_experiment, finished=False)
+    text = diagnosis_json(found)
+    read = AnswerFile.model_validate_json(text)
+    assert read.effects[0].parameters["first_frequency"].high95 is None
+    assert read.fit.holdout is None and read.next_experiment == {"amplitude": 0.5, "records": [1, 2]}
+    assert json.loads(text)["provenance"]["finished"] is False
+
+
+def test_written_json_is_the_same(answer: Path) -> None:
+    assert (answer / "diagnosis.json").read_text("utf-8") == diagnosis_json(diagnosis())
+
+
+def test_extended_specimen_reads_back_with_the_effect_on(answer: Path) -> None:
+    found = read_specimen(answer / "extended.toml")
+    assert found.mechanisms == {"pivot_inset": {"inset_over_half_width": 0.1203}}
+    assert found.parameters["width"] == 0.2501
+    assert found.tolerance == specimen().tolerance
+
+
+def test_extended_specimen_holds_what_was_calibrated() -> None:
+    ranges = {"restitution": (0.8, 1.0), "viscous_damping.rate": (0.0, 0.5)}
+    unsure = replace(specimen(), calibrate=ranges)
+    fitted = {"restitution": Estimate(0.91, 0.9, 0.92, "1"), "viscous_damping.rate": Estimate(0.1, 0.0, 0.2, "s-1")}
+    found = extend(unsure, replace(diagnosis(), base=fitted))
+    assert found.calibrate == {} and found.parameters["restitution"] == 0.91
+    assert found.mechanisms["viscous_damping"] == {"rate": 0.1}
+
+
+def test_nothing_missing_leaves_the_specimen_its_name_and_mechanisms() -> None:
+    found = extend(specimen(), diagnosis("nothing_missing"))
+    assert found.title == specimen().title and found.mechanisms == {}
+
+
+def test_fit_file_holds_every_curve_and_number(answer: Path) -> None:
+    found = diagnosis()
+    for trace, strip in zip(found.traces, found.windows, strict=True):
+        with xr.open_dataset(answer / "fit.nc", group=trace.recording) as group:
+            for kind in ("measured", "before", "after"):
+                np.testing.assert_array_equal(group[f"rotation_1_{kind}"].values, getattr(trace, kind))
+                assert group[f"rotation_1_{kind}"].attrs["units"] == "rad"
+            np.testing.assert_array_equal(group["window_rotation_1_after"].values, strip.after)
+            assert group.attrs["held_out"] == str(trace.held_out).lower()
+            assert ("rotation_1_from_rest_after" in group) == trace.held_out
+    with xr.open_dataset(answer / "fit.nc") as root:
+        inset = root.sel(parameter="pivot_inset.inset_over_half_width")
+        assert [float(inset[k]) for k in ("low95", "estimate", "high95")] == [0.1161, 0.1203, 0.1247]
+        assert float(root["gain"].sel(suspect="pivot_inset")) == 1480.0
+        assert np.isnan(float(root["gain"].sel(suspect="clock")))
+        assert root.attrs["statement"] == found.statement
+
+
+def test_figures_stand_beside_the_page(answer: Path) -> None:
+    drawn = {path.stem for path in (answer / "figures").glob("*.svg")}
+    assert {"raster", "phase_plane", "suspects", "fits", "parameters"} <= drawn
+    assert {f"read_{r.name}" for r in recordings()} <= drawn
+    assert not any("#0000" in path.read_text("utf-8") for path in (answer / "figures").glob("*.svg"))

@@ -1,0 +1,127 @@
+"""The report page: self-contained, complete, well formed, the same twice."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from functools import partial
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import get_args
+
+import pytest
+
+from diagnosis.figures import plot_raster
+from diagnosis.report.page import report_page
+from diagnosis.report.pictures import drawings
+from diagnosis.report.svg import Picture, picture
+from diagnosis.result import Diagnosis, Verdict
+from tests.diagnosis.report.example import diagnosis, recordings, specimen
+
+VOID = {"meta", "br", "hr", "img", "link", "input"}
+
+
+class Outline(HTMLParser):
+    """Checks that tags close in their order, and collects ids, references and the text."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.ids: list[str] = []
+        self.references: list[str] = []
+        self.text: list[str] = []
+
+    def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
+        if tag not in VOID:
+            self.open.append(tag)
+        self._note(attributes)
+
+    def handle_startendtag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
+        self._note(attributes)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open and self.open[-1] == tag, (tag, self.open[-3:])
+        self.open.pop()
+
+    def handle_data(self, data: str) -> None:
+        if "style" not in self.open:
+            self.text.append(data)
+
+    def _note(self, attributes: list[tuple[str, str | None]]) -> None:
+        for name, value in attributes:
+            if name == "id" and value:
+                self.ids.append(value)
+            if name in ("href", "src", "xlink:href") and value:
+                self.references.append(value)
+
+
+def render(found: Diagnosis, drawn: dict[str, Picture] | None = None) -> str:
+    *train, test = recordings()
+    if drawn is None:
+        drawn = dict.fromkeys(pictures_of(found), Picture("<svg></svg>", "<svg></svg>"))
+    return report_page(found, specimen(), train, [test], drawn)
+
+
+def pictures_of(found: Diagnosis) -> list[str]:
+    return list(drawings(found, specimen(), recordings()))
+
+
+def outline(page: str) -> Outline:
+    parsed = Outline()
+    parsed.feed(page)
+    parsed.close()
+    assert not parsed.open
+    return parsed
+
+
+def test_page_stands_alone(answer: Path) -> None:
+    page = (answer / "report.html").read_text("utf-8")
+    parsed = outline(page)
+    assert all(reference.startswith("#") for reference in parsed.references)
+    assert not re.search(r"https?://(?!www\.w3\.org)|url\((?!#)|@import|<script", page)
+    assert len(parsed.ids) == len(set(parsed.ids))
+    assert {reference[1:] for reference in parsed.references} <= set(parsed.ids)
+    assert len(page) < 500_000
+
+
+def test_page_follows_a_dark_screen(answer: Path) -> None:
+    page = (answer / "report.html").read_text("utf-8")
+    assert "prefers-color-scheme: dark" in page
+    assert not re.findall(r"(?:fill|stroke): ?#", page)
+
+
+@pytest.mark.parametrize("verdict", get_args(Verdict))
+def test_page_says_what_was_found(verdict: Verdict) -> None:
+    found = diagnosis(verdict)
+    words = " ".join(outline(render(found)).text)
+    assert found.statement in words
+    for effect in found.effects:
+        assert effect.name.replace("_", " ") in words
+        assert "0.1161 to 0.1247" in words
+    for rival in found.rivals:
+        assert rival.name.replace("_", " ") in words
+    if found.next_experiment:
+        assert found.next_experiment["sentence"] in words
+    assert ("extended.toml" in words) and ("Traceback" not in words) and ("None" not in words)
+    assert ("What does not stay the same" in words) == bool(found.constancy)
+
+
+def test_page_says_when_it_was_stopped() -> None:
+    assert "stopped before its end" in render(replace(diagnosis(), finished=False))
+    assert "stopped before its end" not in render(diagnosis())
+
+
+def test_page_without_held_out_recordings_or_screen() -> None:
+    found = replace(diagnosis("nothing_missing"), holdout=None, screen=(), prediction_horizon={})
+    words = " ".join(outline(render(found)).text)
+    assert "held-out" not in words and "What could be missing" not in words
+
+
+def test_words_of_a_user_are_no_markup() -> None:
+    page = render(replace(diagnosis(), statement="a < b & <b>bold</b>"))
+    assert "a &lt; b &amp; &lt;b&gt;bold&lt;/b&gt;" in page
+
+
+def test_drawn_twice_is_the_same() -> None:
+    first, second = (picture(partial(plot_raster, diagnosis().windows), "raster") for _ in range(2))
+    assert first == second
