@@ -48,6 +48,6 @@ def plan(
         f"({sample.cells} cells in {sample.seconds:.3f} s; compiling {human_time(sample.compile_seconds)})",
     }
     for name, text in rows.items():
-        console.print(f"{name:<14} {text}", highlight=False)
+        console.print(f"{name:<14} {text}", highlight=False, soft_wrap=True)
     for note in checked.notes:
-        console.print(f"note: {note}", highlight=False)
+        console.print(f"note: {note}", highlight=False, soft_wrap=True)
