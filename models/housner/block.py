@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from models.base import FloatArray, Values
+from models.housner.cantilever import modal_integrals
 
 
 @dataclass(frozen=True)
@@ -61,6 +62,10 @@ class Block:
     pitch_low_pass: FloatArray
     friction: FloatArray
     first_frequency: FloatArray
+    # the first cantilever mode phi (1 at the wall's top): integrals of phi^2, phi, phi z over the mass
+    modal_mass: FloatArray
+    modal_force: FloatArray
+    modal_moment: FloatArray
 
     @property
     def size(self) -> int:
@@ -190,6 +195,7 @@ def assemble(values: Values, vertical: bool, size: int | None = None) -> Block:
         pitch_low_pass=np.full(shape, 10.0),
         friction=infinite,
         first_frequency=infinite,
+        **modal_integrals(mass, height, top, value("top_mass_height", 0.0), value("top_mass_inertia", 0.0)),
     )
 
 

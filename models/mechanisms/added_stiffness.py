@@ -10,9 +10,7 @@ from models.housner.block import Block
 
 def on_housner(block: Block, values: Values) -> Block:
     radius = np.hypot(block.base_half_width, block.height)
-    return block.replace(
-        stiffness=values["over_m_g_R"] * block.mass * block.gravity * radius, gap=values["gap"]
-    )
+    return block.replace(stiffness=values["over_m_g_R"] * block.mass * block.gravity * radius, gap=values["gap"])
 
 
 MECHANISM = Mechanism(

@@ -13,9 +13,7 @@ def on_housner(block: Block, values: Values) -> Block:
 MECHANISM = Mechanism(
     name="coulomb_damping",
     effect_class="coulomb_damping",
-    parameters=(
-        MechanismParameter("over_m_g_b", "m_c", "1", "couple of dry friction over M g b", 0.0, 0.1),
-    ),
+    parameters=(MechanismParameter("over_m_g_b", "m_c", "1", "couple of dry friction over M g b", 0.0, 0.1),),
     equation="couple -m_c M g b sign(theta'); it holds the block where it stops as long as it can",
     signature="between impacts, with the sign of theta'",
     sentence="dry friction of {over_m_g_b:.4f} M g b acts against the rotation",

@@ -9,9 +9,7 @@ from models.housner.block import Block
 def on_housner(block: Block, values: Values) -> Block:
     inset = values["inset_over_half_width"]
     shift = inset * block.base_half_width
-    return block.replace(
-        right=block.right - shift, left=block.left - shift, aspect=block.aspect * (1.0 - inset)
-    )
+    return block.replace(right=block.right - shift, left=block.left - shift, aspect=block.aspect * (1.0 - inset))
 
 
 MECHANISM = Mechanism(

@@ -13,9 +13,7 @@ def on_housner(block: Block, values: Values) -> Block:
 MECHANISM = Mechanism(
     name="quadratic_damping",
     effect_class="quadratic_damping",
-    parameters=(
-        MechanismParameter("coefficient", "q", "1", "drag couple over I_O theta'^2", 0.0, 5.0),
-    ),
+    parameters=(MechanismParameter("coefficient", "q", "1", "drag couple over I_O theta'^2", 0.0, 5.0),),
     equation="couple -q I_O theta' |theta'|",
     signature="between impacts, with theta' |theta'|",
     sentence="drag grows with the square of the angular velocity, coefficient {coefficient:.3f}",

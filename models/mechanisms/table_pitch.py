@@ -7,9 +7,7 @@ from models.housner.block import Block
 
 
 def on_housner(block: Block, values: Values) -> Block:
-    return block.replace(
-        pitch_per_acceleration=values["pitch_per_acceleration"], pitch_low_pass=values["low_pass_hz"]
-    )
+    return block.replace(pitch_per_acceleration=values["pitch_per_acceleration"], pitch_low_pass=values["low_pass_hz"])
 
 
 MECHANISM = Mechanism(

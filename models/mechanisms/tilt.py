@@ -10,17 +10,13 @@ from models.housner.block import Block
 
 def on_housner(block: Block, values: Values) -> Block:
     tilt = np.asarray(values["tilt"], float)
-    return block.replace(
-        offset=block.offset - block.gravity * np.sin(tilt), gravity=block.gravity * np.cos(tilt)
-    )
+    return block.replace(offset=block.offset - block.gravity * np.sin(tilt), gravity=block.gravity * np.cos(tilt))
 
 
 MECHANISM = Mechanism(
     name="tilt",
     effect_class="tilt",
-    parameters=(
-        MechanismParameter("tilt", "tau", "rad", "lean of the base, positive clockwise", -0.05, 0.05),
-    ),
+    parameters=(MechanismParameter("tilt", "tau", "rad", "lean of the base, positive clockwise", -0.05, 0.05),),
     equation="a -> a - g sin(tau), G -> G - g (1 - cos(tau)); a and a_z along and across the leaning base",
     signature="differs left and right; onset at unequal accelerations",
     sentence="the base leans by {tilt:+.4f} rad (clockwise positive)",

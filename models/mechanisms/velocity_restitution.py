@@ -13,9 +13,7 @@ def on_housner(block: Block, values: Values) -> Block:
 MECHANISM = Mechanism(
     name="velocity_restitution",
     effect_class="velocity_restitution",
-    parameters=(
-        MechanismParameter("beta", "beta", "1", "loss of restitution per |theta'|/(p alpha)", -0.2, 0.5),
-    ),
+    parameters=(MechanismParameter("beta", "beta", "1", "loss of restitution per |theta'|/(p alpha)", -0.2, 0.5),),
     equation="e = e_H (1 - beta |theta'|/(p alpha))",
     signature="only at impacts, more at fast ones",
     sentence="impacts lose more the faster they are: e falls by {beta:.3f} of itself at |theta'| = p alpha",

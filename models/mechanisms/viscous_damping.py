@@ -13,9 +13,7 @@ def on_housner(block: Block, values: Values) -> Block:
 MECHANISM = Mechanism(
     name="viscous_damping",
     effect_class="viscous_damping",
-    parameters=(
-        MechanismParameter("rate", "d", "s-1", "dashpot couple over the inertia about the corner", 0.0, 1.0),
-    ),
+    parameters=(MechanismParameter("rate", "d", "s-1", "dashpot couple over the inertia about the corner", 0.0, 1.0),),
     equation="couple -d I_O theta'",
     signature="between impacts, with theta'",
     sentence="a dashpot takes {rate:.3f} of the angular velocity per second",

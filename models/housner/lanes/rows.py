@@ -30,16 +30,20 @@ DIRECTION = 30  # sign of theta' held during the step
 PITCH, RP, RPP, P0, PP0 = 31, 32, 33, 34, 35  # rad s2 m-1 times scale; psi and psi'' of the record
 WORK, WORK_STEP = 36, 37  # work lost in couples over M: in all, in this step
 FLAG = 38  # whether the lane needs attention after this step
-N_WORK = 39
+# --- work: degrees of freedom of a regime (`models.housner.lanes.regimes`); U, U1 in contact: slip u, u'
+U, U1 = 39, 40  # in flight: x and x' of the mass centre; in flexure: amplitude eta and eta' of the mode
+Z, Z1 = 41, 42  # in flight: z and z' of the mass centre; Z in flexure: 0 until the mode has been relaxed
+N_WORK = 43
 
 # --- given: constants of a lane
 (
     Q_SCALE, Q_OFFSET, Q_GRAVITY, Q_VSCALE, Q_MASS, Q_HEIGHT, Q_RIGHT, Q_LEFT, Q_INERTIA,
     Q_RESTITUTION, Q_FACTOR, Q_ASPECT, Q_EXPONENT, Q_SLOPE, Q_LOSS, Q_FLOOR, Q_REST, Q_ALPHA, Q_P,
     Q_RHO, Q_CRUSH, Q_JOINT, Q_K, Q_GAP, Q_VISCOUS, Q_COULOMB, Q_QUADRATIC, Q_PITCH,
-    Q_BOUNCE, Q_FRICTION, Q_FREQUENCY, Q_THETA, Q_OMEGA, Q_PEAK, Q_IMPACTS,
-) = range(35)  # fmt: skip
-N_GIVEN = 35
+    Q_BOUNCE, Q_FRICTION, Q_FREQUENCY, Q_MODAL_MASS, Q_MODAL_FORCE, Q_MODAL_MOMENT,
+    Q_THETA, Q_OMEGA, Q_PEAK, Q_IMPACTS,
+) = range(38)  # fmt: skip
+N_GIVEN = 38
 
 # --- result: what a lane has gathered
 (
@@ -48,8 +52,9 @@ N_GIVEN = 35
 ) = range(13)  # fmt: skip
 N_RESULT = 13
 
-# R_MODE: rocking in the vector loop, at rest, or held at a turning point by a Coulomb couple
-UP, DOWN, HELD = 0.0, 1.0, 2.0
+# R_MODE: rocking, at rest, held at a turning point by a Coulomb couple, sliding flat on the base, in free
+# flight, ringing with the base in full contact; only a rocking lane moves in the vector loop
+UP, DOWN, HELD, SLIDING, FLIGHT, RINGING = 0.0, 1.0, 2.0, 3.0, 4.0, 5.0
 
 REST, ROCKING, OVERTURNED, NOT_CONVERGED = 1.0, 2.0, 3.0, 4.0
 

@@ -21,6 +21,8 @@ EVENTS = ("onset", "impact", "rest", "overturned")
 LARGEST_PHASE = 0.0075
 """Largest p h of a step (rad); the error of the rule falls with its fourth power."""
 JOINT_PHASE = 0.2
+MODAL_PHASE = 0.15
+"""Largest phase (rad) of a bending wall's mode in a step, at its frequency while the wall rocks."""
 CHUNK = 64
 
 
@@ -31,6 +33,7 @@ class Lanes:
     result: NDArray[np.float64]
     rotation: NDArray[np.float64] | None
     rate: NDArray[np.float64] | None
+    shift: NDArray[np.float64] | None
     events: tuple[tuple[tuple[float, str], ...], ...] | None
     steps: int
 
@@ -47,7 +50,10 @@ def substeps(block: Block, time_step: float) -> NDArray[np.int64]:
             / JOINT_PHASE,
             0.0,
         )
-    return np.maximum(1, np.ceil(np.maximum(phase, joint) - 1e-9)).astype(np.int64)
+    bends = np.isfinite(block.first_frequency)
+    rigid = 1.0 - block.modal_moment**2 / (block.modal_mass * block.pivot_inertia)
+    mode = np.where(bends, 2.0 * np.pi * block.first_frequency, 0.0) / np.sqrt(rigid) * time_step / MODAL_PHASE
+    return np.maximum(1, np.ceil(np.maximum(np.maximum(phase, joint), mode) - 1e-9)).astype(np.int64)
 
 
 def refine(samples: NDArray[np.float64], n: int) -> NDArray[np.float64]:
@@ -117,7 +123,10 @@ def given_table(block: Block, scale: FloatArray, initial: Mapping[str, FloatArra
         (r.Q_PITCH, block.pitch_per_acceleration),
         (r.Q_BOUNCE, block.contact_restitution),
         (r.Q_FRICTION, block.friction),
-        (r.Q_FREQUENCY, block.first_frequency),
+        (r.Q_FREQUENCY, 2.0 * np.pi * block.first_frequency),
+        (r.Q_MODAL_MASS, block.modal_mass / block.mass),
+        (r.Q_MODAL_FORCE, block.modal_force / block.mass),
+        (r.Q_MODAL_MOMENT, block.modal_moment / block.mass),
         (r.Q_THETA, initial.get("rotation_1", 0.0)),
         (r.Q_OMEGA, initial.get("rotation_rate_1", 0.0)),
         (r.Q_PEAK, initial.get("peak_rotation_1", 0.0)),
@@ -145,12 +154,13 @@ def run(
     """Run n lanes of ``block`` under ``scale`` (n,) times the shaking.
 
     ``first`` and ``last`` (n,) are samples of the shaking between which each lane runs (default: all,
-    and the tail); ``samples`` > 0 returns theta and theta' (n, samples) at the samples from ``first``
-    on; ``log`` > 0 returns up to that many events a lane. ``refinement`` divides every step.
+    and the tail); ``samples`` > 0 returns theta, theta' and the mass centre's displacement beyond that
+    of rocking on fixed corners (n, samples) at the samples from ``first`` on; ``log`` > 0 returns up to
+    that many events a lane. ``refinement`` divides every step.
     """
     n = block.size
     out = np.zeros((n, r.N_RESULT))
-    trace = np.zeros((n, samples, 2))
+    trace = np.zeros((n, samples, 3))
     logged: list[tuple[tuple[float, str], ...]] = [()] * n
     steps = 0
     per_sample = substeps(block, shaking.time_step) * refinement
@@ -164,7 +174,7 @@ def run(
         end = np.full(lanes.size, record.shape[1] - 2) if last is None else last[lanes] * sub
         given = given_table(part, scale[lanes], {k: v[lanes] for k, v in start.items()})
         result = np.zeros((lanes.size, r.N_RESULT))
-        part_trace = np.zeros((lanes.size, samples, 2))
+        part_trace = np.zeros((lanes.size, samples, 3))
         part_log = np.zeros((lanes.size, log, 2))
         count = np.zeros(lanes.size, np.int64)
         steps += advance(
@@ -180,6 +190,7 @@ def run(
         out,
         trace[:, :, 0] if samples else None,
         trace[:, :, 1] if samples else None,
+        trace[:, :, 2] if samples else None,
         tuple(logged) if log else None,
         steps,
     )

@@ -1,0 +1,113 @@
+"""When the block at rest is lifted onto a corner, or slides."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from models.housner.lanes import rows as r
+from models.housner.lanes.impact import pivot
+from models.housner.lanes.step import inputs
+from models.lanes.compiler import called, inlined
+
+Table = Any
+NONE = 2.0
+"""A fraction of the step that never comes."""
+
+
+@inlined
+def excess(
+    given: Table, w: Table, lane: int, slot: int, side: float,
+    a: float, g: float, psi: float, psi2: float, linear: Any,
+) -> float:  # fmt: skip
+    """Moment over M that lifts the block at rest onto ``side``: positive means it starts to rock."""
+    h = given[lane, r.Q_HEIGHT]
+    b = pivot(given, w, lane, slot, side)
+    inertia = given[lane, r.Q_INERTIA] / given[lane, r.Q_MASS]
+    push = -side * ((a - g * psi) * h + (inertia + h * h) * psi2)
+    if w[r.JOINT * r.W + slot] >= 0.0:
+        return float(push - w[r.COULOMB * r.W + slot])
+    if linear is not None:
+        return float(push - g * h * math.atan(b / h))
+    return float(push - g * b - w[r.COULOMB * r.W + slot])
+
+
+@called
+def onset(
+    given: Table, w: Table, lane: int, slot: int, record: Table, i: int, f: float, linear: Any
+) -> tuple[float, float]:
+    """First fraction >= f of step i at which the block leaves rest, and the side; (NONE, 0) if it stays."""
+    a0, g0, p0, q0 = inputs(w, slot, record, i, f)
+    a1, g1, p1, q1 = inputs(w, slot, record, i, 1.0)
+    first, which = NONE, 0.0
+    for side in (1.0, -1.0):
+        m0 = excess(given, w, lane, slot, side, a0, g0, p0, q0, linear)
+        m1 = excess(given, w, lane, slot, side, a1, g1, p1, q1, linear)
+        at = NONE
+        if m0 > 0.0:
+            at = f
+        elif m1 > 0.0:
+            at = f + (1.0 - f) * (-m0) / (m1 - m0)
+        if at < first:
+            first, which = at, side
+    return first, which
+
+
+@called
+def slip_onset(
+    given: Table, w: Table, lane: int, slot: int, record: Table, i: int, f: float
+) -> tuple[float, float]:
+    """First fraction >= f of step i at which |H| > mu N in full contact, and the direction of slip."""
+    a0, g0, p0, q0 = inputs(w, slot, record, i, f)
+    a1, g1, p1, q1 = inputs(w, slot, record, i, 1.0)
+    h, mu = given[lane, r.Q_HEIGHT], given[lane, r.Q_FRICTION]
+    first, which = NONE, 0.0
+    for way in (1.0, -1.0):
+        m0 = -way * (a0 - g0 * p0 + h * q0) - mu * g0
+        m1 = -way * (a1 - g1 * p1 + h * q1) - mu * g1
+        at = NONE
+        if m0 > 0.0:
+            at = f
+        elif m1 > 0.0:
+            at = f + (1.0 - f) * (-m0) / (m1 - m0)
+        if at < first:
+            first, which = at, way
+    return first, which
+
+
+@called
+def next_onset(
+    given: Table, w: Table, lane: int, slot: int, record: Table, i: int, last: int, chunk: Table, linear: Any
+) -> int:
+    """First step from i on in which the resting block is lifted or slides, ``last`` if there is none.
+
+    ``chunk`` (4, n) holds the extremes of the record over 64 steps: |a|, -a_z, |psi|, |psi''|.
+    """
+    h = given[lane, r.Q_HEIGHT]
+    b = min(pivot(given, w, lane, slot, 1.0), pivot(given, w, lane, slot, -1.0))
+    if linear is not None:
+        b = h * math.atan(b / h)
+    if w[r.JOINT * r.W + slot] >= 0.0:
+        b = 0.0
+    mu = given[lane, r.Q_FRICTION]
+    b = min(b, mu * h)
+    inertia = given[lane, r.Q_INERTIA] / given[lane, r.Q_MASS] + h * h
+    scale, pitch = abs(w[r.SCALE * r.W + slot]), abs(w[r.PITCH * r.W + slot])
+    while i < last:
+        if i % 64 == 0 and i + 64 <= last:
+            c = i // 64
+            low = w[r.GRAVITY * r.W + slot] - abs(w[r.VSCALE * r.W + slot]) * chunk[1, c]
+            high = w[r.GRAVITY * r.W + slot] + abs(w[r.VSCALE * r.W + slot]) * chunk[1, c]
+            push = (scale * chunk[0, c] + abs(w[r.OFFSET * r.W + slot]) + high * pitch * chunk[2, c]) * h
+            if push + inertia * pitch * chunk[3, c] < low * b:
+                i += 64
+                continue
+        f, _ = onset(given, w, lane, slot, record, i, 0.0, linear)
+        if f < NONE:
+            return i
+        if mu < math.inf:
+            f, _ = slip_onset(given, w, lane, slot, record, i, 0.0)
+            if f < NONE:
+                return i
+        i += 1
+    return last
