@@ -68,8 +68,10 @@ def run(
     for piece in pieces(stack.one(), shaking, scale, until):
         if before is None:
             wall.begin(dict(initial or {}), piece)
-        elif before != piece.first:
+        elif before != piece.first and any(wall.sides):
+            wall.time = piece.start
             wall.settle(piece)
+            wall.visit()
         wall.advance(piece, shaken=piece.start < shaking.duration)
         before = piece.at(piece.end)
         if wall.finished:
@@ -93,7 +95,7 @@ class _Run:
         self.events: list[Event] = []
         self.time = 0.0
         self.q, self.rate = [0.0, 0.0], [0.0, 0.0]
-        self.sides = [0, 0]
+        self.sides, self.before = [0, 0], [0, 0]
         self.account = acc.blank(1)[0]
         self.finished = False
         self.frozen: FloatArray | None = None
@@ -123,6 +125,7 @@ class _Run:
             first = self.q[joint] or self.rate[joint]
             self.sides[joint] = (first > 0.0) - (first < 0.0)
         self.note_peaks([self.state()])
+        self.before = list(self.sides)
         self.settle(piece)
         self.visit()
 
@@ -137,9 +140,9 @@ class _Run:
         """The configuration begins: mark it, and the first uplift of each joint."""
         self.account[acc.VISITED] = int(self.account[acc.VISITED]) | 1 << index(*self.sides)
         for joint, column in zip(JOINTS, (acc.ONSET_BASE, acc.ONSET_TOP), strict=True):
-            # a state given at the start is no onset
-            if self.sides[joint] and self.time > 0.0 and math.isnan(self.account[column]):
+            if self.sides[joint] and not self.before[joint] and math.isnan(self.account[column]):
                 self.account[column] = self.time
+        self.before = list(self.sides)
 
     def advance(self, piece: Piece, shaken: bool) -> None:
         self.time = piece.start

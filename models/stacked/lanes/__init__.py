@@ -1,0 +1,1 @@
+"""Two stacked blocks in compiled lanes."""

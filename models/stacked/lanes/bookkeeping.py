@@ -1,0 +1,113 @@
+"""The account of a lane: configurations, events, peaks."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from models.lanes.compiler import called, inlined
+from models.stacked.account import ONSET_BASE, ONSET_TOP, PEAK_1, PEAK_2, TIME_IN, VISITED
+from models.stacked.configuration import CONFIGURATIONS
+from models.stacked.lanes.corners import UPRIGHT, corner_inertia, vectors
+from models.stacked.lanes.rows import (
+    BX, BZ, CX, CZ, DRAG, FREE_1, FREE_2, J1, J2, KX, KZ, P_B1, P_B2, P_I1, P_I2, P_M1, P_M2, P_VISCOUS, R_CLOSED,
+    R_SIDE_1, R_SIDE_2, R_SINCE, SHARE, SIDE_1, SIDE_2, W, WIDE_1, WIDE_2,
+)  # fmt: skip
+
+Table = Any
+State = tuple[float, float, float, float]
+INDEX = tuple(CONFIGURATIONS.index((s1, s2)) for s1 in (-1, 0, 1) for s2 in (-1, 0, 1))
+
+
+@inlined
+def note(log: Table, count: Table, lane: int, time: float, kind: float, body: float) -> None:
+    """Write an event in the log of this lane, as long as there is room."""
+    if log.shape[1] > 0:
+        if count[lane] < log.shape[1]:
+            log[lane, count[lane], 0] = time
+            log[lane, count[lane], 1] = kind
+            log[lane, count[lane], 2] = body
+        count[lane] += 1
+
+
+@called
+def stand(given: Table, w: Table, lane: int, slot: int, s1: float, s2: float) -> None:
+    """Set the coefficients of a configuration; a closed joint (0) is written about its right corner."""
+    c1 = s1 if s1 != 0.0 else 1.0
+    c2 = s2 if s2 != 0.0 else 1.0
+    m1, m2 = given[lane, P_M1], given[lane, P_M2]
+    mass = m1 + m2
+    ax, az, cx, cz, dx, dz = vectors(given, lane, c1, c2, UPRIGHT, 1.0)
+    bx, bz = dx - cx, dz - cz
+    w[SIDE_1 * W + slot], w[SIDE_2 * W + slot] = c1, c2
+    w[FREE_1 * W + slot] = 1.0 if s1 != 0.0 else 0.0
+    w[FREE_2 * W + slot] = 1.0 if s2 != 0.0 else 0.0
+    w[SHARE * W + slot] = m2 / mass
+    w[KX * W + slot] = (m1 * ax + m2 * bx) / mass
+    w[KZ * W + slot] = (m1 * az + m2 * bz) / mass
+    w[BX * W + slot], w[BZ * W + slot] = bx, bz
+    w[CX * W + slot], w[CZ * W + slot] = m2 * cx / mass, m2 * cz / mass
+    w[J1 * W + slot] = (given[lane, P_I1] + m1 * (ax * ax + az * az) + m2 * (bx * bx + bz * bz)) / mass
+    w[J2 * W + slot] = (given[lane, P_I2] + m2 * (cx * cx + cz * cz)) / mass
+    w[DRAG * W + slot] = given[lane, P_VISCOUS] * corner_inertia(given, lane, c1) / mass
+    w[WIDE_1 * W + slot], w[WIDE_2 * W + slot] = 2.0 * given[lane, P_B1], 2.0 * given[lane, P_B2]
+
+
+@called
+def spend(result: Table, lane: int, time: float) -> None:
+    """Book the time since the last change to the present configuration."""
+    k = INDEX[int(3.0 * (result[lane, R_SIDE_1] + 1.0) + result[lane, R_SIDE_2] + 1.0)]
+    result[lane, TIME_IN + k] += time - result[lane, R_SINCE]
+    result[lane, R_SINCE] = time
+
+
+@called
+def visit(result: Table, lane: int) -> None:
+    """Mark the present configuration."""
+    k = INDEX[int(3.0 * (result[lane, R_SIDE_1] + 1.0) + result[lane, R_SIDE_2] + 1.0)]
+    result[lane, VISITED] = float(int(result[lane, VISITED]) | (1 << k))
+
+
+@called
+def configure(
+    given: Table, result: Table, w: Table, lane: int, slot: int, s1: float, s2: float, time: float
+) -> None:
+    """The lane goes over to the configuration (s1, s2) at ``time``."""
+    if s1 == result[lane, R_SIDE_1] and s2 == result[lane, R_SIDE_2]:
+        return
+    spend(result, lane, time)
+    if s1 != 0.0 and result[lane, R_SIDE_1] == 0.0 and math.isnan(result[lane, ONSET_BASE]):
+        result[lane, ONSET_BASE] = time
+    if s2 != 0.0 and result[lane, R_SIDE_2] == 0.0 and math.isnan(result[lane, ONSET_TOP]):
+        result[lane, ONSET_TOP] = time
+    result[lane, R_SIDE_1], result[lane, R_SIDE_2] = s1, s2
+    result[lane, R_CLOSED] = 1.0 if s1 == 0.0 and s2 == 0.0 else 0.0
+    stand(given, w, lane, slot, s1, s2)
+    visit(result, lane)
+
+
+@inlined
+def turning_point(q: float, v: float, q_end: float, v_end: float, step: float) -> float:
+    """|q| where the cubic through both ends of the step turns (two Newton steps from the secant)."""
+    c = 3.0 * (q_end - q) - step * (2.0 * v + v_end)
+    d = 2.0 * (q - q_end) + step * (v + v_end)
+    f = v / (v - v_end)
+    for _ in range(2):
+        curve = 2.0 * c + 6.0 * d * f
+        if curve != 0.0:
+            f -= (step * v + f * (2.0 * c + 3.0 * d * f)) / curve
+    f = min(1.0, max(0.0, f))
+    return abs(q + f * (step * v + f * (c + f * d)))
+
+
+@called
+def raise_peaks(result: Table, lane: int, start: State, end: State, step: float) -> None:
+    """Keep the largest rotations of both bodies over a part of a step without events."""
+    t0, t1, u0, u1 = start[0] + start[1], end[0] + end[1], start[2] + start[3], end[2] + end[3]
+    peak_1, peak_2 = abs(end[0]), abs(t1)
+    if start[2] * end[2] < 0.0:
+        peak_1 = max(peak_1, turning_point(start[0], start[2], end[0], end[2], step))
+    if u0 * u1 < 0.0:
+        peak_2 = max(peak_2, turning_point(t0, u0, t1, u1, step))
+    result[lane, PEAK_1] = max(result[lane, PEAK_1], peak_1)
+    result[lane, PEAK_2] = max(result[lane, PEAK_2], peak_2)

@@ -1,0 +1,66 @@
+"""A joint closes, one lane: the impact, what may stay closed after it, and the energy lost."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from models.lanes.compiler import called
+from models.stacked.account import IMPACTS_BASE, IMPACTS_TOP, LOST_BASE, LOST_TOP
+from models.stacked.lanes.bookkeeping import configure, note
+from models.stacked.lanes.choice import choose
+from models.stacked.lanes.corners import impulses, line, motion
+from models.stacked.lanes.impact import imposed, land
+from models.stacked.lanes.rows import LOG_IMPACT, LOG_REST, P_CALM_1, P_CALM_2, R_SIDE_1, R_SIDE_2
+
+Table = Any
+
+
+@called
+def close(
+    given: Table, result: Table, w: Table, system: Table, lane: int, slot: int, joint: int, q1: float, q2: float,
+    v1: float, v2: float, a: float, g: float, time: float, log: Table, count: Table, linear: Any,
+) -> tuple[float, float]:  # fmt: skip
+    """The impact of ``joint`` at ``time``; sets the configuration, returns the rates after it.
+
+    Rates so small that the swing ahead does not matter end, if the forces of now keep the joint closed.
+    """
+    s1, s2 = result[lane, R_SIDE_1], result[lane, R_SIDE_2]
+    c1 = s1 if s1 != 0.0 else 1.0
+    c2 = s2 if s2 != 0.0 else 1.0
+    energy = impulses(system, given, lane, c1, c2, q1, q2, v1, v2, linear)
+    landing = land(system, given, lane, joint, s1, s2, v1, v2, energy)
+    small_1 = q1 == 0.0 and landing[0] != 0.0 and abs(landing[2]) < given[lane, P_CALM_1]
+    small_2 = q2 == 0.0 and landing[1] != 0.0 and abs(landing[3]) < given[lane, P_CALM_2]
+    after = landing
+    done = False
+    if small_1 and small_2:
+        motion(system, given, lane, q1, q2, 0.0, 0.0, a, g, linear)
+        n1, n2 = choose(system, 0.0, 0.0, False)
+        done = n1 == 0.0 and n2 == 0.0
+        if done:
+            after = (0.0, 0.0, 0.0, 0.0)
+    if not done and (small_1 if joint == 0 else small_2):
+        impulses(system, given, lane, c1, c2, q1, q2, v1, v2, linear)
+        trial = imposed(system, joint, 0.0, s2 if joint == 0 else s1, energy)
+        motion(system, given, lane, q1, q2, trial[2], trial[3], a, g, linear)
+        n1, n2 = choose(system, trial[0], trial[1], False)
+        if (n1 if joint == 0 else n2) == 0.0:
+            after = trial
+    n1, n2 = after[0], after[1]
+    if n1 == 0.0 or n2 == 0.0:
+        motion(system, given, lane, q1, q2, after[2], after[3], a, g, linear)
+        n1, n2 = choose(system, n1, n2, False)
+    k1 = n1 if n1 != 0.0 else 1.0
+    k2 = n2 if n2 != 0.0 else 1.0
+    lost = energy - impulses(system, given, lane, k1, k2, q1, q2, after[2], after[3], linear)
+    if joint == 0:
+        result[lane, IMPACTS_BASE] += 1.0
+        result[lane, LOST_BASE] += lost
+    else:
+        result[lane, IMPACTS_TOP] += 1.0
+        result[lane, LOST_TOP] += lost
+    note(log, count, lane, time, LOG_IMPACT, joint + 1.0)
+    configure(given, result, w, lane, slot, n1, n2, time)
+    if n1 == 0.0 and n2 == 0.0:
+        note(log, count, lane, time, LOG_REST, 1.0)
+    return after[2], after[3]

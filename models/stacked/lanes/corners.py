@@ -1,0 +1,127 @@
+"""M x = R of one lane for the four pairs of pivots: forces in motion, impulses at an impact.
+
+``system`` (4, 5) holds M11, M12, M22, R1, R2 in the line 2 (s1 < 0) + (s2 < 0); the formulas are
+those of `models.stacked.equation` and `models.stacked.impact`.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from models.lanes.compiler import called, inlined
+from models.stacked.lanes.rows import (
+    P_B1, P_B2, P_D1, P_D2, P_H1, P_H2, P_I1, P_I2, P_M1, P_M2, P_TALL, P_VISCOUS,
+)  # fmt: skip
+
+Table = Any
+
+
+@inlined
+def line(s1: float, s2: float) -> int:
+    """Where a pair of pivots stands in a table of systems."""
+    return (2 if s1 < 0.0 else 0) + (1 if s2 < 0.0 else 0)
+
+
+@inlined
+def corner_inertia(given: Table, lane: int, side: float) -> float:
+    """I_O of both as one body about a pivot of the base."""
+    u1, u2 = side * given[lane, P_B1] - given[lane, P_D1], side * given[lane, P_B1] - given[lane, P_D2]
+    tall = given[lane, P_TALL] + given[lane, P_H2]
+    own = given[lane, P_I1] + given[lane, P_M1] * (given[lane, P_H1] ** 2 + u1 * u1)
+    return float(own + given[lane, P_I2] + given[lane, P_M2] * (tall * tall + u2 * u2))
+
+
+@inlined
+def vectors(
+    given: Table, lane: int, s1: float, s2: float, sc: tuple[float, float, float, float], lift: float
+) -> tuple[float, float, float, float, float, float]:
+    """A, C, D (x and z each) for the sines and cosines of theta_1 and theta_2."""
+    sine_1, cosine_1, sine_2, cosine_2 = sc
+    left = given[lane, P_D1] - s1 * given[lane, P_B1]
+    joint = left + s2 * given[lane, P_B2] - given[lane, P_D1]
+    right = given[lane, P_D2] - s2 * given[lane, P_B2]
+    h1, tall, h2 = given[lane, P_H1], given[lane, P_TALL], given[lane, P_H2]
+    cx = right * cosine_2 + h2 * sine_2
+    cz = h2 * cosine_2 - lift * right * sine_2
+    return (
+        left * cosine_1 + h1 * sine_1,
+        h1 * cosine_1 - lift * left * sine_1,
+        cx,
+        cz,
+        joint * cosine_1 + tall * sine_1 + cx,
+        tall * cosine_1 - lift * joint * sine_1 + cz,
+    )
+
+
+@inlined
+def products(
+    given: Table, lane: int, p: tuple[float, ...], o: tuple[float, ...]
+) -> tuple[float, float, float, float]:
+    """C11, C12, C21, C22 of the motions with vectors ``p`` (after) and ``o`` (before)."""
+    m1, m2, i2 = given[lane, P_M1], given[lane, P_M2], given[lane, P_I2]
+    return (
+        given[lane, P_I1] + m1 * (p[0] * o[0] + p[1] * o[1]) + i2 + m2 * (p[4] * o[4] + p[5] * o[5]),
+        i2 + m2 * (p[4] * o[2] + p[5] * o[3]),
+        i2 + m2 * (p[2] * o[4] + p[3] * o[5]),
+        i2 + m2 * (p[2] * o[2] + p[3] * o[3]),
+    )
+
+
+@inlined
+def turns(q1: float, q2: float, linear: Any) -> tuple[float, float, float, float]:
+    """Sines and cosines of theta_1 and theta_2."""
+    if linear is not None:
+        return q1, 1.0, q1 + q2, 1.0
+    return math.sin(q1), math.cos(q1), math.sin(q1 + q2), math.cos(q1 + q2)
+
+
+UPRIGHT = (0.0, 1.0, 0.0, 1.0)
+
+
+@called
+def motion(
+    system: Table, given: Table, lane: int, q1: float, q2: float, v1: float, v2: float, a: float, g: float,
+    linear: Any,
+) -> None:  # fmt: skip
+    """M and F for each pair of pivots."""
+    sc = turns(q1, q2, linear)
+    lift = 1.0 if linear is None else 0.0
+    m1, m2 = given[lane, P_M1], given[lane, P_M2]
+    for s1 in (1.0, -1.0):
+        drag = given[lane, P_VISCOUS] * corner_inertia(given, lane, s1) * v1
+        for s2 in (1.0, -1.0):
+            k = line(s1, s2)
+            v = vectors(given, lane, s1, s2, sc, lift)
+            f1 = g * (m1 * v[0] + m2 * v[4]) - a * (m1 * v[1] + m2 * v[5]) - drag
+            f2 = m2 * (g * v[2] - a * v[3])
+            still = v
+            if linear is None:
+                cross = m2 * (v[5] * v[2] - v[4] * v[3])
+                f1 += cross * v2 * (v1 + v1 + v2)
+                f2 -= cross * v1 * v1
+            else:
+                still = vectors(given, lane, s1, s2, UPRIGHT, lift)
+            m11, m12, _, m22 = products(given, lane, still, still)
+            system[k, 0], system[k, 1], system[k, 2] = m11, m12, m22
+            system[k, 3], system[k, 4] = f1, f2
+
+
+@called
+def impulses(
+    system: Table, given: Table, lane: int, s1: float, s2: float, q1: float, q2: float, v1: float, v2: float,
+    linear: Any,
+) -> float:  # fmt: skip
+    """M and C q' for each pair of pivots held afterwards; returns the kinetic energy before, in J."""
+    sc = turns(q1, q2, linear) if linear is None else UPRIGHT
+    before = vectors(given, lane, s1, s2, sc, 1.0)
+    for c1 in (1.0, -1.0):
+        for c2 in (1.0, -1.0):
+            k = line(c1, c2)
+            after = vectors(given, lane, c1, c2, sc, 1.0)
+            m11, m12, _, m22 = products(given, lane, after, after)
+            c11, c12, c21, c22 = products(given, lane, after, before)
+            system[k, 0], system[k, 1], system[k, 2] = m11, m12, m22
+            system[k, 3], system[k, 4] = c11 * v1 + c12 * v2, c21 * v1 + c22 * v2
+    k = line(s1, s2)
+    return float(0.5 * (v1 * system[k, 3] + v2 * system[k, 4]))

@@ -1,0 +1,155 @@
+"""The equations of `models.stacked.equation` and one Runge-Kutta step; inlined into the loop over lanes.
+
+All configurations share one branch-free form: a closed joint has FREE = 0, which takes its row and
+column out of M q'' = F. ``linear`` is None or True: a compiled variant holds only the branch in use.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from models.lanes.compiler import inlined
+from models.lanes.elementary import sine_cosine
+from models.stacked.lanes.rows import (
+    BX, BZ, CX, CZ, DRAG, FREE_1, FREE_2, J1, J2, KX, KZ, SHARE, SIDE_1, SIDE_2, W, WIDE_1, WIDE_2,
+)  # fmt: skip
+
+Table = Any
+BOUNDLESS = 1e300
+
+
+@inlined
+def turned(w: Table, lane: int, q1: float, q2: float, linear: Any) -> tuple[float, ...]:
+    """K, B and C (weighted as in `rows`) at rotations q1 and q1 + q2, and the sine and cosine of the latter."""
+    kx, kz = w[KX * W + lane], w[KZ * W + lane]
+    bx, bz = w[BX * W + lane], w[BZ * W + lane]
+    cx, cz = w[CX * W + lane], w[CZ * W + lane]
+    if linear is not None:
+        t2 = q1 + q2
+        return kx + kz * q1, kz, bx + bz * q1, bz, cx + cz * t2, cz, t2, 1.0
+    s1, c1 = sine_cosine(q1)
+    s2, c2 = sine_cosine(q1 + q2)
+    return (
+        kx * c1 + kz * s1,
+        kz * c1 - kx * s1,
+        bx * c1 + bz * s1,
+        bz * c1 - bx * s1,
+        cx * c2 + cz * s2,
+        cz * c2 - cx * s2,
+        s2,
+        c2,
+    )
+
+
+@inlined
+def forces(
+    w: Table, lane: int, v1: float, v2: float, a: float, g: float, place: tuple[float, ...], linear: Any
+) -> tuple[float, float, float, float, float]:
+    """M11, M12, M22 and F1, F2, over the total mass."""
+    kx, kz, bx, bz, cx, cz, _, _ = place
+    j2 = w[J2 * W + lane]
+    f2 = g * cx - a * cz
+    f1 = g * kx - a * kz + f2 - w[DRAG * W + lane] * v1
+    if linear is not None:
+        dot = w[BX * W + lane] * w[CX * W + lane] + w[BZ * W + lane] * w[CZ * W + lane]
+    else:
+        dot = bx * cx + bz * cz
+        cross = bz * cx - bx * cz
+        f1 += cross * v2 * (v1 + v1 + v2)
+        f2 -= cross * v1 * v1
+    m12 = j2 + dot
+    return w[J1 * W + lane] + m12 + dot, m12, j2, f1, f2
+
+
+@inlined
+def solve(
+    w: Table, lane: int, m11: float, m12: float, m22: float, f1: float, f2: float
+) -> tuple[float, float]:
+    """q'' of the joints that are up, 0 of the closed ones."""
+    free_1, free_2 = w[FREE_1 * W + lane], w[FREE_2 * W + lane]
+    mixed = free_1 * free_2 * m12
+    scale = 1.0 / (m11 * m22 - mixed * mixed)
+    return free_1 * scale * (m22 * f1 - mixed * f2), free_2 * scale * (m11 * f2 - mixed * f1)
+
+
+@inlined
+def acceleration(
+    w: Table, lane: int, q1: float, q2: float, v1: float, v2: float, a: float, g: float, linear: Any
+) -> tuple[float, float]:
+    place = turned(w, lane, q1, q2, linear)
+    m11, m12, m22, f1, f2 = forces(w, lane, v1, v2, a, g, place, linear)
+    return solve(w, lane, m11, m12, m22, f1, f2)
+
+
+@inlined
+def contact(
+    w: Table, lane: int, q1: float, q2: float, v1: float, v2: float, a: float, g: float, linear: Any
+) -> tuple[float, float, float, float, float, float]:
+    """q'' (2), margins (2) and friction demands (2) of the joints in a state.
+
+    The margin of a joint that is up is its opening s q; of a closed one the smaller of the moments
+    that hold it on its corners: with R its residual about the right corner and N the force across the
+    joint (both over M), -R on the right and R + 2 b N on the left.
+    """
+    place = turned(w, lane, q1, q2, linear)
+    kx, kz, bx, bz, cx, cz, sine, cosine = place
+    m11, m12, m22, f1, f2 = forces(w, lane, v1, v2, a, g, place, linear)
+    x1, x2 = solve(w, lane, m11, m12, m22, f1, f2)
+    share = w[SHARE * W + lane]
+    w1, w2, t2 = v1 * v1, (v1 + v2) * (v1 + v2), x1 + x2
+    top_h = share * (a + x1 * bz - w1 * bx) + t2 * cz - w2 * cx
+    top_n = share * (g - x1 * bx - w1 * bz) - t2 * cx - w2 * cz
+    base_h = a + x1 * kz - w1 * kx + t2 * cz - w2 * cx
+    base_n = g - x1 * kx - w1 * kz - t2 * cx - w2 * cz
+    # a closed joint leaves a moment about its right corner, and from it the one about its left corner
+    r1 = f1 - m11 * x1 - m12 * x2
+    r2 = f2 - m12 * x1 - m22 * x2
+    if linear is not None:
+        # the linear equations hold the block at its upright inertia, and so its lever arms
+        across = share * g - x1 * w[BX * W + lane] * share - t2 * w[CX * W + lane]
+        below = g - x1 * w[KX * W + lane] - t2 * w[CX * W + lane]
+    else:
+        across = cosine * top_n + sine * top_h
+        below = base_n
+    closed_1 = min(-r1, r1 + w[WIDE_1 * W + lane] * below)
+    closed_2 = min(-r2, r2 + w[WIDE_2 * W + lane] * across)
+    margin_1 = w[SIDE_1 * W + lane] * q1 if w[FREE_1 * W + lane] > 0.0 else closed_1
+    margin_2 = w[SIDE_2 * W + lane] * q2 if w[FREE_2 * W + lane] > 0.0 else closed_2
+    base = abs(base_h) / base_n
+    top = abs(top_h) / top_n
+    return (
+        x1,
+        x2,
+        margin_1,
+        margin_2,
+        base if base_n > 0.0 else BOUNDLESS,
+        top if top_n > 0.0 else BOUNDLESS,
+    )
+
+
+@inlined
+def rk4(
+    w: Table, lane: int, q1: float, q2: float, v1: float, v2: float, x1: float, x2: float, step: float,
+    a0: float, a1: float, g0: float, g1: float, linear: Any,
+) -> tuple[float, float, float, float, float]:  # fmt: skip
+    """theta_1, r and their rates after ``step``, and the work of the couple over M.
+
+    ``x1``, ``x2`` is q'' at the start; a and G are linear over the step.
+    """
+    half = 0.5 * step
+    am, gm = 0.5 * (a0 + a1), 0.5 * (g0 + g1)
+    p2, r2 = v1 + half * x1, v2 + half * x2
+    y1, y2 = acceleration(w, lane, q1 + half * v1, q2 + half * v2, p2, r2, am, gm, linear)
+    p3, r3 = v1 + half * y1, v2 + half * y2
+    z1, z2 = acceleration(w, lane, q1 + half * p2, q2 + half * r2, p3, r3, am, gm, linear)
+    p4, r4 = v1 + step * z1, v2 + step * z2
+    u1, u2 = acceleration(w, lane, q1 + step * p3, q2 + step * r3, p4, r4, a1, g1, linear)
+    sixth = step / 6.0
+    work = sixth * w[DRAG * W + lane] * (v1 * v1 + 2.0 * (p2 * p2 + p3 * p3) + p4 * p4)
+    return (
+        q1 + sixth * (v1 + 2.0 * (p2 + p3) + p4),
+        q2 + sixth * (v2 + 2.0 * (r2 + r3) + r4),
+        v1 + sixth * (x1 + 2.0 * (y1 + z1) + u1),
+        v2 + sixth * (x2 + 2.0 * (y2 + z2) + u2),
+        work,
+    )

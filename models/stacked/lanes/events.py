@@ -1,0 +1,140 @@
+"""One step of one lane with its events: onset, impact, opening, rest. Rare, so written plainly.
+
+Inside the step the inputs are linear in the fraction f of the step (0..1).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from models.lanes.compiler import called, inlined
+from models.stacked.account import FAILED
+from models.stacked.declaration import MOST_EVENTS_PER_STEP
+from models.stacked.lanes.bookkeeping import configure, note, raise_peaks
+from models.stacked.lanes.choice import choose, held
+from models.stacked.lanes.closing import close
+from models.stacked.lanes.corners import line, motion
+from models.stacked.lanes.equation import contact
+from models.stacked.lanes.locate import NONE, inputs, locate, onset, part
+from models.stacked.lanes.rows import (
+    A0, DEMAND_1, DEMAND_2, G0, LIMIT_1, LOG_CHANGE, LOG_ONSET, MARGIN_1, MARGIN_2, Q1, Q1S, Q2, Q2S, R_CLOSED,
+    R_SIDE_1, R_SIDE_2, V1, V1S, V2, V2S, W, WORK, WORK_STEP, X1, X2,
+)  # fmt: skip
+
+Table = Any
+AHEAD = 1e-6
+"""Fraction of a step by which the choice at a threshold looks ahead."""
+
+
+@inlined
+def settle(
+    given: Table, result: Table, w: Table, system: Table, lane: int, slot: int, record: Table, i: int, f: float,
+    q1: float, q2: float, v1: float, v2: float, time: float, moving: bool, linear: Any,
+) -> None:  # fmt: skip
+    """What the closed joints do under the forces of fraction ``f``; sets the configuration."""
+    s1, s2 = result[lane, R_SIDE_1], result[lane, R_SIDE_2]
+    if s1 == 0.0 or s2 == 0.0:
+        a, g = inputs(w, slot, record, i, f)
+        motion(system, given, lane, q1, q2, v1, v2, a, g, linear)
+        n1, n2 = choose(system, s1, s2, moving)
+        configure(given, result, w, lane, slot, n1, n2, time)
+
+
+@inlined
+def opened(
+    given: Table, result: Table, w: Table, system: Table, lane: int, slot: int, joint: int, record: Table, i: int,
+    f: float, state: tuple[float, float, float, float], time: float, linear: Any,
+) -> None:  # fmt: skip
+    """A closed joint opens without impact, about the corner that its residual moment shows."""
+    a, g = inputs(w, slot, record, i, f)
+    motion(system, given, lane, state[0], state[1], state[2], state[3], a, g, linear)
+    s1, s2 = result[lane, R_SIDE_1], result[lane, R_SIDE_2]
+    x1, x2 = held(system, s1, s2)
+    k = line(s1, s2)
+    if joint == 0:
+        left = system[k, 3] - system[k, 1] * x2
+        configure(given, result, w, lane, slot, 1.0 if left > 0.0 else -1.0, s2, time)
+    else:
+        left = system[k, 4] - system[k, 1] * x1
+        configure(given, result, w, lane, slot, s1, 1.0 if left > 0.0 else -1.0, time)
+
+
+@called
+def one_step(
+    given: Table, result: Table, w: Table, system: Table, lane: int, slot: int, record: Table, i: int, h: float,
+    log: Table, count: Table, linear: Any,
+) -> None:  # fmt: skip
+    """Advance a lane over step i from its state at the start of the step, whatever happens in it."""
+    q1, q2 = w[Q1S * W + slot], w[Q2S * W + slot]
+    v1, v2 = w[V1S * W + slot], w[V2S * W + slot]
+    f, rounds = 0.0, 0
+    known = w[LIMIT_1 * W + slot] > 0.0
+    if not known and result[lane, R_CLOSED] == 0.0:
+        # the ground has jumped: the closed joints answer before the step
+        settle(given, result, w, system, lane, slot, record, i, 0.0, q1, q2, v1, v2, i * h, False, linear)
+    while f < 1.0:
+        rounds += 1
+        if rounds > MOST_EVENTS_PER_STEP:
+            result[lane, FAILED] = 1.0
+            configure(given, result, w, lane, slot, 0.0, 0.0, (i + f) * h)
+            q1, q2, v1, v2 = 0.0, 0.0, 0.0, 0.0
+            break
+        if result[lane, R_CLOSED] != 0.0:
+            at = onset(given, w, lane, slot, record, i, f)
+            if at >= 1.0:
+                break
+            f = at
+            settle(
+                given, result, w, system, lane, slot, record, i, min(1.0, f + AHEAD), 0.0, 0.0, 0.0, 0.0,
+                (i + f) * h, True, linear,
+            )  # fmt: skip
+            note(log, count, lane, (i + f) * h, LOG_ONSET, 1.0 if result[lane, R_SIDE_1] != 0.0 else 2.0)
+        share = 1.0 - f
+        state = (q1, q2, v1, v2)
+        a, g = inputs(w, slot, record, i, f)
+        x1, x2, _, _, d1, d2 = contact(w, slot, q1, q2, v1, v2, a, g, linear)
+        if f > 0.0 or not known:
+            w[DEMAND_1 * W + slot] = max(w[DEMAND_1 * W + slot], d1)
+            w[DEMAND_2 * W + slot] = max(w[DEMAND_2 * W + slot], d2)
+        if known and rounds == 1:
+            end = (w[Q1 * W + slot], w[Q2 * W + slot], w[V1 * W + slot], w[V2 * W + slot])
+            m1, m2 = w[MARGIN_1 * W + slot], w[MARGIN_2 * W + slot]
+            work = w[WORK_STEP * W + slot]
+        else:
+            end, m1, m2, work = part(w, slot, state, (x1, x2), record, i, f, share, h, linear)
+        joint = -1
+        if m1 < 0.0:
+            joint = 0
+            share, end, m2, work = locate(w, slot, 0, state, (x1, x2), end, m1, record, i, f, share, h, linear)
+        if m2 < 0.0:
+            joint = 1
+            share, end, m1, work = locate(w, slot, 1, state, (x1, x2), end, m2, record, i, f, share, h, linear)
+        raise_peaks(result, lane, state, end, share * h)
+        w[WORK * W + slot] += work
+        f = f + share if joint >= 0 else 1.0
+        q1, q2, v1, v2 = end
+        if joint < 0:
+            break
+        time = (i + f) * h
+        side = result[lane, R_SIDE_1] if joint == 0 else result[lane, R_SIDE_2]
+        if side == 0.0:
+            opened(given, result, w, system, lane, slot, joint, record, i, f, end, time, linear)
+            note(log, count, lane, time, LOG_CHANGE, joint + 1.0)
+            continue
+        if joint == 0:
+            q1 = 0.0
+        else:
+            q2 = 0.0
+        a, g = inputs(w, slot, record, i, f)
+        v1, v2 = close(
+            given, result, w, system, lane, slot, joint, q1, q2, v1, v2, a, g, time, log, count, linear
+        )  # fmt: skip
+    w[Q1 * W + slot], w[Q2 * W + slot], w[V1 * W + slot], w[V2 * W + slot] = q1, q2, v1, v2
+    a, g = inputs(w, slot, record, i, 1.0)
+    x1, x2, _, _, d1, d2 = contact(w, slot, q1, q2, v1, v2, a, g, linear)
+    w[X1 * W + slot], w[X2 * W + slot] = x1, x2
+    w[A0 * W + slot], w[G0 * W + slot] = a, g
+    if result[lane, R_CLOSED] == 0.0:
+        w[DEMAND_1 * W + slot] = max(w[DEMAND_1 * W + slot], d1)
+        w[DEMAND_2 * W + slot] = max(w[DEMAND_2 * W + slot], d2)

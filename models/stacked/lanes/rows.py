@@ -1,0 +1,52 @@
+"""Where a quantity stands in the tables of the lane kernel.
+
+``work`` is one flat array: row r of the W lanes under way lies at ``work[r * W : (r + 1) * W]``
+(constant offsets let the compiler prove that rows do not overlap). ``given`` and ``result`` are
+tables (n, columns) over all lanes; ``result`` starts with the columns of `models.stacked.account`.
+Masses and moments of a lane are over its total mass M.
+"""
+
+from __future__ import annotations
+
+from models.stacked.account import N_ACCOUNT
+
+W = 16
+"""Lanes under way together: two full 512-bit or four 256-bit vectors."""
+
+# --- work: theta_1, r, their rates; the same at the start of the step
+Q1, Q2, V1, V2 = 0, 1, 2, 3
+Q1S, Q2S, V1S, V2S = 4, 5, 6, 7
+X1, X2 = 8, 9  # q'' at the present time
+A0, G0 = 10, 11  # base acceleration and apparent gravity at the present time
+RA, RV = 12, 13  # record, horizontal and vertical, at the end of the step
+SCALE, OFFSET, GRAVITY, VSCALE = 14, 15, 16, 17
+SIDE_1, SIDE_2 = 18, 19  # corners, 1 for a closed joint
+FREE_1, FREE_2 = 20, 21  # 1 for a joint that is up, 0 for a closed one
+KX, KZ = 22, 23  # (m1 A + m2 B)/M of the upright stack
+BX, BZ = 24, 25  # B
+CX, CZ = 26, 27  # m2 C/M
+J1, J2 = 28, 29  # (I1 + m1 A.A + m2 B.B)/M, (I2 + m2 C.C)/M
+SHARE = 30  # m2/M
+DRAG = 31  # viscous couple over theta_1', over M
+WIDE_1, WIDE_2 = 32, 33  # 2 b1, 2 b2 of the joints
+LIMIT_1, LIMIT_2 = 34, 35  # |theta| beyond which a lane needs attention; negative: always
+DEMAND_1, DEMAND_2 = 36, 37  # largest |H|/N
+WORK, WORK_STEP = 38, 39  # work lost in the couple over M: in all, in this step
+MARGIN_1, MARGIN_2 = 40, 41  # negative: the joint has opened or closed in the step
+FLAG = 42
+N_WORK = 43
+
+# --- given: constants of a lane
+(
+    P_SCALE, P_OFFSET, P_GRAVITY, P_VSCALE, P_M1, P_I1, P_H1, P_TALL, P_M2, P_I2, P_H2, P_B1, P_B2, P_D1, P_D2,
+    P_GIVEN_1, P_GIVEN_2, P_FACTOR_1, P_FACTOR_2, P_VISCOUS, P_CALM_1, P_CALM_2, P_STAND_1, P_STAND_2,
+    P_RIGHT, P_LEFT, P_Q1, P_Q2, P_V1, P_V2,
+) = range(30)  # fmt: skip
+N_GIVEN = 30
+
+# --- result: the account, then what a lane must remember: its configuration, since when, whether closed
+R_SIDE_1, R_SIDE_2, R_SINCE, R_CLOSED = range(N_ACCOUNT, N_ACCOUNT + 4)
+N_RESULT = N_ACCOUNT + 4
+
+# kinds of events in a log, in the order of `models.stacked.lanes.run.EVENTS`
+LOG_ONSET, LOG_IMPACT, LOG_CHANGE, LOG_REST, LOG_OVERTURNED = 0.0, 1.0, 2.0, 3.0, 4.0
