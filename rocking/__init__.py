@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from rocking.catalogue import mechanisms, models
     from rocking.instruments import read_specimen
     from rocking.simulation import simulate
+    from rocking.studies import run
     from study.open import open_study
-    from study.run import run
 
 _WHERE = {
     "mechanisms": "rocking.catalogue",
@@ -29,7 +29,7 @@ _WHERE = {
     "read_motion": "grids.motions",
     "read_recording": "grids.recordings",
     "read_specimen": "rocking.instruments",
-    "run": "study.run",
+    "run": "rocking.studies",
     "simulate": "rocking.simulation",
 }
 """Module of every public name: a new name is one line here and one above."""

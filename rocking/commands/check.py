@@ -16,9 +16,10 @@ def check(
     seed: Annotated[int | None, typer.Option(help="Choose the same cells every time.")] = None,
 ) -> None:
     """Recompute random cells and compare them with the cube bit for bit (exit code 1: they differ)."""
+    from diagnosis.sensors import SENSORS
     from study.check import check as check_study
 
-    report = check_study(folder, cells=cells, seed=seed)
+    report = check_study(folder, cells=cells, seed=seed, sensors=SENSORS)
     typer.echo(str(report))
     if report.differing:
         raise typer.Exit(FAILURES)

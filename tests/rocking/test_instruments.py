@@ -1,0 +1,107 @@
+"""Specimens with sensor mechanisms: simulate writes what instruments write, studies show the wall."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import rocking
+from diagnosis.report import extend
+from grids.motions import Motion
+from grids.write_specimen import write_specimen
+from models.errors import InputError
+from rocking.commands import app
+from tests.diagnosis.report.example import diagnosis, specimen
+
+BLOCK = """
+title = "block"
+model = "housner"
+[parameters]
+width = 0.25
+height = 1.1
+mass = 120.0
+"""
+PULSE = {"pulse": {"shape": "sine", "amplitude": "0.26 g", "frequency": "1.2 Hz", "cycles": 2}}
+
+
+def block(folder: Path, mechanisms: str = "") -> Path:
+    path = folder / "block.toml"
+    path.write_text(BLOCK + mechanisms)
+    return path
+
+
+@pytest.fixture
+def motion() -> Motion:
+    return rocking.read_motion(PULSE)
+
+
+def test_gain_and_offset_act_on_rotations_only(tmp_path: Path, motion: Motion) -> None:
+    true = rocking.simulate(block(tmp_path), motion, duration=4.0)
+    read = rocking.simulate(
+        block(tmp_path, "[mechanisms.gain]\ngain = 0.05\n[mechanisms.offset]\noffset_over_peak = 0.1\n"),
+        motion,
+        duration=4.0,
+    )
+    theta = true["rotation_1"].values
+    assert 0.01 < np.max(np.abs(theta)) < 0.2
+    gained = 1.05 * theta
+    np.testing.assert_allclose(read["rotation_1"].values, gained + 0.1 * np.max(np.abs(gained)), rtol=1e-12)
+    np.testing.assert_array_equal(read["base_acceleration_x"].values, true["base_acceleration_x"].values)
+    np.testing.assert_array_equal(read["contact_1"].values, true["contact_1"].values)
+
+
+def test_base_gain_moves_the_base_more_than_is_written(tmp_path: Path, motion: Motion) -> None:
+    louder = rocking.simulate(block(tmp_path), motion, duration=4.0, scale=1.1)
+    read = rocking.simulate(block(tmp_path, "[mechanisms.base_gain]\ngain = 0.1\n"), motion, duration=4.0)
+    np.testing.assert_allclose(read["rotation_1"].values, louder["rotation_1"].values, atol=1e-12)
+    said, moved = (history["base_acceleration_x"].values for history in (read, louder))
+    np.testing.assert_allclose(1.1 * said, moved, rtol=1e-12)
+
+
+def test_delay_shifts_the_responses(tmp_path: Path, motion: Motion) -> None:
+    true = rocking.simulate(block(tmp_path), motion, duration=4.0)
+    step = motion.time_step
+    read = rocking.simulate(block(tmp_path, f"[mechanisms.delay]\ndelay = {5 * step}\n"), motion, duration=4.0)
+    np.testing.assert_allclose(read["rotation_1"].values[5:], true["rotation_1"].values[:-5], atol=1e-9)
+
+
+def test_the_wall_keeps_its_own_mechanisms(tmp_path: Path, motion: Motion) -> None:
+    inset = "[mechanisms.pivot_inset]\ninset_over_half_width = 0.1\n"
+    true = rocking.simulate(block(tmp_path, inset), motion, duration=4.0)
+    read = rocking.simulate(block(tmp_path, inset + "[mechanisms.gain]\ngain = 0.05\n"), motion, duration=4.0)
+    np.testing.assert_allclose(read["rotation_1"].values, 1.05 * true["rotation_1"].values, rtol=1e-12)
+    assert "gain" in read.attrs["instruments"] and "instruments" not in true.attrs
+
+
+def test_an_unknown_mechanism_is_named_with_the_nearest(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="offset"):
+        rocking.read_specimen(block(tmp_path, "[mechanisms.offfset]\noffset_over_peak = 0.1\n"))
+
+
+def test_study_over_an_extended_specimen(tmp_path: Path) -> None:
+    extended = extend(specimen(), diagnosis())
+    write_specimen(extended, tmp_path / "extended.toml")
+    with (tmp_path / "extended.toml").open("a") as file:
+        file.write("[mechanisms.gain]\ngain = 0.05\n")
+    plan = tmp_path / "plan.toml"
+    plan.write_text(
+        """
+[study]
+name = "interval"
+specimen = "extended.toml"
+[motion]
+pulse = { shape = "sine", amplitude = "0.3 g", frequency = "2.5 Hz", cycles = 1 }
+[axes]
+"pivot_inset.inset_over_half_width" = { linspace = [0.1161, 0.1247, 3] }
+[outputs]
+names = ["peak_rotation"]
+"""
+    )
+    report = rocking.run(plan, results=tmp_path / "results", scheduler="synchronous")
+    peaks = rocking.open_study(report.folder)["peak_rotation"].values
+    assert peaks.shape == (3,) and np.all(np.diff(peaks) != 0.0) and np.all(peaks < 0.2)
+    found = CliRunner().invoke(app, ["check", str(report.folder), "--cells", "3"])
+    assert found.exit_code == 0, found.output
