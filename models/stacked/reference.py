@@ -280,10 +280,10 @@ class _Run:
         self.account[(acc.IMPACTS_BASE, acc.IMPACTS_TOP)[joint]] += 1
         self.events.append(Event(self.time, "impact", joint + 1))
         self._take(landing)
-        small = [j for j in JOINTS if self.q[j] == 0.0 and landing[j] and abs(landing[2 + j]) < self.calm[j]]
-        if len(small) == 2 and self._stays(small, (0, 0, 0.0, 0.0), piece):
+        calm = [abs(landing[2 + j]) < self.calm[j] for j in JOINTS]
+        if self.q == [0.0, 0.0] and all(calm) and self._stays(list(JOINTS), (0, 0, 0.0, 0.0), piece):
             pass
-        elif not (joint in small and self._stays([joint], closed(*at), piece)):
+        elif not (landing[joint] and calm[joint] and self._stays([joint], closed(*at), piece)):
             self._take(landing)
         self.settle(piece)
         after = kinetic_energy(self.stack, *self.sides, tuple(self.q), tuple(self.rate), self.linear)

@@ -29,17 +29,18 @@ def close(
     c2 = s2 if s2 != 0.0 else 1.0
     energy = impulses(system, given, lane, c1, c2, q1, q2, v1, v2, linear)
     landing = land(system, given, lane, joint, s1, s2, v1, v2, energy)
-    small_1 = q1 == 0.0 and landing[0] != 0.0 and abs(landing[2]) < given[lane, P_CALM_1]
-    small_2 = q2 == 0.0 and landing[1] != 0.0 and abs(landing[3]) < given[lane, P_CALM_2]
+    calm_1 = abs(landing[2]) < given[lane, P_CALM_1]
+    calm_2 = abs(landing[3]) < given[lane, P_CALM_2]
+    up, calm = (landing[0], calm_1) if joint == 0 else (landing[1], calm_2)
     after = landing
-    done = False
-    if small_1 and small_2:
-        motion(system, given, lane, q1, q2, 0.0, 0.0, a, g, linear)
+    rests = False
+    if calm_1 and calm_2 and q1 == 0.0 and q2 == 0.0:
+        motion(system, given, lane, 0.0, 0.0, 0.0, 0.0, a, g, linear)
         n1, n2 = choose(system, 0.0, 0.0, False)
-        done = n1 == 0.0 and n2 == 0.0
-        if done:
+        rests = n1 == 0.0 and n2 == 0.0
+        if rests:
             after = (0.0, 0.0, 0.0, 0.0)
-    if not done and (small_1 if joint == 0 else small_2):
+    if not rests and calm and up != 0.0:
         impulses(system, given, lane, c1, c2, q1, q2, v1, v2, linear)
         trial = imposed(system, joint, 0.0, s2 if joint == 0 else s1, energy)
         motion(system, given, lane, q1, q2, trial[2], trial[3], a, g, linear)

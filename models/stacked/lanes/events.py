@@ -5,7 +5,6 @@ Inside the step the inputs are linear in the fraction f of the step (0..1).
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 from models.lanes.compiler import called, inlined
@@ -15,8 +14,7 @@ from models.stacked.lanes.bookkeeping import configure, note, raise_peaks
 from models.stacked.lanes.choice import choose, held
 from models.stacked.lanes.closing import close
 from models.stacked.lanes.corners import line, motion
-from models.stacked.lanes.equation import contact
-from models.stacked.lanes.locate import NONE, inputs, locate, onset, part
+from models.stacked.lanes.locate import inputs, locate, look, onset, part
 from models.stacked.lanes.rows import (
     A0, DEMAND_1, DEMAND_2, G0, LIMIT_1, LOG_CHANGE, LOG_ONSET, MARGIN_1, MARGIN_2, Q1, Q1S, Q2, Q2S, R_CLOSED,
     R_SIDE_1, R_SIDE_2, V1, V1S, V2, V2S, W, WORK, WORK_STEP, X1, X2,
@@ -25,6 +23,13 @@ from models.stacked.lanes.rows import (
 Table = Any
 AHEAD = 1e-6
 """Fraction of a step by which the choice at a threshold looks ahead."""
+
+
+@inlined
+def demand(w: Table, slot: int, base: float, top: float) -> None:
+    """Keep the largest friction demands."""
+    w[DEMAND_1 * W + slot] = max(w[DEMAND_1 * W + slot], base)
+    w[DEMAND_2 * W + slot] = max(w[DEMAND_2 * W + slot], top)
 
 
 @inlined
@@ -92,11 +97,9 @@ def one_step(
             note(log, count, lane, (i + f) * h, LOG_ONSET, 1.0 if result[lane, R_SIDE_1] != 0.0 else 2.0)
         share = 1.0 - f
         state = (q1, q2, v1, v2)
-        a, g = inputs(w, slot, record, i, f)
-        x1, x2, _, _, d1, d2 = contact(w, slot, q1, q2, v1, v2, a, g, linear)
+        x1, x2, _, _, d1, d2 = look(w, slot, state, record, i, f, linear)
         if f > 0.0 or not known:
-            w[DEMAND_1 * W + slot] = max(w[DEMAND_1 * W + slot], d1)
-            w[DEMAND_2 * W + slot] = max(w[DEMAND_2 * W + slot], d2)
+            demand(w, slot, d1, d2)
         if known and rounds == 1:
             end = (w[Q1 * W + slot], w[Q2 * W + slot], w[V1 * W + slot], w[V2 * W + slot])
             m1, m2 = w[MARGIN_1 * W + slot], w[MARGIN_2 * W + slot]
@@ -116,6 +119,8 @@ def one_step(
         q1, q2, v1, v2 = end
         if joint < 0:
             break
+        _, _, _, _, d1, d2 = look(w, slot, end, record, i, f, linear)
+        demand(w, slot, d1, d2)
         time = (i + f) * h
         side = result[lane, R_SIDE_1] if joint == 0 else result[lane, R_SIDE_2]
         if side == 0.0:
@@ -131,10 +136,8 @@ def one_step(
             given, result, w, system, lane, slot, joint, q1, q2, v1, v2, a, g, time, log, count, linear
         )  # fmt: skip
     w[Q1 * W + slot], w[Q2 * W + slot], w[V1 * W + slot], w[V2 * W + slot] = q1, q2, v1, v2
-    a, g = inputs(w, slot, record, i, 1.0)
-    x1, x2, _, _, d1, d2 = contact(w, slot, q1, q2, v1, v2, a, g, linear)
+    x1, x2, _, _, d1, d2 = look(w, slot, (q1, q2, v1, v2), record, i, 1.0, linear)
     w[X1 * W + slot], w[X2 * W + slot] = x1, x2
-    w[A0 * W + slot], w[G0 * W + slot] = a, g
+    w[A0 * W + slot], w[G0 * W + slot] = inputs(w, slot, record, i, 1.0)
     if result[lane, R_CLOSED] == 0.0:
-        w[DEMAND_1 * W + slot] = max(w[DEMAND_1 * W + slot], d1)
-        w[DEMAND_2 * W + slot] = max(w[DEMAND_2 * W + slot], d2)
+        demand(w, slot, d1, d2)

@@ -70,6 +70,15 @@ def next_onset(
 
 
 @called
+def look(
+    w: Table, slot: int, state: State, record: Table, i: int, f: float, linear: Any
+) -> tuple[float, float, float, float, float, float]:  # fmt: skip
+    """`contact` of a state at fraction f of step i."""
+    a, g = inputs(w, slot, record, i, f)
+    return contact(w, slot, state[0], state[1], state[2], state[3], a, g, linear)
+
+
+@called
 def part(
     w: Table, slot: int, state: State, second: tuple[float, float], record: Table, i: int, f: float, share: float,
     h: float, linear: Any,
@@ -80,8 +89,9 @@ def part(
     q1, q2, v1, v2, work = rk4(
         w, slot, state[0], state[1], state[2], state[3], second[0], second[1], share * h, a0, a1, g0, g1, linear
     )
-    _, _, m1, m2, _, _ = contact(w, slot, q1, q2, v1, v2, a1, g1, linear)
-    return (q1, q2, v1, v2), m1, m2, work
+    end = (q1, q2, v1, v2)
+    _, _, m1, m2, _, _ = look(w, slot, end, record, i, f + share, linear)
+    return end, m1, m2, work
 
 
 @inlined
@@ -125,8 +135,7 @@ def locate(
         )  # fmt: skip
         low_margin = 0.0
     else:
-        a, g = inputs(w, slot, record, i, f)
-        _, _, m1, m2, _, _ = contact(w, slot, state[0], state[1], state[2], state[3], a, g, linear)
+        _, _, m1, m2, _, _ = look(w, slot, state, record, i, f, linear)
         low_margin = max(0.0, pick(joint, (m1, m2)))
         share = rest * low_margin / (low_margin - margin)
     if not low < share < high:
