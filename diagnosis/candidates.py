@@ -21,7 +21,7 @@ REFERENCE = "reference_peak"
 ORDERS = (1.0, 2.0, 4.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Candidate:
     """One mechanism, or one variant of it with some parameters held.
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,6 +59,10 @@ class Measured:
         """Samples compared in each window, all channels together (W,)."""
         return self.mask.sum(axis=(1, 2)).astype(float)
 
+    def cut_again(self, windows: tuple[Window, ...]) -> Measured:
+        """The same starts with other lengths."""
+        return replace(self, windows=windows, **gather(self.recordings, windows, self.channels))
+
     def times(self, window: int) -> FloatArray:
         """Times (N,) of a window's samples, in s."""
         cutout = self.windows[window]
@@ -94,6 +99,28 @@ def arrange(
             f"{lead} never rises above 8 times its noise in {', '.join(r.name for r in recordings)}: "
             "nothing can be compared; shake harder, or measure with less noise."
         )
+    shaken_up = vertical or all("base_acceleration_z" in r.channels for r in recordings)
+    start = np.stack([_start(recordings, windows, state) for state in states], axis=1)
+    peak = float(np.max(np.abs(smooth(recordings[0].channels[lead], recordings[0].time_step, SMOOTHING))))
+    return Measured(
+        model=model,
+        recordings=tuple(recordings),
+        shakings=tuple(r.shaking(shaken_up, vertical_acts=vertical) for r in recordings),
+        base_noise=tuple(base_noise(r) for r in recordings),
+        windows=tuple(windows),
+        channels=channels,
+        **gather(recordings, windows, channels),
+        states=start,
+        state_size=np.maximum(np.std(start, axis=0), 1e-12),
+        memory=_memory(recordings, windows, channels),
+        reference_peak=peak if reference_peak is None else reference_peak,
+    )
+
+
+def gather(
+    recordings: Sequence[Recording], windows: Sequence[Window], channels: Sequence[str]
+) -> dict[str, Any]:
+    """Values, mask, noise and base motion of the windows, padded to the longest one."""
     longest = max(w.samples for w in windows)
     shape = (len(windows), len(channels), longest)
     values, mask = np.zeros(shape), np.zeros(shape, bool)
@@ -108,25 +135,7 @@ def arrange(
             sigma[w, c] = noise[window.recording, name]
         last = min(window.first + longest, recording.time.size)
         base[w, : last - window.first] = recording.channels[REQUIRED][window.first : last]
-    shaken_up = vertical or all("base_acceleration_z" in r.channels for r in recordings)
-    start = np.stack([_start(recordings, windows, state) for state in states], axis=1)
-    peak = float(np.max(np.abs(smooth(recordings[0].channels[lead], recordings[0].time_step, SMOOTHING))))
-    return Measured(
-        model=model,
-        recordings=tuple(recordings),
-        shakings=tuple(r.shaking(shaken_up, vertical_acts=vertical) for r in recordings),
-        base_noise=tuple(base_noise(r) for r in recordings),
-        windows=tuple(windows),
-        channels=channels,
-        values=values,
-        mask=mask,
-        sigma=sigma,
-        base=base,
-        states=start,
-        state_size=np.maximum(np.std(start, axis=0), 1e-12),
-        memory=_memory(recordings, windows, channels, noise),
-        reference_peak=peak if reference_peak is None else reference_peak,
-    )
+    return {"values": values, "mask": mask, "sigma": sigma, "base": base}
 
 
 def _start(recordings: Sequence[Recording], windows: Sequence[Window], state: str) -> FloatArray:
@@ -148,7 +157,6 @@ def _memory(
     recordings: Sequence[Recording],
     windows: Sequence[Window],
     channels: Sequence[str],
-    noise: dict[tuple[int, str], float],
 ) -> dict[str, FloatArray]:
     """Largest rotation and number of impacts before each window, from the smoothed measurement."""
     memory: dict[str, FloatArray] = {}
@@ -157,7 +165,7 @@ def _memory(
     peaks, impacts = [], []
     for k, recording in enumerate(recordings):
         signal = smooth(recording.channels["rotation_1"], recording.time_step, SMOOTHING)
-        level = 2.0 * noise[k, "rotation_1"]
+        level = 2.0 * response_noise(recording, "rotation_1")
         side = np.where(signal > level, 1, np.where(signal < -level, -1, 0))
         held = side[np.maximum.accumulate(np.where(side != 0, np.arange(side.size), 0))]
         crossed = np.cumsum(np.concatenate([[0], (held[1:] != held[:-1]) & (held[:-1] != 0)]))

@@ -19,18 +19,22 @@ import numpy as np
 
 from diagnosis.candidates import Candidate
 from diagnosis.fit import Fitted, normal
-from diagnosis.misfit import STEP, project, reduce
+from diagnosis.misfit import STEP, reduce
 from diagnosis.prediction import Point
 from models.base import FloatArray
 
 
 @dataclass(frozen=True)
 class Score:
-    """``statistic``: the larger of score and grid gain; ``starts``: coordinates (d,) worth a refit, best first."""
+    """``statistic``: the larger of score and grid gain; ``starts``: coordinates (d,) worth a refit, best first.
+
+    ``column`` (W, M): the direction in which the effect moves the residuals, off the states.
+    """
 
     candidate: Candidate
     statistic: float
     starts: tuple[FloatArray, ...]
+    column: FloatArray
 
 
 @dataclass(frozen=True)
@@ -107,7 +111,8 @@ def _score_one(screen: Screen, base: Point, candidate: Candidate) -> Score:
     if best > 0.0:
         starts.insert(0 if not gains.size or best * 0.8 > gains[order[0]] else 1, start)
     statistic = max(best if np.isfinite(best) else 0.0, float(gains.max(initial=0.0)))
-    return Score(candidate, statistic, tuple(starts[:2]))
+    column = derivative if information > 1e-12 or not order.size else off[2 + int(order[0])] - screen.residual
+    return Score(candidate, statistic, tuple(starts[:2]), column)
 
 
 def _gain(screen: Screen, off: FloatArray) -> float:
@@ -120,8 +125,3 @@ def at(base: Point, candidate: Candidate, u: FloatArray) -> Point:
     """A point with the candidate's coordinates."""
     values = {x.name: x.value(float(c)) for x, c in zip(candidate.unknowns, u, strict=True)}
     return Point({**base.values, **candidate.held, **values}, base.states)
-
-
-def orthogonal_columns(screen: Screen, columns: FloatArray) -> FloatArray:
-    """Columns (W, M, k) off the states."""
-    return project(screen.basis, columns)

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from diagnosis.candidates import Candidate
+from diagnosis.null import Null, null_distribution
 from diagnosis.refit import Explanation, again, best_of, extend, from_other, gain_by_window, without
 from diagnosis.screen import Score, open_screen, score
 from models.base import FloatArray
@@ -31,6 +32,8 @@ SECOND_TRIES = 8
 MOST_EFFECTS = 3
 POOL_SHARE = 0.25
 """Singles whose gain is this share of the best one's are tried as parts of a pair."""
+ADEQUATE = 1.08
+"""Misfit per sample under which one effect is enough to start a pair from."""
 
 Progress = Callable[[str, float], None]
 
@@ -42,6 +45,7 @@ class Search:
     base: Explanation
     candidates: tuple[Candidate, ...]
     scores: list[Score] = field(default_factory=list)
+    null: Null | None = None
     singles: list[Explanation] = field(default_factory=list)
     tried: list[Explanation] = field(default_factory=list)
     best: Explanation | None = None
@@ -105,7 +109,9 @@ def _refits(
 
 
 def _singles(found: Search, progress: Progress) -> None:
-    found.scores = score(open_screen(found.base.fitted), found.candidates)
+    opened = open_screen(found.base.fitted)
+    found.scores = score(opened, found.candidates)
+    found.null = null_distribution(opened, found.scores)
     wanted = [s for k, s in enumerate(found.scores) if s.starts and (k < FEWEST or s.statistic >= WORTH)][:MOST]
     for k, entry in enumerate(wanted):
         progress(f"refitting {entry.candidate.name}", 0.15 + 0.3 * k / len(wanted))
@@ -125,8 +131,23 @@ def _singles(found: Search, progress: Progress) -> None:
     found.tried += found.singles
 
 
+def misfit_per_sample(explanation: Explanation) -> float:
+    """Squared whitened residual per sample, without the worst tenth of the windows."""
+    misfit = explanation.fitted.misfit
+    residual = misfit.residuals([misfit.point(explanation.fitted.u, explanation.fitted.states)])[0]
+    each = np.sort(np.sum(residual**2, axis=1) / misfit.predictor.measured.count)
+    return float(np.mean(each[: max(1, int(np.ceil(0.9 * each.size)))]))
+
+
+def adequate(explanation: Explanation) -> bool:
+    """Whether the misfit is that of the noise."""
+    return misfit_per_sample(explanation) < ADEQUATE
+
+
 def pool(found: Search) -> list[Explanation]:
     """The best single of each of the strongest classes."""
+    if found.best is not None and adequate(found.best):
+        return [found.best]
     best = found.gain(found.singles[0])
     chosen: list[Explanation] = []
     for single in found.singles:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import models
-from diagnosis.calibrate import calibrate_base
+from diagnosis.starts import calibrate_base
 from diagnosis.fit import Fitted, fit
 from diagnosis.measured import Measured, arrange
+from diagnosis.memory import counted
 from diagnosis.misfit import Misfit
 from diagnosis.prediction import Predictor
 from diagnosis.unknowns import fixed_values, of_specimen
@@ -41,5 +43,7 @@ def base_fit(specimen: Specimen, measured: Measured, seed: int = 0) -> Fitted:
     unknowns = of_specimen(specimen, measured.model)
     plain = Misfit(predictor, sensor_noise_only(predictor), unknowns, fixed_values(specimen))
     first = calibrate_base(plain, seed)
-    whitening = with_base_noise(predictor, responses(predictor, plain.point(first.u, first.states)))
+    point = plain.point(first.u, first.states)
+    whitening = with_base_noise(predictor, responses(predictor, point))
+    predictor = replace(predictor, measured=counted(predictor, point))
     return fit(Misfit(predictor, whitening, unknowns, plain.fixed), first.u, first.states)

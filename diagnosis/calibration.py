@@ -1,0 +1,102 @@
+"""Calibrating a specimen's base model on recordings: estimates, intervals, correlation, drift."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from diagnosis.fit import Fitted
+from diagnosis.heldout import relative_misfit
+from diagnosis.intervals import correlation, estimates, profile_rise
+from diagnosis.measured import Measured
+from diagnosis.result import Estimate
+from diagnosis.setup import base_fit, measure
+from grids.recordings.base import Recording
+from grids.specimen import Specimen
+from models.base import FloatArray
+
+PROFILE_POINTS = (-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0)
+"""Half widths of the interval at which a profile is evaluated, over 1.96."""
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """Fitted base parameters.
+
+    ``correlation`` (k, k) in the order of ``parameters``; ``misfit`` relative rms, ``noise_floor`` the same
+    of the noise; ``profiles``: by parameter, values and the rise of 2 log likelihood below the optimum;
+    ``by_recording``: the same estimates from each recording alone (the drift), with several recordings.
+    """
+
+    parameters: Mapping[str, Estimate]
+    correlation: FloatArray
+    misfit: float
+    noise_floor: float
+    misfit_per_sample: float
+    windows: int
+    profiles: Mapping[str, tuple[FloatArray, FloatArray]] = field(default_factory=dict)
+    by_recording: Mapping[str, Mapping[str, Estimate]] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        lines = [f"{'parameter':<24}{'estimate':>12}{'low 95 %':>12}{'high 95 %':>12}  unit"]
+        for name, value in self.parameters.items():
+            bound = f"  at its {value.at_bound} bound" if value.at_bound else ""
+            lines.append(
+                f"{name:<24}{value.estimate:>12.6g}{value.low95:>12.6g}{value.high95:>12.6g}  {value.unit}{bound}"
+            )
+        lines.append(
+            f"misfit {self.misfit:.4f} of the signal (noise {self.noise_floor:.4f}), "
+            f"{self.misfit_per_sample:.3f} times the noise variance, {self.windows} windows"
+        )
+        return "\n".join(lines)
+
+
+def calibrate(
+    specimen: Specimen, recordings: Sequence[Recording], *, profile: bool = True, seed: int = 0
+) -> Calibration:
+    """Fit the toleranced parameters and those of [calibrate]; no mechanism is looked for.
+
+    Raises InputError when nothing can be compared.
+    """
+    measured = measure(specimen, recordings)
+    fitted = base_fit(specimen, measured, seed)
+    by_recording = {}
+    if len(recordings) > 1:
+        for recording in recordings:
+            alone = measure(specimen, [recording], measured.reference_peak)
+            by_recording[recording.name] = estimates(base_fit(specimen, alone, seed))
+    return summary(fitted, measured, profile, by_recording)
+
+
+def summary(
+    fitted: Fitted, measured: Measured, profile: bool, by_recording: Mapping[str, Mapping[str, Estimate]]
+) -> Calibration:
+    misfit = fitted.misfit
+    names = [x.name for x in misfit.unknowns]
+    point = misfit.point(fitted.u, fitted.states)
+    predicted = misfit.predictor.predict([point])[0]
+    residual = misfit.residuals([point])[0]
+    found = estimates(fitted, names if profile else ())
+    return Calibration(
+        parameters=found,
+        correlation=correlation(fitted),
+        misfit=relative_misfit(measured, predicted),
+        noise_floor=relative_misfit(measured, None),
+        misfit_per_sample=float(np.sum(residual**2) / measured.count.sum()),
+        windows=len(measured.windows),
+        profiles={n: _profile(fitted, i, found[n]) for i, n in enumerate(names)} if profile else {},
+        by_recording=by_recording,
+    )
+
+
+def _profile(fitted: Fitted, index: int, estimate: Estimate) -> tuple[FloatArray, FloatArray]:
+    """Values of one parameter and the rise of the loss with all others refitted."""
+    unknown = fitted.misfit.unknowns[index]
+    low, high = unknown.bounds
+    ends = sorted(unknown.coordinate(end) for end in (estimate.low95, estimate.high95))
+    half = 0.5 * (ends[1] - ends[0]) / 1.96
+    at = np.unique(np.clip(fitted.u[index] + half * np.array(PROFILE_POINTS), low, high))
+    rise = [profile_rise(fitted, index, float(u)) for u in at]
+    return np.array([unknown.value(float(u)) for u in at]), np.array(rise)

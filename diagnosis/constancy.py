@@ -1,0 +1,117 @@
+"""Constancy tests: is what a parameter stands for the same everywhere? The answer to laws in no library.
+
+For each kind of force and each thing z it may depend on (side, time, amplitude, recording, direction) the
+column G (f z) is tested with the constant column G f, the base parameters, the states and every active
+mechanism projected out: a score test with one degree of freedom. What acts for a while only is
+scanned over time. Statistics are divided by the misfit that the model leaves anyway.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnosis.forces import KINDS, Forces
+from diagnosis.result import Constancy
+from models.base import FloatArray
+
+FLAG = 15.0
+SCAN_FLAG = 25.0
+"""The scan over time tries many intervals."""
+SHORTEST_SPELL = 2
+"""Windows."""
+
+
+@dataclass(frozen=True)
+class Tested:
+    """One test: statistic of a force of ``kind`` modulated by ``depends_on`` (nothing: the plain force).
+
+    ``sign``: positive where the force is stronger with the larger value (the right side, later).
+    """
+
+    kind: str
+    depends_on: str
+    statistic: float
+    sign: float = 0.0
+
+
+def modulations(forces: Forces) -> Iterator[tuple[str, FloatArray]]:
+    """What a force may depend on, as factors (W, N) about zero."""
+    m = forces.fitted.misfit.predictor.measured
+    yield "side", np.sign(forces.rotation)
+    yield "amplitude of the motion", np.broadcast_to(_centred(forces.peak), forces.rotation.shape)
+    yield "size of the rotation", _centred(np.abs(forces.rotation) / np.max(forces.peak))
+    length = max(r.time[-1] for r in m.recordings)
+    yield "time", _centred(forces.time / length)
+    yield "direction of motion", np.sign(forces.rotation * forces.rate)
+    record = m.recording_of[:, None]
+    for r, recording in enumerate(m.recordings[1:], start=1):
+        yield f"recording ({recording.name})", _centred(np.broadcast_to(record == r, forces.rotation.shape).astype(float))
+
+
+def _centred(values: FloatArray) -> FloatArray:
+    return np.asarray(values - np.mean(values))
+
+
+def inflation(forces: Forces) -> float:
+    """Misfit per sample that the model leaves, at least 1."""
+    m = forces.fitted.misfit.predictor.measured
+    chi2 = np.sum(forces.screen.residual**2, axis=1)
+    return max(1.0, float(np.median(chi2 / m.count)))
+
+
+def tests(forces: Forces) -> list[Tested]:
+    """All tests, strongest first."""
+    screen, excess = forces.screen, inflation(forces)
+    found = []
+    for kind in KINDS:
+        plain = forces.column(kind)
+        norm = screen.product(plain, plain)
+        if norm < 1e-9:
+            continue
+        along = screen.scores_with_residual(plain)
+        found.append(Tested(kind, "", along**2 / norm / excess))
+        for depends_on, factor in modulations(forces):
+            column = forces.column(kind, factor)
+            cross = screen.product(column, plain) / norm
+            information = screen.product(column, column) - cross**2 * norm
+            if information < 1e-3 * max(screen.product(column, column), 1e-12):
+                continue
+            score = screen.scores_with_residual(column) - cross * along
+            sign = float(np.sign(score) * np.sign(along))
+            found.append(Tested(kind, depends_on, score**2 / information / excess, sign))
+        spell = _spell(forces, plain) / excess
+        found.append(Tested(kind, "a spell of time", spell * FLAG / SCAN_FLAG))
+    return sorted(found, key=lambda t: -t.statistic)
+
+
+def _spell(forces: Forces, column: FloatArray) -> float:
+    """Largest statistic of the force acting in one spell of windows, against acting always."""
+    screen = forces.screen
+    w = screen.weights
+    score = w * np.einsum("wm,wm->w", column, screen.residual)
+    information = w * np.einsum("wm,wm->w", column, column)
+    total_score, total = score.sum(), information.sum()
+    records = forces.fitted.misfit.predictor.measured.recording_of
+    best = 0.0
+    for r in np.unique(records):
+        own = np.flatnonzero(records == r)
+        s, i = np.cumsum(np.r_[0.0, score[own]]), np.cumsum(np.r_[0.0, information[own]])
+        for a in range(own.size):
+            for b in range(a + SHORTEST_SPELL, own.size + 1):
+                inside, part = s[b] - s[a], i[b] - i[a]
+                left = part * (1.0 - part / total)
+                if left > 1e-3 * total:
+                    best = max(best, (inside - part / total * total_score) ** 2 / left)
+    return float(best)
+
+
+def flags(tested: list[Tested]) -> tuple[Constancy, ...]:
+    """Tests beyond the threshold: one a kind of force, the strongest dependence first."""
+    found: dict[str, Constancy] = {}
+    for test in tested:
+        if test.statistic >= FLAG and test.kind not in found:
+            found[test.kind] = Constancy(test.kind, test.depends_on or "acts though no mechanism explains it", test.statistic)
+    return tuple(found.values())
