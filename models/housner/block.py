@@ -114,7 +114,26 @@ class Block:
         """
         before = self.inertia + self.mass * (self.height**2 - self.right * self.left)
         after = self.inertia + self.mass * (self.height**2 + np.maximum(self.right, self.left) ** 2)
-        return before / after
+        e: FloatArray = before / after
+        return e
+
+    def clashes(self) -> list[str]:
+        """Sentences about mechanisms that do not act together on some block."""
+        slides, bounces = np.isfinite(self.friction), self.contact_restitution > 0.0
+        bends = np.isfinite(self.first_frequency)
+        found = []
+        for one, first, other, second in (
+            ("sliding", slides, "bounce", bounces),
+            ("sliding", slides, "wall_flexibility", bends),
+            ("bounce", bounces, "wall_flexibility", bends),
+            ("rounded_corner", self.corner_radius > 0.0, "wall_flexibility", bends),
+            ("crushing", self.crushing_rate > 0.0, "wall_flexibility", bends),
+            ("flexible_joint", self.joint_angle > 0.0, "wall_flexibility", bends),
+            ("coulomb_damping", self.coulomb > 0.0, "wall_flexibility", bends),
+        ):
+            if np.any(first & second):
+                found.append(f"{one} and {other} do not act together in this model: leave one of them out")
+        return found
 
     @property
     def plain(self) -> bool:
@@ -158,10 +177,7 @@ def assemble(values: Values, vertical: bool, size: int | None = None) -> Block:
     top_height = height + value("top_mass_height", 0.0)
     centre = (mass * height / 2.0 + top * top_height) / total
     inertia = (
-        own
-        + mass * (centre - height / 2.0) ** 2
-        + value("top_mass_inertia", 0.0)
-        + top * (top_height - centre) ** 2
+        own + mass * (centre - height / 2.0) ** 2 + value("top_mass_inertia", 0.0) + top * (top_height - centre) ** 2
     )
     zero, one, infinite = np.zeros(shape), np.ones(shape), np.full(shape, np.inf)
     return Block(

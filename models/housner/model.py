@@ -51,9 +51,10 @@ class Housner:
         return {name: m for name, m in MECHANISMS.items() if self.name in m.acts}
 
     def check(self, values: Values) -> list[str]:
-        """What has no meaning together: no mass at all, impacts after which the block does not rock."""
+        """What has no meaning together: no mass at all, impacts after which the block does not rock, mechanisms
+        that do not act together."""
         block = build(values, False)
-        found = []
+        found = block.clashes()
         if np.any(~(block.mass > 0.0)):
             found.append("mass and top_mass are both 0 kg: give at least one of them")
             return found
@@ -89,6 +90,8 @@ class Housner:
         block = build(values, shaking.vertical is not None and shaking.vertical_acts, size)
         if block.size != size:
             raise ValueError(f"values broadcast to {block.size} lanes, {size} are asked for")
+        for sentence in block.clashes():
+            raise InputError(sentence)
         return block
 
     def _integrator(self, integrator: str, block: Block, options: Mapping[str, str] | None) -> bool:
@@ -173,14 +176,22 @@ class Housner:
             first=first, last=last, samples=samples, fall=True,
         )  # fmt: skip
         assert ran.rotation is not None and ran.rate is not None
-        return self.observe(block, ran.rotation, ran.rate)
+        return self.observe(block, ran.rotation, ran.rate, ran.shift)
 
-    def observe(self, block: Block, rotation: FloatArray, rate: FloatArray) -> dict[str, FloatArray]:
-        """The observables of rotations and rates; the first axis is that of the block's lanes."""
+    def observe(
+        self, block: Block, rotation: FloatArray, rate: FloatArray, shift: FloatArray | None = None
+    ) -> dict[str, FloatArray]:
+        """The observables of rotations and rates; the first axis is that of the block's lanes.
+
+        ``shift`` (m) is what sliding, bouncing or bending adds to the mass centre's displacement.
+        """
         shape = (-1,) + (1,) * (rotation.ndim - 1)
-        h = block.height.reshape(shape)
-        b = np.where(rotation >= 0.0, block.right.reshape(shape), block.left.reshape(shape))
-        across = h * np.sin(rotation) + np.sign(rotation) * b * (1.0 - np.cos(rotation))
+        rho = block.corner_radius.reshape(shape)
+        h = block.height.reshape(shape) - rho
+        b = np.where(rotation >= 0.0, block.right.reshape(shape), block.left.reshape(shape)) - rho
+        across = h * np.sin(rotation) + rho * rotation + np.sign(rotation) * b * (1.0 - np.cos(rotation))
+        if shift is not None:
+            across = across + shift
         return {
             "rotation_1": rotation,
             "rotation_rate_1": rate,
@@ -224,7 +235,7 @@ class Housner:
                 samples=count, log=20_000, fall=True,
             )  # fmt: skip
             assert ran.rotation is not None and ran.rate is not None and ran.events is not None
-            rotation, rate = ran.rotation[0], ran.rate[0]
+            rotation, rate, shift = ran.rotation[0], ran.rate[0], ran.shift
             events = tuple(Event(t, kind) for t, kind in ran.events[0] if t <= end)
             outputs = {k: float(v[0]) for k, v in lanes.outputs(block, ran.result).items()}
         elif integrator == "reference":
@@ -234,6 +245,7 @@ class Housner:
                 block, shaking, scale, tail=quiet, linear=linear, initial=start, duration=end, follow=True
             )
             rotation, rate = told.rotation[:count].copy(), told.rate[:count].copy()
+            shift = told.shift[None, :count]
             events, outputs = told.events, dict(told.outputs)
         else:
             from models.housner import newmark
@@ -241,7 +253,7 @@ class Housner:
             many = newmark.run(
                 block, shaking, np.array([scale]), tail=quiet, linear=linear, initial=start, duration=end, follow=True
             )
-            rotation, rate = many.rotation[0, :count].copy(), many.rate[0, :count].copy()
+            rotation, rate, shift = many.rotation[0, :count].copy(), many.rate[0, :count].copy(), None
             events, outputs = many.events[0], {k: float(v[0]) for k, v in many.outputs.items()}
         over = outputs["overturning_time"]
         if over == over:
@@ -252,7 +264,7 @@ class Housner:
                 fallen = largest + 1
             sign = np.sign(outputs["residual_rotation"])
             rotation[fallen:], rate[fallen:] = sign * np.pi / 2, 0.0
-        channels = {name: one[0] for name, one in self.observe(block, rotation[None], rate[None]).items()}
+        channels = {name: one[0] for name, one in self.observe(block, rotation[None], rate[None], shift).items()}
         return History(time, channels, events, outputs)
 
 

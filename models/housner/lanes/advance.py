@@ -16,6 +16,7 @@ from models.housner.lanes import rows as r
 from models.housner.lanes.equation import acceleration, rk4
 from models.housner.lanes.events import one_step
 from models.housner.lanes.onset import next_onset
+from models.housner.lanes.regimes.flexure import relax
 from models.housner.lanes.regimes.flight import shift
 from models.housner.lanes.step import hermite_root, inputs, note, raise_peak, stand_on, turning_point
 from models.lanes.compiler import called, compiled, inlined
@@ -217,6 +218,9 @@ def advance(
                     waiting += 1
                     at[slot] = first[lane]
                     start(given, result, w, lane, slot, first[lane] * h, linear)
+                    if general is not None:
+                        if given[lane, r.Q_FREQUENCY] < math.inf and result[lane, r.R_MODE] == r.UP:
+                            relax(given, w, lane, slot, record, at[slot], general, linear)
                     bound[slot] = at[slot]
                 if at[slot] == bound[slot]:
                     if every > 0 and (at[slot] - first[lane]) % every == 0:
@@ -230,7 +234,7 @@ def advance(
                     came = at[slot]
                     at[slot] = next_onset(given, w, lane, slot, record, at[slot], last[lane], chunk, linear)
                     if every > 0 and w[r.U * r.W + slot] != 0.0:
-                        for k in range((came - first[lane]) // every, (at[slot] - first[lane]) // every + 1):
+                        for k in range((came - first[lane] - 1) // every + 1, (at[slot] - first[lane]) // every + 1):
                             if k < trace.shape[1]:
                                 trace[lane, k, 2] = w[r.U * r.W + slot]
                 if at[slot] >= last[lane]:

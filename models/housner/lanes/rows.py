@@ -32,7 +32,7 @@ WORK, WORK_STEP = 36, 37  # work lost in couples over M: in all, in this step
 FLAG = 38  # whether the lane needs attention after this step
 # --- work: degrees of freedom of a regime (`models.housner.lanes.regimes`); U, U1 in contact: slip u, u'
 U, U1 = 39, 40  # in flight: x and x' of the mass centre; in flexure: amplitude eta and eta' of the mode
-Z, Z1 = 41, 42  # in flight: z and z' of the mass centre; Z in flexure: 0 until the mode has been relaxed
+Z, Z1 = 41, 42  # in flight: z and z' of the mass centre
 N_WORK = 43
 
 # --- given: constants of a lane

@@ -1,9 +1,7 @@
 """A wall that bends while it rocks or stands, one lane; equations in `models.housner.flexure`.
 
-All over M: m, f, k the mode's mass, force and moment integrals, W its circular frequency clamped, s the side:
-
-    (J - 2 s b f eta + m eta^2) theta'' + k eta'' = J theta''_rigid + f eta (G sin + a cos)... (see `rates`)
-    m eta'' + k theta'' = theta'^2 (m eta - s b f) + f (G sin(theta) - a cos(theta)) - m (2 xi W eta' + W^2 eta)
+All over M: m, f, k the mode's mass, force and moment integrals. U, U1 hold its amplitude eta and eta'. The
+rigid block's theta'' brings in gravity, the ground and all couples; the mode adds its own terms.
 """
 
 from __future__ import annotations
@@ -29,10 +27,6 @@ def bend(
 ) -> None:  # fmt: skip
     """Advance a lane over step i, in full contact or rocking."""
     w[r.TH * r.W + slot], w[r.OM * r.W + slot] = w[r.TH0 * r.W + slot], w[r.OM0 * r.W + slot]
-    if w[r.Z * r.W + slot] == 0.0:
-        w[r.Z * r.W + slot] = 1.0
-        if result[lane, r.R_MODE] == r.UP:
-            relax(given, w, lane, slot, record, i, general, linear)
     f, rounds = 0.0, 0
     while f < 1.0:
         rounds += 1
@@ -44,7 +38,7 @@ def bend(
         f = piece(given, result, w, lane, slot, record, i, f, h, log, count, general, linear)
 
 
-@inlined
+@called
 def relax(
     given: Table, w: Table, lane: int, slot: int, record: Table, i: int, general: Any, linear: Any
 ) -> None:
@@ -105,6 +99,25 @@ def move(
     return theta + d_th, omega + d_om, eta + d_et, speed + d_sp, work
 
 
+@called
+def note_demand(
+    given: Table, w: Table, lane: int, slot: int, record: Table, i: int, f: float, general: Any, linear: Any
+) -> None:
+    """The friction demand |H|/N at the corner, the bending wall's inertia included."""
+    theta, omega = w[r.TH * r.W + slot], w[r.OM * r.W + slot]
+    eta, speed = w[r.U * r.W + slot], w[r.U1 * r.W + slot]
+    a, g, p, q = inputs(w, slot, record, i, f)
+    alpha, beta, _ = rates(given, w, lane, slot, True, theta, omega, eta, speed, a, g, p, q, general, linear)
+    _, x, z, _ = acceleration(w, slot, theta, omega, a, g, p, q, general, linear)
+    force, sine, cosine = given[lane, r.Q_MODAL_FORCE], math.sin(theta), math.cos(theta)
+    across, along = beta - eta * omega * omega, 2.0 * speed * omega + eta * alpha
+    right = a - g * p + w[r.H * r.W + slot] * q + x * alpha + z * omega * omega
+    right += force * (across * cosine - along * sine)
+    up = g + z * alpha - (x - w[r.RHO * r.W + slot]) * omega * omega - force * (across * sine + along * cosine)
+    demand = abs(right) / up if up > 0.0 else 1e300
+    w[r.DEMAND * r.W + slot] = max(w[r.DEMAND * r.W + slot], demand)
+
+
 @inlined
 def lifting(
     given: Table, w: Table, lane: int, slot: int, side: float, eta: float, speed: float, record: Table, i: int,
@@ -128,9 +141,11 @@ def piece(
     up = result[lane, r.R_MODE] == r.UP
     theta, omega = w[r.TH * r.W + slot], w[r.OM * r.W + slot]
     side = w[r.SIDE * r.W + slot]
-    if up and omega != 0.0:
-        w[r.DIRECTION * r.W + slot] = 1.0 if omega > 0.0 else -1.0
-    if not up:
+    if up:
+        if omega != 0.0:
+            w[r.DIRECTION * r.W + slot] = 1.0 if omega > 0.0 else -1.0
+        note_demand(given, w, lane, slot, record, i, f, general, linear)
+    else:
         eta, speed = w[r.U * r.W + slot], w[r.U1 * r.W + slot]
         for s in (1.0, -1.0):
             if lifting(given, w, lane, slot, s, eta, speed, record, i, f, general, linear) > 0.0:

@@ -64,7 +64,7 @@ def take_off(
     new, old = pivot(given, w, lane, slot, side), pivot(given, w, lane, slot, -side)
     rebound = given[lane, r.Q_BOUNCE] * (old + new) * abs(before)
     if rebound <= new * given[lane, r.Q_REST]:
-        return after
+        return float(after)
     omega = after - given[lane, r.Q_BOUNCE] * (before - after)
     across, up = height * omega, rebound + side * new * omega
     result[lane, r.R_DISSIPATED] += energy(given, lane, after, height * after, side * new * after)
@@ -72,7 +72,7 @@ def take_off(
     result[lane, r.R_MODE] = r.FLIGHT
     w[r.U1 * r.W + slot] = across
     w[r.Z * r.W + slot], w[r.Z1 * r.W + slot] = height, up
-    return omega
+    return float(omega)
 
 
 @called
@@ -144,4 +144,4 @@ def touch(
         result[lane, r.R_MODE] = r.UP
         w[r.U * r.W + slot] -= x
         w[r.U1 * r.W + slot] = 0.0
-    return after
+    return float(after)
