@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,13 +12,13 @@ from diagnosis.candidates import candidates
 from diagnosis.constancy import FLAG, Tested, flags, tests
 from diagnosis.experiment import next_experiment
 from diagnosis.forces import forces
-from diagnosis.heldout import Shown, compare, fit_figures, horizons, traces_of, windows_of
+from diagnosis.heldout import Shown, compare, fit_figures, horizons, windows_of
 from diagnosis.intervals import estimates
 from diagnosis.locate import locate
 from diagnosis.missing_force import missing_force
 from diagnosis.refit import Explanation
-from diagnosis.result import Diagnosis, Effect, Estimate, Fit, Rival, Screened, Verdict
 from diagnosis.rescale import to_true_peak
+from diagnosis.result import Diagnosis, Effect, Estimate, Rival, Screened, Verdict
 from diagnosis.select import Progress, Search, adjusted, evidence, misfit_per_sample, rivals, search
 from diagnosis.sensors import SENSORS
 from diagnosis.setup import base_fit, measure
@@ -57,8 +56,8 @@ def diagnose(
     found = Search(base, candidates(measured, specimen))
     finished = True
     try:
-        for found in search(base, found.candidates, progress):
-            pass
+        for stage in search(base, found.candidates, progress):
+            found = stage
     except KeyboardInterrupt:
         finished = False
     if found.scores:

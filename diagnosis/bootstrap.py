@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.starts import start_of
 from diagnosis.candidates import candidates
 from diagnosis.fit import fit
 from diagnosis.refit import Explanation, best_of, extend
 from diagnosis.screen import open_screen, score
 from diagnosis.select import FEWEST, Progress, Search
+from diagnosis.starts import start_of
 from grids.specimen import Specimen
 
 REFITTED = 3

@@ -48,7 +48,8 @@ def modulations(forces: Forces) -> Iterator[tuple[str, FloatArray]]:
     yield "direction of motion", np.sign(forces.rotation * forces.rate)
     record = m.recording_of[:, None]
     for r, recording in enumerate(m.recordings[1:], start=1):
-        yield f"recording ({recording.name})", _centred(np.broadcast_to(record == r, forces.rotation.shape).astype(float))
+        inside = np.broadcast_to(record == r, forces.rotation.shape).astype(float)
+        yield f"recording ({recording.name})", _centred(inside)
 
 
 def _centred(values: FloatArray) -> FloatArray:
@@ -113,5 +114,6 @@ def flags(tested: list[Tested]) -> tuple[Constancy, ...]:
     found: dict[str, Constancy] = {}
     for test in tested:
         if test.statistic >= FLAG and test.kind not in found:
-            found[test.kind] = Constancy(test.kind, test.depends_on or "acts though no mechanism explains it", test.statistic)
+            depends_on = test.depends_on or "acts though no mechanism explains it"
+            found[test.kind] = Constancy(test.kind, depends_on, test.statistic)
     return tuple(found.values())

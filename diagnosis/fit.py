@@ -10,8 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.stats import qmc
 
-from diagnosis.misfit import Misfit, Reduced, reduce
+from diagnosis.misfit import NU, Misfit, Reduced, reduce
 from diagnosis.unknowns import clip, values_of
 from models.base import FloatArray
 
@@ -20,6 +21,8 @@ STATE_STEPS = (1.0, 0.3, 0.0)
 ITERATIONS = 14
 TOLERANCE = 0.02
 """Gain in 2 log likelihood under which an iteration ends the fit."""
+BADLY, SCATTERED = 3.0, 64
+"""Squared misfit per sample of a stuck window, and the states tried for it."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +46,30 @@ class Fitted:
 
 
 def fit(misfit: Misfit, u: FloatArray, states: FloatArray, iterations: int = ITERATIONS) -> Fitted:
-    """The minimum of the loss next to (u, states)."""
+    """The minimum of the loss next to (u, states); windows that are stuck start again from scattered states."""
+    found = _descend(misfit, u, states, iterations)
+    scattered = scatter(found)
+    return found if scattered is None else _descend(misfit, found.u, scattered, iterations)
+
+
+def scatter(found: Fitted) -> FloatArray | None:
+    """States (W, S) with better ones for windows that misfit badly; None if there are none."""
+    misfit, m = found.misfit, found.misfit.predictor.measured
+    bad = np.expm1(found.window_losses / (NU * m.count)) * NU > BADLY
+    if not bad.any():
+        return None
+    draws = qmc.MultivariateNormalQMC(np.zeros(found.states.shape[1]), seed=0).random(SCATTERED)
+    width = m.state_size * np.where(np.arange(SCATTERED) % 2 == 0, 0.05, 0.25)[:, None]
+    trials = found.states[None] + (draws * width)[:, None, :]
+    losses = misfit.losses(misfit.residuals([misfit.point(found.u, x) for x in trials]))
+    pick = np.argmin(losses, axis=0)
+    better = bad & (losses.min(axis=0) < found.window_losses - 1.0)
+    if not better.any():
+        return None
+    return np.where(better[:, None], trials[pick, np.arange(pick.size)], found.states)
+
+
+def _descend(misfit: Misfit, u: FloatArray, states: FloatArray, iterations: int) -> Fitted:
     u = clip(misfit.unknowns, np.asarray(u, float))
     window = misfit.losses(misfit.residuals([misfit.point(u, states)]))[0]
     loss = float(window.sum()) + misfit.prior(u)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from diagnosis.fit import Fitted
 from diagnosis.screen import Screen, open_screen
@@ -52,7 +53,7 @@ class Forces:
     def peak(self) -> FloatArray:
         """Largest rotation of each window (W, 1)."""
         mask = self.fitted.misfit.predictor.measured.mask[:, 0]
-        return np.max(np.abs(self.rotation) * mask, axis=1, keepdims=True)
+        return np.asarray(np.max(np.abs(self.rotation) * mask, axis=1, keepdims=True))
 
     def along(self, kind: str) -> FloatArray:
         """The force of a kind (W, N), of order one; zero for the one that acts at impacts."""
@@ -114,13 +115,13 @@ def forces(fitted: Fitted) -> Forces:
     )
 
 
-def _impacts(rotation: FloatArray, rate: FloatArray, mask: FloatArray) -> tuple[tuple[int, float, float], ...]:
+def _impacts(rotation: FloatArray, rate: FloatArray, mask: NDArray[np.bool_]) -> tuple[tuple[int, float, float], ...]:
     """Where the rotation changes sign: (window, sample, rate just before)."""
     found = []
     for w in range(rotation.shape[0]):
         count = int(mask[w].sum())
         signs = np.sign(rotation[w, :count])
-        for k in np.flatnonzero(signs[1:] * signs[:-1] < 0.0):
+        for k in np.flatnonzero(signs[1:] * signs[:-1] < 0.0).tolist():
             share = rotation[w, k] / (rotation[w, k] - rotation[w, k + 1])
             found.append((w, float(k + share), float(rate[w, max(k - 1, 0)])))
     return tuple(found)

@@ -10,9 +10,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from diagnosis.fit import fit
 from diagnosis.measured import Measured
+from diagnosis.memory import counted
 from diagnosis.misfit import Misfit
 from diagnosis.prediction import Point, Predictor
 from diagnosis.refit import Explanation
@@ -38,22 +40,24 @@ class Shown:
     point_after: Point
 
 
-def frozen(explanation: Explanation, measured: Measured) -> Point:
-    """The explanation's parameters with states fitted to other windows."""
+def frozen(explanation: Explanation, measured: Measured) -> tuple[Point, FloatArray]:
+    """The explanation's parameters on other windows: the point with fitted states, and channels (W, C, N)."""
     misfit = explanation.fitted.misfit
-    predictor = Predictor(measured, misfit.predictor.options)
     fixed = {**misfit.fixed, **explanation.fitted.values}
-    alone = Misfit(predictor, sensor_noise_only(predictor), (), fixed)
-    found = fit(alone, np.zeros(0), measured.states)
-    return alone.point(found.u, found.states)
+    predictor = Predictor(measured, misfit.predictor.options)
+    states = measured.states
+    for _ in range(2):
+        alone = Misfit(predictor, sensor_noise_only(predictor), (), fixed)
+        states = fit(alone, np.zeros(0), states).states
+        point = alone.point(np.zeros(0), states)
+        predictor = replace(predictor, measured=counted(predictor, point))
+    return point, predictor.predict([point])[0]
 
 
 def compare(before: Explanation, after: Explanation, measured: Measured) -> Shown:
     """Both explanations on some recordings, states estimated anew."""
-    points = [frozen(before, measured), frozen(after, measured)]
-    predictor = Predictor(measured, before.fitted.misfit.predictor.options)
-    predicted = predictor.predict(points)
-    return Shown(measured, predicted[0], predicted[1], points[0], points[1])
+    one, other = frozen(before, measured), frozen(after, measured)
+    return Shown(measured, one[1], other[1], one[0], other[0])
 
 
 def relative_misfit(measured: Measured, predicted: FloatArray | None) -> float:
@@ -97,7 +101,7 @@ def windows_of(shown: Shown, held_out: bool) -> list[Windows]:
     return found
 
 
-def _over_noise(m: Measured, predicted: FloatArray, own: FloatArray, c: int) -> FloatArray:
+def _over_noise(m: Measured, predicted: FloatArray, own: NDArray[np.intp], c: int) -> FloatArray:
     rest = np.where(m.mask[own, c], (predicted - m.values)[own, c], 0.0)
     return np.asarray(np.sqrt((rest**2).sum(axis=1) / m.mask[own, c].sum(axis=1)) / m.sigma[own, c])
 
@@ -126,17 +130,18 @@ def traces_of(shown: Shown, held_out: bool) -> list[Trace]:
 
 def horizons(shown: Shown, options: dict[str, str]) -> dict[str, tuple[float, float]]:
     """By recording: median seconds from a window's start until a prediction leaves the noise."""
+    from scipy.ndimage import uniform_filter1d
+
     m = shown.measured
     longer = lengthened(m)
     times = []
     for point in (shown.point_before, shown.point_after):
         predicted = Predictor(longer, options).predict([point])[0]
         rest = np.where(longer.mask, predicted - longer.values, 0.0) / longer.sigma[..., None]
-        kernel = np.ones(AVERAGED) / AVERAGED
-        smooth = np.apply_along_axis(lambda x: np.convolve(x, kernel, mode="same"), -1, rest)
-        out = (np.abs(smooth) > LEAVES).any(axis=1)
+        smooth = uniform_filter1d(rest, AVERAGED, axis=-1)
+        out = np.any(np.abs(smooth) > LEAVES, axis=1)
         end = longer.mask.any(axis=1).sum(axis=1)
-        first = np.where(out.any(axis=1), out.argmax(axis=1), end)
+        first = np.where(np.any(out, axis=1), np.argmax(out, axis=1), end)
         times.append(first)
     found = {}
     for r, recording in enumerate(m.recordings):

@@ -26,6 +26,8 @@ QUANTILE = 1.959963984540054
 LEVEL = QUANTILE**2
 PROFILE_ITERATIONS = 4
 PROFILE_TRIES = 3
+UNINFORMED = 1e-9
+"""Standard deviation of a coordinate that the pseudo-inverse gives when nothing depends on it."""
 
 
 def covariances(fitted: Fitted) -> tuple[FloatArray, FloatArray]:
@@ -39,8 +41,8 @@ def covariances(fitted: Fitted) -> tuple[FloatArray, FloatArray]:
     each = np.einsum("w,wmi,wm->wi", weights, reduced.by_unknown, reduced.residual, optimize=True)
     windows, k = each.shape
     spread = each.T @ each * windows / max(windows - k, 1)
-    inverse = np.linalg.pinv(hessian, hermitian=True)
-    return inverse @ (spread + slopes.T @ slopes) @ inverse, inverse
+    inverse = np.asarray(np.linalg.pinv(hessian, hermitian=True), np.float64)
+    return np.asarray(inverse @ (spread + slopes.T @ slopes) @ inverse), inverse
 
 
 def correlation(fitted: Fitted) -> FloatArray:
@@ -57,7 +59,9 @@ def estimates(fitted: Fitted, profiled: Sequence[str] = ()) -> dict[str, Estimat
     for i, unknown in enumerate(fitted.misfit.unknowns):
         naive = float(np.sqrt(max(laplace[i, i], 0.0)))
         sd = max(naive, float(np.sqrt(max(sandwich[i, i], 0.0))))
-        if unknown.name in profiled and naive > 0.0:
+        if naive < UNINFORMED:
+            ends = unknown.bounds
+        elif unknown.name in profiled:
             ends = _profile(fitted, i, sd, (sd / naive) ** 2)
         else:
             ends = (fitted.u[i] - QUANTILE * sd, fitted.u[i] + QUANTILE * sd)

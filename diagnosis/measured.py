@@ -57,7 +57,7 @@ class Measured:
     @property
     def count(self) -> FloatArray:
         """Samples compared in each window, all channels together (W,)."""
-        return self.mask.sum(axis=(1, 2)).astype(float)
+        return np.asarray(self.mask.sum(axis=(1, 2)), np.float64)
 
     def cut_again(self, windows: tuple[Window, ...]) -> Measured:
         """The same starts with other lengths."""
@@ -67,7 +67,7 @@ class Measured:
         """Times (N,) of a window's samples, in s."""
         cutout = self.windows[window]
         step = self.recordings[cutout.recording].time_step
-        return (cutout.first + np.arange(self.values.shape[2])) * step
+        return np.asarray((cutout.first + np.arange(self.values.shape[2])) * step, np.float64)
 
 
 def arrange(
@@ -146,7 +146,7 @@ def _start(recordings: Sequence[Recording], windows: Sequence[Window], state: st
     for w, window in enumerate(windows):
         recording = recordings[window.recording]
         step, signal = recording.time_step, recording.channels[channel]
-        reach = max(3, int(round(RATE_WIDTH / step)))
+        reach = max(3, round(RATE_WIDTH / step))
         low, high = max(0, window.first - reach), min(signal.size, window.first + reach + 1)
         fit = np.polynomial.polynomial.polyfit((np.arange(low, high) - window.first) * step, signal[low:high], 2)
         found[w] = fit[1] if derivative else fit[0]

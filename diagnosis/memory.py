@@ -9,11 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
 from diagnosis.measured import Measured
 from diagnosis.prediction import Point, Predictor
+from diagnosis.sensors import SENSORS, moved
+from diagnosis.unknowns import split
 from diagnosis.windows import Window
 
 
@@ -23,28 +26,29 @@ def counted(predictor: Predictor, point: Point) -> Measured:
     if "impacts" not in m.memory:
         return m
     impacts = np.zeros(len(m.windows))
-    for r, recording in enumerate(m.recordings):
+    for r in range(len(m.recordings)):
         own = np.flatnonzero(m.recording_of == r)
         if not own.size:
             continue
         starts = [0, *(m.windows[w].first for w in own)]
         states = np.concatenate([np.zeros((1, point.states.shape[1])), point.states[own]])
-        pieces = [Window(r, a, b - a) for a, b in zip(starts[:-1], starts[1:], strict=True)]
+        pieces = [Window(r, a, b - a) for a, b in pairwise(starts)]
         impacts[own] = np.cumsum(_impacts(predictor, point, pieces, states[:-1]))
     return replace(m, memory={**m.memory, "impacts": impacts})
 
 
 def _impacts(predictor: Predictor, point: Point, pieces: Sequence[Window], states: np.ndarray) -> list[int]:
-    """Changes of sign of the rotation along each piece."""
+    """Impacts along each piece, from its state on."""
     m = predictor.measured
-    kept = [k for k, piece in enumerate(pieces) if piece.samples > 1]
-    counts = [0] * len(pieces)
-    if kept:
-        nothing_before = {name: np.zeros(len(kept)) for name in m.memory}
-        along = replace(m.cut_again(tuple(pieces[k] for k in kept)), memory=nothing_before)
-        moved = replace(predictor, measured=along).predict([Point(point.values, states[kept])])[0][:, 0]
-        for row, k in enumerate(kept):
-            signs = np.sign(moved[row, : pieces[k].samples])
-            signs = signs[signs != 0.0]
-            counts[k] = int(np.count_nonzero(signs[1:] != signs[:-1]))
+    sensors = split(point.values, tuple(SENSORS))
+    of_wall = {k: v for k, v in point.values.items() if k.partition(".")[0] not in SENSORS}
+    counts = []
+    for piece, state in zip(pieces, states, strict=True):
+        shaking = moved(m.shakings[piece.recording], sensors)
+        part = slice(piece.first, piece.first + piece.samples + 1)
+        vertical = None if shaking.vertical is None else shaking.vertical[part]
+        cut = replace(shaking, horizontal=shaking.horizontal[part], vertical=vertical)
+        initial = {name: float(x) for name, x in zip(m.model.states, state, strict=True) if x != 0.0}
+        ran = m.model.simulate(of_wall, cut, initial=initial or None, duration=cut.duration, options=predictor.options)
+        counts.append(sum(event.kind == "impact" for event in ran.events))
     return counts

@@ -36,5 +36,5 @@ def smooth(values: FloatArray, time_step: float, width: float) -> FloatArray:
     """Local cubic over ``width`` seconds, at least 7 samples."""
     from scipy.signal import savgol_filter
 
-    count = min(max(7, int(round(width / time_step)) | 1), (values.size - 1) | 1)
+    count = min(max(7, round(width / time_step) | 1), (values.size - 1) | 1)
     return np.asarray(savgol_filter(values, count, 3))

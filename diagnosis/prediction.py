@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from diagnosis.measured import Measured
 from diagnosis.sensors import SENSORS
@@ -67,7 +68,7 @@ class Predictor:
         self,
         points: Sequence[Point],
         members: Sequence[int],
-        windows: FloatArray,
+        windows: NDArray[np.intp],
         shaking: Shaking,
         nulls: Mapping[str, float],
         time_step: float,

@@ -76,7 +76,7 @@ def open_screen(fitted: Fitted) -> Screen:
     reduced = reduce(linear)
     weights = misfit.weights(linear.residual)
     hessian, gradient = normal(misfit, reduced, weights, fitted.u)
-    inverse = np.linalg.pinv(hessian, hermitian=True)
+    inverse = np.asarray(np.linalg.pinv(hessian, hermitian=True), np.float64)
     return Screen(fitted, reduced.residual, weights, reduced.basis, reduced.by_unknown, inverse, gradient)
 
 

@@ -8,11 +8,13 @@ the window that speaks loudest for it (and, with more than two recordings, witho
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from diagnosis.candidates import Candidate
+from diagnosis.fit import fit
+from diagnosis.memory import counted
 from diagnosis.null import Null, null_distribution
 from diagnosis.refit import Explanation, again, best_of, extend, from_other, gain_by_window, without
 from diagnosis.screen import Score, open_screen, score
@@ -128,7 +130,19 @@ def _singles(found: Search, progress: Progress) -> None:
         if single is not leader and found.gain(single) > 0.1 * found.gain(leader):
             found.singles[k] = from_other(single, leader)
     found.singles = sorted((again(e, 6) for e in found.singles), key=adjusted)
+    recounted = with_memory(found.singles[0])
+    if recounted.loss < found.singles[0].loss - 1.0:
+        found.singles[0] = recounted
     found.tried += found.singles
+
+
+def with_memory(explanation: Explanation) -> Explanation:
+    """The same model refitted with the impacts before each window counted along its own motion."""
+    fitted = explanation.fitted
+    point = fitted.misfit.point(fitted.u, fitted.states)
+    measured = counted(fitted.misfit.predictor, point)
+    misfit = replace(fitted.misfit, predictor=replace(fitted.misfit.predictor, measured=measured))
+    return replace(explanation, fitted=fit(misfit, fitted.u, fitted.states))
 
 
 def misfit_per_sample(explanation: Explanation) -> float:

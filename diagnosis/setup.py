@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import models
-from diagnosis.starts import calibrate_base
 from diagnosis.fit import Fitted, fit
 from diagnosis.measured import Measured, arrange
 from diagnosis.memory import counted
 from diagnosis.misfit import Misfit
 from diagnosis.prediction import Predictor
+from diagnosis.starts import calibrate_base
 from diagnosis.unknowns import fixed_values, of_specimen
 from diagnosis.whitening import responses, sensor_noise_only, with_base_noise
 from grids.recordings.base import Recording

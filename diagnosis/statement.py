@@ -53,8 +53,7 @@ def statement(
         parts.append(f"{opening}: {'; and '.join(told)}.")
     if verdict == "not_in_library":
         parts.append("That does not settle it: what is missing is not in the library of mechanisms.")
-        parts += [f"A {KINDS[c.parameter]} depends on the {c.depends_on}." for c in constancy[:2] if c.depends_on in _NOUNS]
-        parts += [f"A {KINDS[c.parameter]} {c.depends_on}." for c in constancy[:2] if c.depends_on not in _NOUNS]
+        parts += [_flag(found) for found in constancy[:2]]
     if verdict == "cannot_tell_apart":
         names = ", ".join(f"{r.name.replace('_', ' ')} ({r.evidence_gap:.1f} less)" for r in rivals)
         parts.append(f"These recordings cannot tell it apart from: {names}.")
@@ -71,6 +70,14 @@ def statement(
 
 
 _NOUNS = ("side", "amplitude of the motion", "size of the rotation", "time", "direction of motion")
+
+
+def _flag(found: Constancy) -> str:
+    if found.depends_on in _NOUNS:
+        return f"What acts is a {KINDS[found.parameter]} that depends on the {found.depends_on}."
+    if found.depends_on.startswith("recording"):
+        return f"What acts is a {KINDS[found.parameter]} that is not the same in {found.depends_on}."
+    return f"What acts is a {KINDS[found.parameter]} ({found.depends_on})."
 
 
 def _where(located: Sequence[Located]) -> str:

@@ -8,6 +8,7 @@ from typing import Literal
 
 import numpy as np
 
+from diagnosis.sensors import SENSORS
 from grids.specimen import Specimen
 from models.base import FloatArray, Mechanism, MechanismParameter, Model
 
@@ -69,6 +70,8 @@ def values_of(unknowns: Sequence[Unknown], u: FloatArray) -> dict[str, float]:
 def of_specimen(specimen: Specimen, model: Model) -> tuple[Unknown, ...]:
     """Toleranced parameters with their priors, and those to calibrate within their ranges."""
     units = {p.name: p.unit for p in model.parameters}
+    known = {**model.mechanisms, **SENSORS}
+    units |= {f"{m}.{p.name}": p.unit for m in known for p in known[m].parameters}
     found = []
     for name, relative in specimen.tolerance.items():
         nominal = specimen.parameters[name]
@@ -78,7 +81,7 @@ def of_specimen(specimen: Specimen, model: Model) -> tuple[Unknown, ...]:
             Unknown(name, units[name], nominal - reach, nominal + reach, nominal, sd, prior=(nominal, sd))
         )
     for name, (low, high) in specimen.calibrate.items():
-        unit = units[name] if name in units else "1"
+        unit = units[name]
         if low > 0.0 and high / low > LOG_SPAN:
             found.append(Unknown(name, unit, low, high, float(np.sqrt(low * high)), 0.1, "log"))
         else:

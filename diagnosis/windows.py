@@ -41,12 +41,12 @@ def cut(values: FloatArray, sigma: float, time_step: float, recording: int) -> l
     from scipy.signal import find_peaks
 
     size = np.abs(smooth(values, time_step, SMOOTHING))
-    peaks, _ = find_peaks(size, height=ABOVE_NOISE * sigma, prominence=QUIET * sigma)
-    reach = max(1, int(round(QUIET_FOR / time_step)))
+    peaks = np.asarray(find_peaks(size, height=ABOVE_NOISE * sigma, prominence=QUIET * sigma)[0], np.int64)
+    reach = max(1, round(QUIET_FOR / time_step))
     quiet = maximum_filter1d(size, reach) < QUIET * sigma
     found: list[Window] = []
     free = 0
-    for peak in peaks:
+    for peak in peaks.tolist():
         if peak < free:
             continue
         limit = min(peak + int(LONGEST / time_step), values.size)

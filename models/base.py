@@ -7,7 +7,7 @@ specimens, and for the labels and units of a cube. Physics stands in the folders
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
 import numpy as np
@@ -82,12 +82,26 @@ class Mechanism:
     sentence: str
     acts: Mapping[str, Callable[..., Any]] = field(default_factory=dict)
     source: str = ""
+    at_joints: tuple[str, ...] = ()
+    """Models on which ``parameter_base`` and ``parameter_top`` address one joint alone."""
 
     def parameter(self, name: str) -> MechanismParameter:
-        for parameter in self.parameters:
+        for parameter in (*self.parameters, *self._of_joints()):
             if parameter.name == name:
                 return parameter
         raise KeyError(name)
+
+    def addressable(self, model: str) -> tuple[MechanismParameter, ...]:
+        """The parameters by every name that a plan or specimen of ``model`` may use."""
+        return (*self.parameters, *(self._of_joints() if model in self.at_joints else ()))
+
+    def _of_joints(self) -> tuple[MechanismParameter, ...]:
+        places = (("base", "at the base"), ("top", "at the top joint")) if self.at_joints else ()
+        return tuple(
+            replace(p, name=f"{p.name}_{joint}", meaning=f"{p.meaning}, {where}")
+            for p in self.parameters
+            for joint, where in places
+        )
 
     @property
     def nulls(self) -> dict[str, float]:
@@ -119,6 +133,7 @@ class Model(Protocol):
     ``alternatives``: tuples of parameter sets of which exactly one must be given, for instance
     ``(("width", "height"), ("height", "aspect_ratio"))``.
     ``options``: words that choose a formulation, with their values, the default first.
+    ``states``: the observables (and their rates) that a run starts from.
     ``chaotic``: whether neighbouring trajectories part quickly, so that recordings are compared
     window by window.
     """
@@ -132,6 +147,7 @@ class Model(Protocol):
     outputs: tuple[Quantity, ...]
     derived: tuple[Quantity, ...]
     observables: tuple[Quantity, ...]
+    states: tuple[str, ...]
     integrators: tuple[str, ...]
     chaotic: bool
     vertical_by_default: bool
@@ -159,6 +175,22 @@ class Model(Protocol):
         integrator: str = "lanes",
     ) -> dict[str, NDArray[Any]]:
         """Run one lane per element of ``scale`` (which multiplies the shaking); outputs ``(n,)``."""
+        ...
+
+    def trajectories(
+        self,
+        values: Values,
+        shaking: Shaking,
+        *,
+        first: NDArray[np.int64],
+        samples: int,
+        initial: Mapping[str, FloatArray],
+        options: Mapping[str, str] | None = None,
+    ) -> dict[str, FloatArray]:
+        """Observables ``(n, samples)`` of n lanes, lane k from sample ``first[k]`` of the shaking.
+
+        ``initial``: arrays ``(n,)`` by the names of ``states``, and of what laws with a memory need.
+        """
         ...
 
     def simulate(

@@ -6,7 +6,15 @@
 from __future__ import annotations
 
 from diagnosis.sensors import (
-    accelerometer_offset, base_gain, clock, cross_axis, delay, filter, gain, offset, saturation,
+    accelerometer_offset,
+    base_gain,
+    clock,
+    cross_axis,
+    delay,
+    filter,
+    gain,
+    offset,
+    saturation,
 )  # fmt: skip
 from diagnosis.sensors.whole import moved, recorded
 from models.base import Mechanism

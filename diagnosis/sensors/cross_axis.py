@@ -16,7 +16,8 @@ MECHANISM = Mechanism(
     effect_class="cross_axis",
     parameters=(
         MechanismParameter(
-            "rotation_per_acceleration", "c_x", "rad s2 m-1", "rotation read per horizontal base acceleration", -0.01, 0.01
+            "rotation_per_acceleration", "c_x", "rad s2 m-1", "rotation read per horizontal base acceleration",
+            -0.01, 0.01,
         ),
     ),
     equation="recorded = true + rotation_per_acceleration a, all rotation channels alike",
@@ -24,4 +25,4 @@ MECHANISM = Mechanism(
     sentence="the rotation sensors read {rotation_per_acceleration:.2g} rad for each m/s2 of the base's acceleration",
     acts={"response": respond},
     source="inclinometers and tilted accelerometers do this",
-)
+)  # fmt: skip

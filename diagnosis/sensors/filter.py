@@ -8,6 +8,7 @@ parabola through the first samples: a window starts at a peak, where motion is j
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 from diagnosis.sensors.base import Channels, Surroundings
 from models.base import FloatArray, Mechanism, MechanismParameter, Values
 
+Kind = Literal["lowpass", "highpass"]
 LEAD_IN = 0.2
 """s of parabola before the first sample."""
 FITTED = 8
@@ -23,18 +25,18 @@ System = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], ND
 
 
 @lru_cache(maxsize=4096)
-def discrete(corner_hz: float, order: int, kind: str, time_step: float) -> System:
+def discrete(corner_hz: float, order: int, kind: Kind, time_step: float) -> System:
     """State space (A, B, C, D) of the filter for an input linear between samples."""
     from scipy.signal import butter, cont2discrete, tf2ss
 
-    numerator, denominator = butter(order, 2.0 * np.pi * corner_hz, btype=kind, analog=True)
-    a, b, c, d, _ = cont2discrete(tf2ss(numerator, denominator), time_step, method="foh")
-    return a, b, c, d
+    numerator, denominator = butter(order, 2.0 * np.pi * corner_hz, btype=kind, analog=True, output="ba")
+    found = cont2discrete(tf2ss(numerator, denominator), time_step, method="foh")
+    return found[0], found[1], found[2], found[3]
 
 
-def stages(values: Values) -> list[tuple[float, int, str]]:
-    order = int(round(values["order"]))
-    found = []
+def stages(values: Values) -> list[tuple[float, int, Kind]]:
+    order = round(float(values["order"]))
+    found: list[tuple[float, int, Kind]] = []
     if np.isfinite(values["corner_hz"]):
         found.append((float(values["corner_hz"]), order, "lowpass"))
     if values["high_pass_hz"] > 0.0:
