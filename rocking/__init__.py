@@ -14,6 +14,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from diagnosis import calibrate, diagnose
     from grids.motions import read_motion
     from grids.recordings import read_recording
     from rocking.catalogue import mechanisms, models
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
     from study.open import open_study
 
 _WHERE = {
+    "calibrate": "diagnosis",
+    "diagnose": "diagnosis",
     "mechanisms": "rocking.catalogue",
     "models": "rocking.catalogue",
     "open_study": "study.open",
@@ -35,6 +38,8 @@ _WHERE = {
 """Module of every public name: a new name is one line here and one above."""
 
 __all__ = [
+    "calibrate",
+    "diagnose",
     "mechanisms",
     "models",
     "open_study",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from diagnosis.figures.before_after import plot_before_after
 from diagnosis.figures.fits import plot_fits
+from diagnosis.figures.missing_force import plot_missing_force
 from diagnosis.figures.parameters import plot_parameters
 from diagnosis.figures.phase_plane import plot_phase_plane
 from diagnosis.figures.raster import plot_raster
@@ -13,6 +14,7 @@ from diagnosis.figures.suspects import plot_suspects
 __all__ = [
     "plot_before_after",
     "plot_fits",
+    "plot_missing_force",
     "plot_parameters",
     "plot_phase_plane",
     "plot_raster",

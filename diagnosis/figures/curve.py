@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
-MOST_POINTS = {False: 1200, True: 520}
+MOST_POINTS = {False: 900, True: 400}
 """On the wide and on the narrow page."""
 
 

@@ -71,7 +71,7 @@ def _environment() -> Environment:
     environment.filters |= {
         "plain": words.plain, "channel": words.channel, "where": words.where, "number": words.number,
         "percent": words.percent, "chance": words.chance, "unit": words.unit_text, "listed": words.listed,
-        "estimate": words.estimate_texts, "stated": words.stated,
+        "estimate": words.estimate_texts, "stated": words.stated, "force": words.force,
     }  # fmt: skip
     return environment
 
@@ -115,10 +115,10 @@ def _window_counts(windows: Sequence[Windows]) -> dict[str, int]:
     }
 
 
-def _horizons(diagnosis: Diagnosis) -> list[tuple[str, str, str]]:
+def _horizons(diagnosis: Diagnosis) -> list[tuple[str, ...]]:
     return [
-        (name, f"{words.number(before, 2)} s", f"{words.number(after, 2)} s")
-        for name, (before, after) in diagnosis.prediction_horizon.items()
+        (name, *(f"{seconds:.2f} s" if seconds >= 0.01 else "under 0.01 s" for seconds in pair))
+        for name, pair in diagnosis.prediction_horizon.items()
     ]
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from diagnosis.figures import (
     plot_before_after,
     plot_fits,
+    plot_missing_force,
     plot_parameters,
     plot_phase_plane,
     plot_raster,
@@ -40,6 +41,8 @@ def drawings(diagnosis: Diagnosis, specimen: Specimen, recordings: Sequence[Reco
     found["fits"] = partial(plot_fits, diagnosis.train, diagnosis.holdout)
     for trace in diagnosis.traces:
         found[f"{trace.recording}_{trace.channel}"] = partial(plot_before_after, trace)
+    if diagnosis.missing_force and any(diagnosis.missing_force["curve"]["force"]):
+        found["missing_force"] = partial(plot_missing_force, diagnosis.missing_force)
     if any(specimen.parameters.get(name) for name in diagnosis.base):
         found["parameters"] = partial(
             plot_parameters, diagnosis.base, specimen.parameters, specimen.tolerance

@@ -5,20 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
+from diagnosis.forces import KINDS
 from diagnosis.result import Estimate
+from diagnosis.statement import WHERE
 
-WHERE_WORDS = {
-    "impact": "at impacts",
-    "between_impacts": "between impacts",
-    "first_uplift": "at the first uplift",
-    "large_rotation": "at large rotation",
-    "small_rotation": "at small rotation",
-    "left": "while rocking to the left",
-    "right": "while rocking to the right",
-    "late": "late in the record",
-    "above_10_hz": "above 10 Hz",
-    "everywhere": "everywhere",
-}
 CHANNEL_WORDS = {
     "base_acceleration_x": "base acceleration, horizontal",
     "base_acceleration_z": "base acceleration, vertical",
@@ -49,7 +39,12 @@ def channel(name: str) -> str:
 
 def where(words: Iterable[str]) -> str:
     """``("impact", "left")`` as words of a sentence."""
-    return listed([WHERE_WORDS.get(word, plain(word)) for word in words])
+    return listed([WHERE[word] for word in words])
+
+
+def force(kind: str) -> str:
+    """A kind of force that constancy is tested of."""
+    return KINDS.get(kind, plain(kind))
 
 
 def unit_text(unit: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import typer
 
-from rocking.commands import check, export, map, motions, plan, run, simulate, status
+from rocking.commands import calibrate, check, diagnose, export, map, motions, plan, run, simulate, status
 from rocking.commands.base import Commands
 
 COMMANDS = (
@@ -16,6 +16,8 @@ COMMANDS = (
     map.map_,
     motions.motions,
     simulate.simulate,
+    calibrate.calibrate,
+    diagnose.diagnose,
 )
 
 app = typer.Typer(

@@ -31,7 +31,20 @@ STEP = 0.005
 SIGMA = 4e-4
 WINDOW = 0.7
 CHANNEL = "rotation_1"
-REPEAT = {"sentence": "Repeat train_2 at half its strength.", "recording": "train_2", "expected_evidence": 46.0}
+REPEAT = {
+    "separates": ["pivot_inset", "base_gain"],
+    "recording": {"base_motion": "train_2", "scale": 0.7, "expected_evidence": 46.0},
+    "sensor": {"channel": "displacement_1_x", "noise": "1% of its peak", "expected_evidence": 12.0},
+    "static_test": "calibrate the accelerometer of the base",
+}
+FORCE = {
+    "unit": "m s-2",
+    "terms": [
+        {"kind": "stiffness", "meaning": "couple with the rotation", "depends_on": "side", "coefficient": 0.021,
+         "standard_error": 0.004, "gain": 38.0},
+    ],
+    "curve": {"rotation": [-0.05, 0.0, 0.05], "force": [0.021, 0.0, 0.021]},
+}
 
 
 def specimen() -> Specimen:
@@ -185,7 +198,7 @@ def diagnosis(verdict: Verdict = "missing") -> Diagnosis:
             Located("train_1", CHANNEL, 4.9, 9.1, ("between_impacts", "small_rotation"), 0.71),
             Located("train_2", CHANNEL, 5.6, 8.4, ("between_impacts",), 0.64),
         ),
-        constancy=(Constancy("restitution.factor_on_housner", "side", 38.0),) if verdict == "not_in_library" else (),
+        constancy=(Constancy("restitution", "side", 38.0),) if verdict == "not_in_library" else (),
         train=Fit(0.187, 0.029, 0.027),
         holdout=fit,
         base={
@@ -200,6 +213,6 @@ def diagnosis(verdict: Verdict = "missing") -> Diagnosis:
         windows=tuple(w for _, w in parts),
         traces=tuple(t for t, _ in parts),
         prediction_horizon={r.name: (0.35, 1.9) for r in recordings()},
-        missing_force=None,
+        missing_force=FORCE if verdict == "not_in_library" else None,
         provenance={"commit": "0123abc", "seconds": 31.2, "versions": {"rocking-study": "0.1.0"}},
     )

@@ -101,8 +101,10 @@ def test_page_says_what_was_found(verdict: Verdict) -> None:
     for rival in found.rivals:
         assert rival.name.replace("_", " ") in words
     if found.next_experiment:
-        assert found.next_experiment["sentence"] in words
+        assert found.next_experiment["static_test"] in words and "46" in words
     assert ("extended.toml" in words) and ("Traceback" not in words) and ("None" not in words)
+    if found.missing_force:
+        assert "couple with the rotation" in words
     assert ("What does not stay the same" in words) == bool(found.constancy)
 
 

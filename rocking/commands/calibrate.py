@@ -1,0 +1,93 @@
+"""``rocking calibrate specimen.toml REC...``: the base model's parameters with intervals."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from rocking.commands.recordings import read_recordings, stages
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from diagnosis.calibration import Calibration
+    from diagnosis.result import Estimate
+
+
+def calibrate(
+    specimen: Annotated[Path, typer.Argument(help="Specimen file (TOML).")],
+    recordings: Annotated[list[Path], typer.Argument(help="Recordings (.nc, or .csv with .toml).")],
+) -> None:
+    """Fit the specimen's uncertain parameters to recordings; nothing missing is looked for.
+
+    Prints estimates, 95 % intervals (by profile likelihood), bounds hit and correlations; with several
+    recordings also what each of them says alone (the drift).
+    """
+    from rich.console import Console
+
+    from rocking.instruments import read_specimen
+
+    wall = read_specimen(specimen)
+    read = read_recordings(recordings)
+    with stages("stopped") as progress:
+        progress("calibrating", 0.1)
+        from diagnosis import calibrate as calibrate_recordings
+
+        found = calibrate_recordings(wall, read)
+    console = Console()
+    console.print(parameter_table(wall.title, found))
+    if len(found.parameters) > 1:
+        console.print(correlation_table(found))
+    if found.by_recording:
+        console.print(drift_table(found))
+    console.print(
+        f"misfit {100 * found.misfit:.3g} % of the signal, noise {100 * found.noise_floor:.3g} %, "
+        f"{found.windows} windows",
+        highlight=False,
+    )
+
+
+def parameter_table(title: str, found: Calibration) -> Table:
+    """One row a parameter."""
+    from rich.table import Table
+
+    table = Table("parameter", title=title, title_justify="left")
+    for head in ("estimate", "low 95 %", "high 95 %"):
+        table.add_column(head, justify="right")
+    table.add_column("unit")
+    table.add_column("bound")
+    for name, value in found.parameters.items():
+        bound = {"low": "at its lower bound", "high": "at its upper bound", "": ""}[value.at_bound]
+        table.add_row(name, *_numbers(value), value.unit, bound)
+    return table
+
+
+def correlation_table(found: Calibration) -> Table:
+    """The correlation of the estimates, below the diagonal."""
+    from rich.table import Table
+
+    names = list(found.parameters)
+    table = Table("correlation", *names[:-1])
+    for i, name in enumerate(names[1:], start=1):
+        table.add_row(name, *(f"{found.correlation[i, j]:+.2f}" for j in range(i)))
+    return table
+
+
+def drift_table(found: Calibration) -> Table:
+    """What each recording says alone, parameter by parameter."""
+    from rich.table import Table
+
+    table = Table("parameter", "recording alone")
+    for head in ("estimate", "low 95 %", "high 95 %"):
+        table.add_column(head, justify="right")
+    table.add_column("unit")
+    for name in found.parameters:
+        for k, (recording, alone) in enumerate(found.by_recording.items()):
+            table.add_row("" if k else name, recording, *_numbers(alone[name]), alone[name].unit)
+    return table
+
+
+def _numbers(value: Estimate) -> tuple[str, str, str]:
+    return f"{value.estimate:.5g}", f"{value.low95:.5g}", f"{value.high95:.5g}"

@@ -1,0 +1,63 @@
+"""What `calibrate` and `diagnose` share: reading a specimen and recordings, and showing the stages."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from models.errors import InputError
+from rocking.commands.base import INTERRUPTED
+
+if TYPE_CHECKING:
+    from diagnosis.select import Progress
+    from grids.recordings import Recording
+
+
+def read_recordings(paths: Sequence[Path], held_out: Sequence[Path] = ()) -> list[Recording]:
+    """All recordings in their order; what looks wrong with them goes to stderr.
+
+    Raises InputError for a recording given twice, or two that share a name.
+    """
+    from grids.recordings import read_recording
+
+    seen: dict[str, Path] = {}
+    found = []
+    for path in (*paths, *held_out):
+        recording = read_recording(path)
+        if recording.name in seen:
+            both = seen[recording.name].resolve() == path.resolve()
+            cure = "a recording held out cannot be fitted too" if path in held_out else "give it once"
+            raise InputError(
+                f"recording {path} is given twice; {cure}."
+                if both
+                else f"recordings {seen[recording.name]} and {path} share the name {recording.name}; rename one."
+            )
+        seen[recording.name] = path
+        found.append(recording)
+        for suspicion in recording.suspicions:
+            typer.echo(f"suspicion: {recording.name}: {suspicion}", err=True)
+    return found
+
+
+@contextmanager
+def stages(interrupted: str) -> Iterator[Progress]:
+    """A bar on stderr whose callback takes (what is being done, share done).
+
+    A Ctrl-C that nobody else takes ends the command with the sentence ``interrupted``.
+    """
+    from rich.console import Console
+    from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import Progress as Bar
+
+    columns: tuple[Any, ...] = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+    try:
+        with Bar(*columns, console=Console(stderr=True), transient=True) as bar:
+            task = bar.add_task("reading", total=1.0)
+            yield lambda text, share: bar.update(task, description=text, completed=share)
+    except KeyboardInterrupt:
+        typer.echo(interrupted, err=True)
+        raise typer.Exit(INTERRUPTED) from None
