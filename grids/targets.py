@@ -143,7 +143,7 @@ class Targets:
         mechanism_name, dot, parameter_name = name.partition(".")
         if dot:
             mechanism = self.mechanism(mechanism_name, where)
-            known = {parameter.name: parameter for parameter in mechanism.parameters}
+            known = {parameter.name: parameter for parameter in mechanism.addressable(self.model.name)}
             if parameter_name not in known:
                 raise InputError(
                     f"{where}: mechanism '{mechanism_name}' has no parameter '{parameter_name}'; "

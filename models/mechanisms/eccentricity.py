@@ -4,11 +4,19 @@ from __future__ import annotations
 
 from models.base import Mechanism, MechanismParameter, Values
 from models.housner.block import Block
+from models.stacked.stack import Stack
 
 
 def on_housner(block: Block, values: Values) -> Block:
     shift = values["offset_over_half_width"] * block.base_half_width
     return block.replace(right=block.right - shift, left=block.left + shift)
+
+
+def on_stacked(stack: Stack, values: Values) -> Stack:
+    offset = values["offset_over_half_width"]
+    return stack.replace(
+        shift_1=stack.shift_1 + offset * stack.half_length_1, shift_2=stack.shift_2 + offset * stack.half_joint
+    )
 
 
 MECHANISM = Mechanism(
@@ -23,6 +31,6 @@ MECHANISM = Mechanism(
     equation="b+ = b (1 - eps), b- = b (1 + eps); the inertia about the mass centre stays",
     signature="differs left and right; restitution and frequency of both sides differ too",
     sentence="the mass centre lies {offset_over_half_width:+.1%} of the half width off the middle (positive to +x)",
-    acts={"housner": on_housner},
+    acts={"housner": on_housner, "stacked": on_stacked},
     source="geometry; impact between unequal sides: models/housner/impact.py",
 )  # fmt: skip

@@ -4,12 +4,20 @@ from __future__ import annotations
 
 from models.base import Mechanism, MechanismParameter, Values
 from models.housner.block import Block
+from models.stacked.stack import Stack, at_joint
 
 
 def on_housner(block: Block, values: Values) -> Block:
     inset = values["inset_over_half_width"]
     shift = inset * block.base_half_width
     return block.replace(right=block.right - shift, left=block.left - shift, aspect=block.aspect * (1.0 - inset))
+
+
+def on_stacked(stack: Stack, values: Values) -> Stack:
+    return stack.replace(
+        base_pivot=stack.base_pivot * (1.0 - at_joint(values, "inset_over_half_width", "base")),
+        top_pivot=stack.top_pivot * (1.0 - at_joint(values, "inset_over_half_width", "top")),
+    )
 
 
 MECHANISM = Mechanism(
@@ -23,6 +31,7 @@ MECHANISM = Mechanism(
     equation="b' = (1 - inset) b; alpha, R, I_O, the onset and e follow",
     signature="all rocking at constant sign of theta; the onset comes earlier",
     sentence="the block rocks on points {inset_over_half_width:.1%} of the half width inside its corners",
-    acts={"housner": on_housner},
+    acts={"housner": on_housner, "stacked": on_stacked},
+    at_joints=("stacked",),
     source="Mordant, Denoel, Degee (COMPDYN 2015), section 2.1",
 )

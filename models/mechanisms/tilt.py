@@ -6,11 +6,17 @@ import numpy as np
 
 from models.base import Mechanism, MechanismParameter, Values
 from models.housner.block import Block
+from models.stacked.stack import Stack
 
 
 def on_housner(block: Block, values: Values) -> Block:
     tilt = np.asarray(values["tilt"], float)
     return block.replace(offset=block.offset - block.gravity * np.sin(tilt), gravity=block.gravity * np.cos(tilt))
+
+
+def on_stacked(stack: Stack, values: Values) -> Stack:
+    tilt = np.asarray(values["tilt"], float)
+    return stack.replace(offset=stack.offset - stack.gravity * np.sin(tilt), gravity=stack.gravity * np.cos(tilt))
 
 
 MECHANISM = Mechanism(
@@ -20,6 +26,6 @@ MECHANISM = Mechanism(
     equation="a -> a - g sin(tau), G -> G - g (1 - cos(tau)); a and a_z along and across the leaning base",
     signature="differs left and right; onset at unequal accelerations",
     sentence="the base leans by {tilt:+.4f} rad (clockwise positive)",
-    acts={"housner": on_housner},
+    acts={"housner": on_housner, "stacked": on_stacked},
     source="statics of a plane that leans",
 )

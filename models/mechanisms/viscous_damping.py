@@ -4,10 +4,15 @@ from __future__ import annotations
 
 from models.base import Mechanism, MechanismParameter, Values
 from models.housner.block import Block
+from models.stacked.stack import Stack
 
 
 def on_housner(block: Block, values: Values) -> Block:
     return block.replace(viscous=values["rate"])
+
+
+def on_stacked(stack: Stack, values: Values) -> Stack:
+    return stack.replace(viscous=stack.viscous + values["rate"])
 
 
 MECHANISM = Mechanism(
@@ -17,6 +22,6 @@ MECHANISM = Mechanism(
     equation="couple -d I_O theta'",
     signature="between impacts, with theta'",
     sentence="a dashpot takes {rate:.3f} of the angular velocity per second",
-    acts={"housner": on_housner},
+    acts={"housner": on_housner, "stacked": on_stacked},
     source="linear viscous couple",
 )

@@ -4,25 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from models import walls
 from models.base import Parameter, Quantity
-from models.stacked.configuration import CONFIGURATIONS, NAMES
+from models.stacked.configuration import NAMES
+from models.walls import by_body, by_joint
 
 PARAMETERS = (
-    Parameter("wall_length", "2b_1", "m", "length of the wall", 0.0, low_open=True),
-    Parameter("wall_height", "2h_1", "m", "height of the wall", 0.0, low_open=True),
-    Parameter("aspect_ratio", "b_1/h_1", "1", "length over height of the wall", 0.0, low_open=True),
-    Parameter(
-        "wall_thickness", "t", "m", "thickness of the wall, needed with wall_density", 0.0,
-        default=np.nan, low_open=True,
-    ),
-    Parameter("wall_density", "rho", "kg m-3", "density of the wall", 0.0, low_open=True),
-    Parameter("wall_mass", "m_1", "kg", "mass of the wall", 0.0, low_open=True),
-    Parameter("top_mass", "m_2", "kg", "mass of the block on top", 0.0, low_open=True),
-    Parameter(
-        "top_length", "2b_2", "m",
-        "length of the block on top; the joint is as long as the shorter of block and wall", 0.0, low_open=True,
-    ),
-    Parameter("top_height", "2h_2", "m", "height of the block on top", 0.0, low_open=True),
+    *walls.PARAMETERS,
     Parameter(
         "base_restitution", "e_b", "1",
         "given ratio of theta_1' over an impact at the base (default: projection in the kinetic metric)",
@@ -33,13 +21,9 @@ PARAMETERS = (
         "given ratio of theta_2' - theta_1' over an impact at the top joint (default: projection)",
         0.0, 1.0, default=np.nan,
     ),
-    Parameter("gravity", "g", "m s-2", "acceleration of gravity", 0.0, default=9.80665, low_open=True),
 )  # fmt: skip
 
-ALTERNATIVES = (
-    (("wall_length", "wall_height"), ("wall_height", "aspect_ratio")),
-    (("wall_density",), ("wall_mass",)),
-)
+ALTERNATIVES = walls.ALTERNATIVES
 
 OPTIONS = {"formulation": ("nonlinear", "linear")}
 
@@ -58,42 +42,24 @@ AT_REST = (
 MOST_EVENTS_PER_STEP = 200
 
 
-def _body(name: str, symbol: str, unit: str, meaning: str, rule: str, plain: str, kind: str = "float64") -> list[Quantity]:
-    """The plain quantity and one for each body."""
-    return [
-        Quantity(name, symbol, unit, f"{meaning}, {plain}", rule, dtype=kind),
-        Quantity(f"{name}_1", f"{symbol}_1", unit, f"{meaning}, of the wall", rule, dtype=kind),
-        Quantity(f"{name}_2", f"{symbol}_2", unit, f"{meaning}, of the upper block", rule, dtype=kind),
-    ]
-
-
-def _joint(name: str, symbol: str, unit: str, meaning: str, rule: str, plain: str, kind: str = "float64") -> list[Quantity]:
-    """The plain quantity and one for each joint."""
-    return [
-        Quantity(name, symbol, unit, f"{meaning}, {plain}", rule, dtype=kind),
-        Quantity(f"{name}_base", f"{symbol}_b", unit, f"{meaning}, at the base", rule, dtype=kind),
-        Quantity(f"{name}_top", f"{symbol}_t", unit, f"{meaning}, at the top joint", rule, dtype=kind),
-    ]
-
-
 WORST = "the larger of both"
 OUTPUTS = (
-    *_body("peak_rotation", "max |theta|", "rad", "largest absolute rotation", "pi/2 when overturned", WORST),
-    *_body(
+    *by_body("peak_rotation", "max |theta|", "rad", "largest absolute rotation", "pi/2 when overturned", WORST),
+    *by_body(
         "peak_rotation_ratio", "max |theta| / alpha", "1", "largest absolute rotation over the slenderness angle",
         "alpha of both as one body for the wall, of the upper block alone for the upper block", WORST,
     ),
-    *_joint("uplift_duration", "t_up", "s", "time for which the joint is up", f"{AT_REST}; counted to overturning", WORST),
-    *_joint("onset_time", "t_on", "s", "time of the first uplift", "nan when it never rocks", "the earlier of both"),
-    *_body("overturned", "", "1", "whether it overturned", OVERTURNED, "one of them", "bool"),
-    *_body("overturning_time", "t_ov", "s", "time of overturning", f"nan when it stands; {OVERTURNED}", "the earlier of both"),
-    *_joint("impacts", "n", "1", "number of impacts", "every closing of the joint counts", WORST, "int32"),
-    *_body("residual_rotation", "theta_end", "rad", "rotation at the end of the run", "signed pi/2 when overturned", WORST),
-    *_joint(
+    *by_joint("uplift_duration", "t_up", "s", "time for which the joint is up", f"{AT_REST}; counted to overturning", WORST),
+    *by_joint("onset_time", "t_on", "s", "time of the first uplift", "nan when it never rocks", "the earlier of both"),
+    *by_body("overturned", "", "1", "whether it overturned", OVERTURNED, "one of them", "bool"),
+    *by_body("overturning_time", "t_ov", "s", "time of overturning", f"nan when it stands; {OVERTURNED}", "the earlier of both"),
+    *by_joint("impacts", "n", "1", "number of impacts", "every closing of the joint counts", WORST, "int32"),
+    *by_body("residual_rotation", "theta_end", "rad", "rotation at the end of the run", "signed pi/2 when overturned", WORST),
+    *by_joint(
         "dissipated_energy", "E_d", "J", "energy lost", "at impacts, and at the base in couples; counted to overturning",
         "in all",
     ),
-    *_joint(
+    *by_joint(
         "needed_friction", "max |H|/N", "1", "largest friction demand while the stack rocks",
         "0 when it never rocks; inf when N <= 0; impulses not included", WORST,
     ),
@@ -107,7 +73,7 @@ OUTPUTS = (
             "patterns: 1 both rock to one side, 2 to opposite sides, 3 as one body, 4 only the upper block; right or "
             "left: the corner of the lowest joint that is up; counted to overturning",
         )
-        for name in NAMES[: len(CONFIGURATIONS)]
+        for name in NAMES
     ),
     Quantity(
         "status", "", "1", "what became of the run",

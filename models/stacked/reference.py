@@ -16,6 +16,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from models.base import Event, FloatArray
+from models.shaking import Shaking
 from models.stacked import account as acc
 from models.stacked.choice import choose
 from models.stacked.configuration import index
@@ -25,7 +26,6 @@ from models.stacked.ground import Piece, pieces
 from models.stacked.impact import BASE, TOP, closed, impact, kinetic_energy
 from models.stacked.overturning import margins
 from models.stacked.stack import Stack
-from models.shaking import Shaking
 
 JOINTS = (BASE, TOP)
 HALF_TURN = math.pi / 2.0

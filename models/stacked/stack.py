@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from models.base import FloatArray, Values
+from models.walls import bodies, lanes_shape
 
 
 @dataclass(frozen=True)
@@ -17,9 +18,9 @@ class Stack:
 
     Block 1 (the wall) has its mass centre at ``centre_1`` (h1) over the base and its top at
     ``height_1`` (2 h1); block 2 has its mass centre at ``centre_2`` (h2) over that. ``inertia_1``,
-    ``inertia_2`` are about the mass centres. The joints' pivots lie at +-``base_pivot`` (b1) and
-    +-``top_pivot`` (b2) from their middle; the mass centres lie ``shift_1`` and ``shift_2`` to the
-    right of it.
+    ``inertia_2`` are about the mass centres. The joints reach +-``half_length_1`` and
+    +-``half_joint`` from their middle, their pivots lie at +-``base_pivot`` (b1) and +-``top_pivot``
+    (b2), the mass centres ``shift_1`` and ``shift_2`` to the right of it.
 
     The base acceleration is ``offset + scale a(t)``, the apparent gravity
     G = ``gravity + vertical_factor scale a_z(t)``.
@@ -35,6 +36,8 @@ class Stack:
     mass_2: FloatArray
     inertia_2: FloatArray
     centre_2: FloatArray
+    half_length_1: FloatArray
+    half_joint: FloatArray
     base_pivot: FloatArray
     top_pivot: FloatArray
     shift_1: FloatArray
@@ -63,7 +66,8 @@ class Stack:
 
     def one(self, lane: int = 0) -> Stack:
         """One wall with plain floats in its fields, for code that runs a wall at a time."""
-        return replace(self, **{f.name: float(getattr(self, f.name)[lane]) for f in fields(self)})
+        floats: dict[str, Any] = {f.name: float(getattr(self, f.name)[lane]) for f in fields(self)}
+        return replace(self, **floats)
 
     @property
     def mass(self) -> FloatArray:
@@ -115,7 +119,7 @@ class Stack:
         """p = sqrt(M g R / I_O) in s-1 of both as one body, about the nearer pivot."""
         side = np.where(self.shift >= 0.0, 1.0, -1.0)
         radius = np.hypot(self.half_width, self.centre)
-        return np.sqrt(self.mass * self.gravity * radius / self.corner_inertia(side))
+        return np.asarray(np.sqrt(self.mass * self.gravity * radius / self.corner_inertia(side)))
 
     @property
     def frequency_parameter_2(self) -> FloatArray:
@@ -127,44 +131,41 @@ class Stack:
     def momentum_restitution(self) -> FloatArray:
         """e of both as one body, the smaller of both directions; 1 - 2 M b^2/I_O without eccentricity."""
         far = np.maximum(self.corner_inertia(1.0), self.corner_inertia(-1.0))
-        return 1.0 - 2.0 * self.mass * self.base_pivot * (self.base_pivot + np.abs(self.shift)) / far
+        return np.asarray(1.0 - 2.0 * self.mass * self.base_pivot * (self.base_pivot + np.abs(self.shift)) / far)
 
 
 def assemble(values: Values, vertical: bool, size: int | None = None) -> Stack:
     """The stack of the parameters alone, without mechanisms; ``values`` broadcast to ``(n,)``.
 
-    Both are solid rectangles: I = m (length^2 + height^2)/12. The top joint is as long as the
-    shorter of the two, so a top block longer than the wall rocks on the wall's corners.
+    The top joint is as long as the shorter body, so a top block longer than the wall rocks on the
+    wall's corners.
     """
-    given = {name: np.atleast_1d(np.asarray(value, float)) for name, value in values.items()}
-    shape = np.broadcast_shapes(*(v.shape for v in given.values()), (size or 1,))
-
-    def value(name: str, default: float = np.nan) -> FloatArray:
-        return np.broadcast_to(given.get(name, np.asarray(default)), shape).astype(float)
-
-    height, top_length, top_height = value("wall_height"), value("top_length"), value("top_height")
-    length = value("wall_length") if "wall_length" in given else value("aspect_ratio") * height
-    density = value("wall_density") * length * height * value("wall_thickness")
-    mass = value("wall_mass") if "wall_mass" in given else density
-    top = value("top_mass")
+    body = bodies(values, size)
+    shape = body.mass_1.shape
     zero, one = np.zeros(shape), np.ones(shape)
+
+    def given(name: str) -> FloatArray:
+        return np.broadcast_to(np.asarray(values.get(name, np.nan), dtype=np.float64), shape)
+
     return Stack(
-        mass_1=mass,
-        inertia_1=mass * (length**2 + height**2) / 12.0,
-        centre_1=height / 2.0,
-        height_1=height,
-        mass_2=top,
-        inertia_2=top * (top_length**2 + top_height**2) / 12.0,
-        centre_2=top_height / 2.0,
-        base_pivot=length / 2.0,
-        top_pivot=np.minimum(length, top_length) / 2.0,
+        mass_1=body.mass_1,
+        inertia_1=body.inertia_1,
+        centre_1=body.half_height_1,
+        height_1=2.0 * body.half_height_1,
+        mass_2=body.mass_2,
+        inertia_2=body.inertia_2,
+        centre_2=body.half_height_2,
+        half_length_1=body.half_length_1,
+        half_joint=body.half_joint,
+        base_pivot=body.half_length_1,
+        top_pivot=body.half_joint,
         shift_1=zero,
         shift_2=zero,
-        gravity=value("gravity", 9.80665),
+        gravity=body.gravity,
         offset=zero,
         vertical_factor=one if vertical else zero,
-        base_restitution=value("base_restitution"),
-        top_restitution=value("top_restitution"),
+        base_restitution=given("base_restitution"),
+        top_restitution=given("top_restitution"),
         base_factor=one,
         top_factor=one,
         viscous=zero,
@@ -186,9 +187,8 @@ def build(values: Values, vertical: bool, size: int | None = None) -> Stack:
         mechanism, dot, parameter = key.partition(".")
         if dot:
             switched.setdefault(mechanism, {})[parameter] = value
-    shape = np.broadcast_shapes(*(np.shape(v) for v in values.values()), (size or 1,))
-    stack = assemble(plain, vertical, int(np.prod(shape)))
-    for name, mechanism_ in MECHANISMS.items():
+    stack = assemble(plain, vertical, int(np.prod(lanes_shape(values, size))))
+    for name, acting in MECHANISMS.items():
         if name in switched:
-            stack = mechanism_.acts["stacked"](stack, {**mechanism_.nulls, **switched[name]})
+            stack = acting.acts["stacked"](stack, {**acting.nulls, **switched[name]})
     return stack

@@ -7,8 +7,18 @@ from typing import Any
 
 from models.lanes.compiler import called, inlined
 from models.stacked.account import (
-    END_1, END_2, FAILED, FRICTION_BASE, FRICTION_TOP, LOST_BASE, ONSET_BASE, ONSET_TOP, OVERTURNED_1, OVERTURNED_2,
-    PEAK_1, PEAK_2,
+    END_1,
+    END_2,
+    FAILED,
+    FRICTION_BASE,
+    FRICTION_TOP,
+    LOST_BASE,
+    ONSET_BASE,
+    ONSET_TOP,
+    OVERTURNED_1,
+    OVERTURNED_2,
+    PEAK_1,
+    PEAK_2,
 )  # fmt: skip
 from models.stacked.lanes.bookkeeping import note, raise_peaks, spend, stand, visit
 from models.stacked.lanes.equation import acceleration
@@ -16,9 +26,48 @@ from models.stacked.lanes.events import one_step
 from models.stacked.lanes.locate import inputs
 from models.stacked.lanes.overturning import overturned
 from models.stacked.lanes.rows import (
-    A0, DEMAND_1, DEMAND_2, G0, GRAVITY, LIMIT_1, LIMIT_2, LOG_OVERTURNED, MARGIN_1, MARGIN_2, OFFSET, P_GRAVITY,
-    P_M1, P_M2, P_OFFSET, P_Q1, P_Q2, P_SCALE, P_STAND_1, P_STAND_2, P_V1, P_V2, P_VSCALE, Q1, Q1S, Q2, Q2S,
-    R_CLOSED, R_SIDE_1, R_SIDE_2, R_SINCE, SCALE, V1, V1S, V2, V2S, VSCALE, W, WORK, WORK_STEP, X1, X2,
+    A0,
+    DEMAND_1,
+    DEMAND_2,
+    G0,
+    GRAVITY,
+    LIMIT_1,
+    LIMIT_2,
+    LOG_OVERTURNED,
+    MARGIN_1,
+    MARGIN_2,
+    OFFSET,
+    P_GRAVITY,
+    P_M1,
+    P_M2,
+    P_OFFSET,
+    P_Q1,
+    P_Q2,
+    P_SCALE,
+    P_STAND_1,
+    P_STAND_2,
+    P_V1,
+    P_V2,
+    P_VSCALE,
+    Q1,
+    Q1S,
+    Q2,
+    Q2S,
+    R_CLOSED,
+    R_SIDE_1,
+    R_SIDE_2,
+    R_SINCE,
+    SCALE,
+    V1,
+    V1S,
+    V2,
+    V2S,
+    VSCALE,
+    WORK,
+    WORK_STEP,
+    X1,
+    X2,
+    W,
 )  # fmt: skip
 
 Table = Any

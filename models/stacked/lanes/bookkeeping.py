@@ -10,8 +10,34 @@ from models.stacked.account import ONSET_BASE, ONSET_TOP, PEAK_1, PEAK_2, TIME_I
 from models.stacked.configuration import CONFIGURATIONS
 from models.stacked.lanes.corners import UPRIGHT, corner_inertia, vectors
 from models.stacked.lanes.rows import (
-    BX, BZ, CX, CZ, DRAG, FREE_1, FREE_2, J1, J2, KX, KZ, P_B1, P_B2, P_I1, P_I2, P_M1, P_M2, P_VISCOUS, R_CLOSED,
-    R_SIDE_1, R_SIDE_2, R_SINCE, SHARE, SIDE_1, SIDE_2, W, WIDE_1, WIDE_2,
+    BX,
+    BZ,
+    CX,
+    CZ,
+    DRAG,
+    FREE_1,
+    FREE_2,
+    J1,
+    J2,
+    KX,
+    KZ,
+    P_B1,
+    P_B2,
+    P_I1,
+    P_I2,
+    P_M1,
+    P_M2,
+    P_VISCOUS,
+    R_CLOSED,
+    R_SIDE_1,
+    R_SIDE_2,
+    R_SINCE,
+    SHARE,
+    SIDE_1,
+    SIDE_2,
+    WIDE_1,
+    WIDE_2,
+    W,
 )  # fmt: skip
 
 Table = Any

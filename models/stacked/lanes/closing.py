@@ -8,7 +8,7 @@ from models.lanes.compiler import called
 from models.stacked.account import IMPACTS_BASE, IMPACTS_TOP, LOST_BASE, LOST_TOP
 from models.stacked.lanes.bookkeeping import configure, note
 from models.stacked.lanes.choice import choose
-from models.stacked.lanes.corners import impulses, line, motion
+from models.stacked.lanes.corners import impulses, motion
 from models.stacked.lanes.impact import imposed, land
 from models.stacked.lanes.rows import LOG_IMPACT, LOG_REST, P_CALM_1, P_CALM_2, R_SIDE_1, R_SIDE_2
 

@@ -11,7 +11,18 @@ from typing import Any
 
 from models.lanes.compiler import called, inlined
 from models.stacked.lanes.rows import (
-    P_B1, P_B2, P_D1, P_D2, P_H1, P_H2, P_I1, P_I2, P_M1, P_M2, P_TALL, P_VISCOUS,
+    P_B1,
+    P_B2,
+    P_D1,
+    P_D2,
+    P_H1,
+    P_H2,
+    P_I1,
+    P_I2,
+    P_M1,
+    P_M2,
+    P_TALL,
+    P_VISCOUS,
 )  # fmt: skip
 
 Table = Any

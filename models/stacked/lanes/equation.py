@@ -11,7 +11,23 @@ from typing import Any
 from models.lanes.compiler import inlined
 from models.lanes.elementary import sine_cosine
 from models.stacked.lanes.rows import (
-    BX, BZ, CX, CZ, DRAG, FREE_1, FREE_2, J1, J2, KX, KZ, SHARE, SIDE_1, SIDE_2, W, WIDE_1, WIDE_2,
+    BX,
+    BZ,
+    CX,
+    CZ,
+    DRAG,
+    FREE_1,
+    FREE_2,
+    J1,
+    J2,
+    KX,
+    KZ,
+    SHARE,
+    SIDE_1,
+    SIDE_2,
+    WIDE_1,
+    WIDE_2,
+    W,
 )  # fmt: skip
 
 Table = Any

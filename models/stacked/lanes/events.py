@@ -16,8 +16,31 @@ from models.stacked.lanes.closing import close
 from models.stacked.lanes.corners import line, motion
 from models.stacked.lanes.locate import inputs, locate, look, onset, part
 from models.stacked.lanes.rows import (
-    A0, DEMAND_1, DEMAND_2, G0, LIMIT_1, LOG_CHANGE, LOG_ONSET, MARGIN_1, MARGIN_2, Q1, Q1S, Q2, Q2S, R_CLOSED,
-    R_SIDE_1, R_SIDE_2, V1, V1S, V2, V2S, W, WORK, WORK_STEP, X1, X2,
+    A0,
+    DEMAND_1,
+    DEMAND_2,
+    G0,
+    LIMIT_1,
+    LOG_CHANGE,
+    LOG_ONSET,
+    MARGIN_1,
+    MARGIN_2,
+    Q1,
+    Q1S,
+    Q2,
+    Q2S,
+    R_CLOSED,
+    R_SIDE_1,
+    R_SIDE_2,
+    V1,
+    V1S,
+    V2,
+    V2S,
+    WORK,
+    WORK_STEP,
+    X1,
+    X2,
+    W,
 )  # fmt: skip
 
 Table = Any
