@@ -40,8 +40,6 @@ AT_REST = (
     "unless the forces open it at once"
 )
 MOST_EVENTS_PER_STEP = 200
-
-
 WORST = "the larger of both"
 OUTPUTS = (
     *by_body("peak_rotation", "max |theta|", "rad", "largest absolute rotation", "pi/2 when overturned", WORST),
@@ -49,15 +47,22 @@ OUTPUTS = (
         "peak_rotation_ratio", "max |theta| / alpha", "1", "largest absolute rotation over the slenderness angle",
         "alpha of both as one body for the wall, of the upper block alone for the upper block", WORST,
     ),
-    *by_joint("uplift_duration", "t_up", "s", "time for which the joint is up", f"{AT_REST}; counted to overturning", WORST),
+    *by_joint(
+        "uplift_duration", "t_up", "s", "time for which the joint is up", f"{AT_REST}; counted to overturning", WORST
+    ),
     *by_joint("onset_time", "t_on", "s", "time of the first uplift", "nan when it never rocks", "the earlier of both"),
     *by_body("overturned", "", "1", "whether it overturned", OVERTURNED, "one of them", "bool"),
-    *by_body("overturning_time", "t_ov", "s", "time of overturning", f"nan when it stands; {OVERTURNED}", "the earlier of both"),
+    *by_body(
+        "overturning_time", "t_ov", "s", "time of overturning", f"nan when it stands; {OVERTURNED}",
+        "the earlier of both",
+    ),
     *by_joint("impacts", "n", "1", "number of impacts", "every closing of the joint counts", WORST, "int32"),
-    *by_body("residual_rotation", "theta_end", "rad", "rotation at the end of the run", "signed pi/2 when overturned", WORST),
+    *by_body(
+        "residual_rotation", "theta_end", "rad", "rotation at the end of the run", "signed pi/2 when overturned", WORST
+    ),
     *by_joint(
-        "dissipated_energy", "E_d", "J", "energy lost", "at impacts, and at the base in couples; counted to overturning",
-        "in all",
+        "dissipated_energy", "E_d", "J", "energy lost",
+        "at impacts, and at the base in couples; counted to overturning", "in all",
     ),
     *by_joint(
         "needed_friction", "max |H|/N", "1", "largest friction demand while the stack rocks",

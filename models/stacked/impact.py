@@ -18,103 +18,80 @@ from __future__ import annotations
 
 import math
 
-from models.stacked.choice import Corners, choose
-from models.stacked.equation import Rotations, System, held, products, vectors
+from models.stacked.choice import SIDES, Corners, choose
+from models.stacked.configuration import BASE, TOP, State
+from models.stacked.equation import System, held, products, vectors
 from models.stacked.stack import Stack
 
-Landing = tuple[int, int, float, float]
-"""s1, s2, theta_1', r' after an impact."""
-BASE, TOP = 0, 1
 
-
-def impulses(stack: Stack, s1: int, s2: int, q: Rotations, rate: Rotations, linear: bool) -> Corners:
-    """M and C q' for any pivots held afterwards; (s1, s2) are those before (0: closed)."""
-    place = (0.0 * q[0], 0.0 * q[1]) if linear else q
-    # the rate of a closed joint is 0, so which of its corners is taken makes no difference
-    before = vectors(stack, s1 or 1, s2 or 1, place, linear)
+def impulses(stack: Stack, state: State, linear: bool) -> Corners:
+    """M and C q' for any pivots held after ``state``."""
+    place = (0.0, 0.0) if linear else state.q
+    before = vectors(stack, *state.corners, place, False)
+    v1, v2 = state.rate
 
     def system(c1: int, c2: int) -> System:
-        after = vectors(stack, c1, c2, place, linear)
+        after = vectors(stack, c1, c2, place, False)
         m11, m12, _, m22 = products(stack, after, after)
         c11, c12, c21, c22 = products(stack, after, before)
-        return System(m11, m12, m22, c11 * rate[0] + c12 * rate[1], c21 * rate[0] + c22 * rate[1])
+        return System(m11, m12, m22, c11 * v1 + c12 * v2, c21 * v1 + c22 * v2)
 
     return system
 
 
-def kinetic_energy(stack: Stack, s1: int, s2: int, q: Rotations, rate: Rotations, linear: bool) -> float:
-    """In J, about the pivots (s1, s2) of a configuration."""
-    m = impulses(stack, s1, s2, q, rate, linear)(s1 or 1, s2 or 1)
-    return float(0.5 * (rate[0] * m.r1 + rate[1] * m.r2))
+def kinetic_energy(stack: Stack, state: State, linear: bool) -> float:
+    """In J."""
+    m = impulses(stack, state, linear)(*state.corners)
+    return float(0.5 * (state.rate[0] * m.r1 + state.rate[1] * m.r2))
 
 
-def impact(
-    stack: Stack, joint: int, s1: int, s2: int, q: Rotations, rate: Rotations, linear: bool
-) -> Landing:
-    """The velocities and pivots after ``joint`` (`BASE` or `TOP`) of one wall has closed."""
-    base = 0 if joint == BASE else s1
-    top = 0 if joint == TOP else s2
-    system = impulses(stack, s1, s2, q, rate, linear)
-    new = choose(system, base, top)
-    after = held(system(new[0] or 1, new[1] or 1), *new)
+def impact(stack: Stack, joint: int, state: State, linear: bool) -> State:
+    """One wall after ``joint`` (`BASE` or `TOP`) has closed."""
+    base, top = (0, state.sides[1]) if joint == BASE else (state.sides[0], 0)
+    system = impulses(stack, state, linear)
+    sides = choose(system, base, top)
+    after = held(system(sides[0] or 1, sides[1] or 1), *sides)
     given = (stack.base_restitution, stack.top_restitution)[joint]
     factor = (stack.base_factor, stack.top_factor)[joint]
-    wanted = factor * (after[joint] if math.isnan(given) else given * rate[joint])
+    wanted = float(factor * (after[joint] if math.isnan(float(given)) else given * state.rate[joint]))
     if wanted == after[joint]:
-        return (*new, float(after[0]), float(after[1]))
-    energy = kinetic_energy(stack, s1, s2, q, rate, linear)
-    return _imposed(system, joint, float(wanted), top if joint == BASE else base, energy)
+        return State(sides, state.q, (float(after[0]), float(after[1])))
+    return _imposed(stack, joint, state, linear, wanted)
 
 
-def closed(
-    stack: Stack, joint: int, s1: int, s2: int, q: Rotations, rate: Rotations, linear: bool
-) -> Landing:
-    """The velocities after ``joint`` has closed for good: what a bounce too small to follow ends in."""
-    system = impulses(stack, s1, s2, q, rate, linear)
-    energy = kinetic_energy(stack, s1, s2, q, rate, linear)
-    return _imposed(system, joint, 0.0, s2 if joint == BASE else s1, energy)
+def closed(stack: Stack, joint: int, state: State, linear: bool) -> State:
+    """One wall after ``joint`` has closed for good: what a bounce too small to follow ends in."""
+    return _imposed(stack, joint, state, linear, 0.0)
 
 
-def _imposed(system: Corners, joint: int, wanted: float, other: int, energy: float) -> Landing:
-    """The rate of ``joint`` is ``wanted``; the other joint is up about ``other``, or (0) in contact."""
+def _imposed(stack: Stack, joint: int, state: State, linear: bool, wanted: float) -> State:
+    """The rate of ``joint`` is ``wanted``, less where energy would grow; the other joint answers.
+
+    One that is up stays so; one in contact opens about the corner, or stays closed, as the condition
+    of `models.stacked.choice` says with the rate of ``joint`` held.
+    """
+    energy = kinetic_energy(stack, state, linear)
+    corners = impulses(stack, state, linear)
     side = (wanted > 0.0) - (wanted < 0.0)
-    found: list[tuple[float, int, float, float]] = []
-    for s in (other,) if other else (1, -1, 0):
-        at = _turned(system(*_order(joint, side or 1, s or 1)), joint)
-        free, stiff = (at.r2 / at.m22, at.m11 - at.m12 * at.m12 / at.m22) if s else (0.0, at.m11)
-        spare = energy - 0.5 * at.m22 * free * free
+    other = state.sides[TOP if joint == BASE else BASE]
+
+    def system(s: int) -> System:
+        """The unknown of ``joint`` comes first."""
+        if joint == BASE:
+            return corners(side or 1, s)
+        m = corners(s, side or 1)
+        return System(m.m22, m.m12, m.m11, m.r2, m.r1)
+
+    found = []
+    for s in (other,) if other else (*SIDES, 0):
+        m = system(s or 1)
+        stiff = m.m11 - m.m12 * m.m12 / m.m22 if s else m.m11
+        spare = energy - 0.5 * m.r2 * m.r2 / m.m22 if s else energy
         rate = math.copysign(min(abs(wanted), math.sqrt(max(0.0, 2.0 * spare / stiff))), wanted)
-        second = (at.r2 - at.m12 * rate) / at.m22 if s else 0.0
-        found.append((_fits(system, joint, side, s, rate, second, other), s, rate, second))
+        second = (m.r2 - m.m12 * rate) / m.m22 if s else 0.0
+        pulls = [-c * (at.r2 - at.m12 * rate) / at.m22 for c in SIDES for at in (system(c),)]
+        found.append((s * second if s else min(pulls), s, rate, second))
     _, s, rate, second = max(found)
-    return (*_order(joint, side, s), *_pair(joint, rate, second))
-
-
-def _fits(
-    system: Corners, joint: int, side: int, s: int, rate: float, second: float, other: int
-) -> float:
-    """The margin of the other joint's state ``s`` when the rate of ``joint`` is held."""
-    if other:
-        return 0.0
-    if s:
-        return s * second
-    pulls = []
-    for c in (1, -1):
-        at = _turned(system(*_order(joint, side or 1, c)), joint)
-        pulls.append(-c * (at.r2 - at.m12 * rate) / at.m22)
-    return float(min(pulls))
-
-
-def _turned(system: System, joint: int) -> System:
-    """The system with the unknown of ``joint`` first."""
     if joint == BASE:
-        return system
-    return System(system.m22, system.m12, system.m11, system.r2, system.r1)
-
-
-def _order(joint: int, first: int, second: int) -> tuple[int, int]:
-    return (first, second) if joint == BASE else (second, first)
-
-
-def _pair(joint: int, first: float, second: float) -> tuple[float, float]:
-    return (first, second) if joint == BASE else (second, first)
+        return State((side, s), state.q, (rate, second))
+    return State((s, side), state.q, (second, rate))

@@ -189,7 +189,7 @@ class Stacked:
         linear = self._linear(integrator, options)
         quiet = tail if duration is None else max(0.0, duration - shaking.duration)
         end = shaking.duration + quiet if duration is None else duration
-        count = int(round(end / shaking.time_step)) + 1
+        count = round(end / shaking.time_step) + 1
         for name in initial or {}:
             if name not in self.states:
                 raise InputError(f"[initial] has no state '{name}'; {nearest(name, self.states)}")
@@ -215,7 +215,7 @@ class Stacked:
         channels = observe(stack, settled_history(trace, table))
         outputs = {name: float(value[0]) for name, value in account.outputs(stack, table).items()}
         kept: tuple[Event, ...] = tuple(event for event in events if event.time <= end)
-        time = np.arange(count) * shaking.time_step
+        time = np.arange(count, dtype=np.float64) * shaking.time_step
         return History(time, {name: c[0] for name, c in channels.items()}, kept, outputs)
 
 

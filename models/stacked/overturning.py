@@ -10,55 +10,56 @@ from __future__ import annotations
 
 import math
 
-from models.stacked.equation import Rotations, vectors
+from models.stacked.configuration import State
+from models.stacked.equation import vectors
 from models.stacked.impact import kinetic_energy
 from models.stacked.stack import Stack
 
+Ground = tuple[float, float]
+"""a and G, in m s-2."""
 
-def potential_energy(stack: Stack, s1: int, s2: int, q: Rotations, ground: Rotations) -> float:
-    """In J, of gravity and of a constant base acceleration; 0 at the middle of the base."""
+
+def energy(stack: Stack, state: State, ground: Ground) -> float:
+    """Kinetic energy and the potential of gravity and of a constant base acceleration, in J.
+
+    The potential is 0 at the middle of the base.
+    """
     a, gravity = ground
-    v = vectors(stack, s1 or 1, s2 or 1, q, False)
-    pivot = (s1 or 1) * stack.base_pivot
-    m1, m2 = stack.mass_1, stack.mass_2
-    return float(gravity * (m1 * v.az + m2 * v.dz) + a * (m1 * (pivot + v.ax) + m2 * (pivot + v.dx)))
+    v = vectors(stack, *state.corners, state.q, False)
+    pivot = state.corners[0] * stack.base_pivot
+    across = stack.mass_1 * (pivot + v.ax) + stack.mass_2 * (pivot + v.dx)
+    up = stack.mass_1 * v.az + stack.mass_2 * v.dz
+    return float(gravity * up + a * across) + kinetic_energy(stack, state, False)
 
 
-def energy(stack: Stack, s1: int, s2: int, q: Rotations, rate: Rotations, ground: Rotations) -> float:
-    """Kinetic and potential energy in J (full nonlinear form)."""
-    kinetic = kinetic_energy(stack, s1, s2, q, rate, False)
-    return kinetic + potential_energy(stack, s1, s2, q, ground)
-
-
-def balance(stack: Stack, side: int, ground: Rotations) -> float:
+def balance(stack: Stack, side: int, ground: Ground) -> float:
     """Potential energy (J) of both, seated on each other, balanced on the base pivot of ``side``."""
     a, gravity = ground
     arm = side * stack.base_pivot - stack.shift
-    radius = math.hypot(arm, stack.centre)
+    radius = math.hypot(float(arm), float(stack.centre))
     return float(stack.mass * (math.hypot(a, gravity) * radius + a * side * stack.base_pivot))
 
 
-def balance_2(stack: Stack, side: int, ground: Rotations) -> float:
+def balance_2(stack: Stack, side: int, ground: Ground) -> float:
     """Potential energy (J) of block 2 balanced on its pivot of ``side`` on an upright wall, and of the wall."""
     a, gravity = ground
-    radius = math.hypot(side * stack.top_pivot - stack.shift_2, stack.centre_2)
+    radius = math.hypot(float(side * stack.top_pivot - stack.shift_2), float(stack.centre_2))
     wall = stack.mass_1 * (gravity * stack.centre_1 + a * stack.shift_1)
     place = gravity * stack.height_1 + a * side * stack.top_pivot
     return float(wall + stack.mass_2 * (place + math.hypot(a, gravity) * radius))
 
 
-def margins(
-    stack: Stack, s1: int, s2: int, q: Rotations, rate: Rotations, ground: Rotations
-) -> tuple[float, float]:
+def margins(stack: Stack, state: State, ground: Ground) -> tuple[float, float]:
     """For the wall and for block 2: positive once the rule after the end of shaking is fulfilled."""
     a, gravity = ground
-    v = vectors(stack, s1 or 1, s2 or 1, q, False)
-    now = energy(stack, s1, s2, q, rate, ground)
+    s1, s2 = state.sides
+    v = vectors(stack, *state.corners, state.q, False)
+    now = energy(stack, state, ground)
     wall = top = -math.inf
     if s1:
-        moment = s1 * (gravity * v.ax - a * v.az)
-        wall = min(moment, s1 * rate[0], balance(stack, s1, ground) - now)
+        moment = float(s1 * (gravity * v.ax - a * v.az))
+        wall = min(moment, s1 * state.rate[0], balance(stack, s1, ground) - now)
     if s2:
-        moment = s2 * (gravity * v.cx - a * v.cz)
-        top = min(moment, s2 * (rate[0] + rate[1]), balance_2(stack, s2, ground) - now)
-    return float(wall), float(top)
+        moment = float(s2 * (gravity * v.cx - a * v.cz))
+        top = min(moment, s2 * (state.rate[0] + state.rate[1]), balance_2(stack, s2, ground) - now)
+    return wall, top

@@ -107,7 +107,7 @@ class Stack:
     def corner_inertia(self, side: Any) -> FloatArray:
         """I_O in kg m2 of both as one body about the base pivot on ``side`` (1 or -1)."""
         arm_1, arm_2 = side * self.base_pivot - self.shift_1, side * self.base_pivot - self.shift_2
-        return (
+        return np.asarray(
             self.inertia_1
             + self.mass_1 * (self.centre_1**2 + arm_1**2)
             + self.inertia_2
@@ -125,7 +125,8 @@ class Stack:
     def frequency_parameter_2(self) -> FloatArray:
         """p in s-1 of block 2 on a base of its own."""
         radius = np.hypot(self.half_width_2, self.centre_2)
-        return np.sqrt(self.mass_2 * self.gravity * radius / (self.inertia_2 + self.mass_2 * radius**2))
+        corner = self.inertia_2 + self.mass_2 * radius**2
+        return np.asarray(np.sqrt(self.mass_2 * self.gravity * radius / corner))
 
     @property
     def momentum_restitution(self) -> FloatArray:

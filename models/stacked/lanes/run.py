@@ -48,7 +48,7 @@ def fastest_rate(stack: Stack) -> FloatArray:
         trace = (m22 * weight + m11 * weight_2 - 2.0 * m12 * weight_2) / determinant
         product = (weight * weight_2 - weight_2 * weight_2) / determinant
         rates.append(0.5 * (trace + np.sqrt(np.maximum(trace * trace - 4.0 * product, 0.0))))
-    return np.sqrt(np.max(rates, axis=0))
+    return np.asarray(np.sqrt(np.max(rates, axis=0)))
 
 
 def substeps(stack: Stack, time_step: float) -> NDArray[np.int64]:

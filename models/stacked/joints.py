@@ -1,0 +1,93 @@
+"""One wall at its events: what opens, closes and stays closed; the plain reference's route."""
+
+from __future__ import annotations
+
+import math
+
+from models.base import Event
+from models.stacked import account as acc
+from models.stacked.choice import choose
+from models.stacked.configuration import BASE, JOINTS, State
+from models.stacked.declaration import REST_VELOCITY
+from models.stacked.equation import System, held, motion
+from models.stacked.impact import closed, impact, kinetic_energy
+from models.stacked.ledger import Ledger
+from models.stacked.stack import Stack
+
+Pair = tuple[float, float]
+REST = State((0, 0), (0.0, 0.0), (0.0, 0.0))
+
+
+class Joints:
+    """The configuration of one wall and how it changes."""
+
+    def __init__(self, stack: Stack, linear: bool, ledger: Ledger) -> None:
+        p, p2 = float(stack.frequency_parameter[0]), float(stack.frequency_parameter_2[0])
+        self.calm = (
+            REST_VELOCITY * p * float(stack.slenderness[0]),
+            REST_VELOCITY * p2 * float(stack.slenderness_2[0]),
+        )
+        self.stack, self.linear, self.ledger = stack.one(), linear, ledger
+        self.state = REST
+
+    def system(self, corners: tuple[int, int], q: Pair, rate: Pair, ground: Pair) -> System:
+        return motion(self.stack, *corners, q, rate, ground, self.linear)
+
+    def pull(self, joint: int, corner: int, state: State, ground: Pair) -> float:
+        """Moment (N m) by which a closed joint would open about ``corner``; <= 0: it stays closed."""
+        corners = (corner, state.corners[1]) if joint == BASE else (state.corners[0], corner)
+        m = self.system(corners, state.q, state.rate, ground)
+        x1, x2 = held(m, *state.sides)
+        return corner * float(m.r1 - m.m12 * x2 if joint == BASE else m.r2 - m.m12 * x1)
+
+    def _settled(self, state: State, ground: Pair, moving: bool = False) -> State:
+        """What the closed joints of ``state`` do under these forces."""
+        if all(state.sides):
+            return state
+        chosen = choose(
+            lambda c1, c2: self.system((c1, c2), state.q, state.rate, ground), *state.sides, moving=moving
+        )
+        return state._replace(sides=chosen)
+
+    def _go(self, state: State, time: float) -> None:
+        """Go over to ``state``; the first uplift of a joint is its onset."""
+        before, self.state = self.state, state
+        self.ledger.visit(state.sides)
+        for joint, column in zip(JOINTS, (acc.ONSET_BASE, acc.ONSET_TOP), strict=True):
+            if state.sides[joint] and not before.sides[joint] and math.isnan(self.ledger.account[column]):
+                self.ledger.account[column] = time
+
+    def settle(self, ground: Pair, time: float, moving: bool = False) -> None:
+        """The closed joints answer to ``ground``; ``moving``: at a threshold, rest is left out."""
+        self._go(self._settled(self.state, ground, moving), time)
+
+    def open(self, joint: int, side: int, time: float) -> None:
+        """A closed joint opens without impact."""
+        s1, s2 = self.state.sides
+        self._go(self.state._replace(sides=(side, s2) if joint == BASE else (s1, side)), time)
+        self.ledger.events.append(Event(time, "change_of_pattern", joint + 1))
+
+    def land(self, joint: int, ground: Pair, time: float) -> None:
+        """``joint`` closes: the impact, and what stays closed after it."""
+        q1, q2 = self.state.q
+        before = self.state._replace(q=(0.0, q2) if joint == BASE else (q1, 0.0))
+        after = self._after(joint, before, ground)
+        lost = kinetic_energy(self.stack, before, self.linear) - kinetic_energy(self.stack, after, self.linear)
+        self.ledger.account[(acc.LOST_BASE, acc.LOST_TOP)[joint]] += lost
+        self.ledger.account[(acc.IMPACTS_BASE, acc.IMPACTS_TOP)[joint]] += 1
+        self.ledger.events.append(Event(time, "impact", joint + 1))
+        self._go(after, time)
+        if not any(after.sides):
+            self.ledger.events.append(Event(time, "rest"))
+
+    def _after(self, joint: int, before: State, ground: Pair) -> State:
+        """Rates so small that the swing ahead does not matter end, if the forces keep the joint closed."""
+        landing = impact(self.stack, joint, before, self.linear)
+        calm = [abs(landing.rate[j]) < self.calm[j] for j in JOINTS]
+        if before.q == (0.0, 0.0) and all(calm) and not any(self._settled(REST, ground).sides):
+            return REST
+        if landing.sides[joint] and calm[joint]:
+            trial = self._settled(closed(self.stack, joint, before, self.linear), ground)
+            if not trial.sides[joint]:
+                return trial
+        return self._settled(landing, ground)
