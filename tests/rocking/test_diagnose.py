@@ -1,0 +1,112 @@
+"""The commands diagnose and calibrate: exit codes, mistakes, a stop, several recordings."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+import rocking.commands.diagnose as command
+from rocking.commands import app
+from tests.diagnosis.report.example import diagnosis
+
+EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "from_a_data_logger"
+BLOCK, FIRST, SECOND = (str(EXAMPLE / name) for name in ("block.toml", "shake_1.csv", "shake_2.csv"))
+
+
+def run(*words: str) -> tuple[int, str, str]:
+    ran = CliRunner().invoke(app, words)
+    return ran.exit_code, " ".join(ran.stdout.split()), " ".join(ran.stderr.split())
+
+
+@pytest.fixture
+def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The engine answers at once."""
+    monkeypatch.setattr("diagnosis.answer.diagnose", lambda *_, **__: diagnosis("nothing_missing"))
+
+
+@pytest.mark.usefixtures("quick")
+def test_the_statement_goes_to_stdout_and_nothing_else(tmp_path: Path) -> None:
+    code, out, err = run("diagnose", BLOCK, FIRST, "--out", str(tmp_path / "deep" / "answer"))
+    assert code == 0 and out == diagnosis("nothing_missing").statement
+    written = {path.name for path in (tmp_path / "deep" / "answer").iterdir()}
+    assert written == {"diagnosis.json", "extended.toml", "report.html", "fit.nc", "figures"}
+    assert "report.html" in err
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["no_block.toml", FIRST], "no_block.toml"),
+        ([BLOCK, str(EXAMPLE / "shake_9.csv")], "did you mean 'shake"),
+        ([BLOCK, FIRST, FIRST], "given twice; give it once"),
+        ([BLOCK, FIRST, "--holdout", FIRST], "a recording held out cannot be fitted too"),
+        ([BLOCK, BLOCK], "block"),
+    ],
+)
+def test_a_mistake_is_one_sentence_and_exit_code_2(words: list[str], sentence: str, tmp_path: Path) -> None:
+    code, out, err = run("diagnose", *words, "--out", str(tmp_path / "answer"))
+    assert code == 2 and out == "" and sentence in err and err.count("error:") == 1
+    assert not (tmp_path / "answer" / "report.html").exists()
+
+
+def test_two_recordings_of_one_name_are_refused(tmp_path: Path) -> None:
+    for name in ("shake_1.csv", "shake_1.toml"):
+        (tmp_path / name).write_bytes((EXAMPLE / name).read_bytes())
+    code, _, err = run("calibrate", BLOCK, FIRST, str(tmp_path / "shake_1.csv"))
+    assert code == 2 and "share the name shake_1; rename one" in err
+
+
+def test_a_file_in_place_of_the_folder_is_said_before_the_work(tmp_path: Path) -> None:
+    (tmp_path / "answer").write_text("")
+    code, _, err = run("diagnose", BLOCK, FIRST, "--out", str(tmp_path / "answer"))
+    assert code == 2 and "is a file" in err
+
+
+@pytest.mark.usefixtures("quick")
+def test_what_looks_wrong_is_said(tmp_path: Path) -> None:
+    for name in ("shake_1.csv", "shake_1.toml"):
+        (tmp_path / name).write_bytes((EXAMPLE / name).read_bytes())
+    mapping = (tmp_path / "shake_1.toml").read_text("utf-8").replace("sign = -1", "sign = 1")
+    (tmp_path / "shake_1.toml").write_text(mapping)
+    code, _, err = run("diagnose", BLOCK, str(tmp_path / "shake_1.csv"), "--out", str(tmp_path / "answer"))
+    assert code == 0 and "suspicion: shake_1: rotation_1 follows base_acceleration_x with the wrong sign" in err
+
+
+def stopping(at: float) -> Callable[[str], object]:
+    """Stages in which Ctrl-C is pressed once ``at`` of the work is done."""
+
+    @contextmanager
+    def stages(interrupted: str) -> Iterator[Callable[[str, float], None]]:
+        pressed = []
+
+        def report(text: str, share: float) -> None:
+            if share >= at and not pressed:
+                pressed.append(text)
+                raise KeyboardInterrupt
+
+        yield report
+
+    return stages
+
+
+def test_ctrl_c_in_the_search_leaves_what_was_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(command, "stages", stopping(0.2))
+    code, out, _ = run("diagnose", BLOCK, FIRST, "--out", str(tmp_path))
+    assert code == 0 and "stopped before its end" in out
+    answer = json.loads((tmp_path / "diagnosis.json").read_text("utf-8"))
+    assert answer["provenance"]["finished"] is False and answer["statement"] in out
+    assert "stopped before its end" in (tmp_path / "report.html").read_text("utf-8")
+
+
+def test_ctrl_c_elsewhere_ends_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("diagnosis.answer.diagnose", interrupted)
+    code, _, err = run("diagnose", BLOCK, FIRST, "--out", str(tmp_path))
+    assert code == 130 and "nothing was written" in err
