@@ -18,7 +18,7 @@ from models.housner.lanes.events import one_step
 from models.housner.lanes.onset import next_onset
 from models.housner.lanes.regimes.flexure import relax
 from models.housner.lanes.regimes.flight import shift
-from models.housner.lanes.step import hermite_root, inputs, note, raise_peak, stand_on, turning_point
+from models.housner.lanes.step import hermite_root, inputs, note, raise_peak, stand_on, start_at, turning_point
 from models.lanes.compiler import called, compiled, inlined
 
 Table = Any
@@ -39,7 +39,11 @@ def step_all(w: Table, h: float, general: Any, linear: Any) -> int:
         if general is not None:
             p0, q0 = w[r.P0 * r.W + lane], w[r.PP0 * r.W + lane]
             p1, q1 = w[r.PITCH * r.W + lane] * w[r.RP * r.W + lane], w[r.PITCH * r.W + lane] * w[r.RPP * r.W + lane]
-        th1, om1, demand, work = rk4(w, lane, theta, omega, h, a0, a1, g0, g1, p0, p1, q0, q1, general, linear)
+        begun = w[r.START * r.W + lane]
+        step = h - h * begun
+        th1, om1, demand, work = rk4(w, lane, theta, omega, step, a0, a1, g0, g1, p0, p1, q0, q1, general, linear)
+        w[r.START0 * r.W + lane] = begun
+        w[r.START * r.W + lane] = 0.0
         w[r.TH0 * r.W + lane] = theta
         w[r.OM0 * r.W + lane] = omega
         w[r.TH * r.W + lane] = th1
@@ -52,7 +56,8 @@ def step_all(w: Table, h: float, general: Any, linear: Any) -> int:
             w[r.P0 * r.W + lane], w[r.PP0 * r.W + lane] = p1, q1
             w[r.WORK * r.W + lane] += work
             w[r.WORK_STEP * r.W + lane] = work
-        steady = (abs(th1) < w[r.LIMIT * r.W + lane]) & (w[r.SIDE * r.W + lane] * th1 >= 0.0) & (omega * om1 >= 0.0)
+        goes_on = (omega * om1 >= 0.0) | (abs(th1) + step * abs(om1) < w[r.TURN * r.W + lane])
+        steady = (abs(th1) < w[r.LIMIT * r.W + lane]) & (w[r.SIDE * r.W + lane] * th1 >= 0.0) & goes_on
         w[r.FLAG * r.W + lane] = 0.0 if steady else 1.0
         flagged += 0 if steady else 1
     return flagged
@@ -61,9 +66,8 @@ def step_all(w: Table, h: float, general: Any, linear: Any) -> int:
 @inlined
 def load_inputs(w: Table, slot: int, record: Table, i: int) -> None:
     """The inputs at the start of step i, for a lane that has jumped."""
-    a, g, p, q = inputs(w, slot, record, i, 0.0)
-    w[r.A0 * r.W + slot], w[r.G0 * r.W + slot] = a, g
-    w[r.P0 * r.W + slot], w[r.PP0 * r.W + slot] = p, q
+    start_at(w, slot, record, i, 0.0)
+    w[r.ROUNDS * r.W + slot] = 0.0
 
 
 @called
@@ -86,6 +90,8 @@ def start(given: Table, result: Table, w: Table, lane: int, slot: int, time: flo
     theta, omega = given[lane, r.Q_THETA], given[lane, r.Q_OMEGA]
     w[r.TH * r.W + slot], w[r.OM * r.W + slot] = theta, omega
     w[r.PEAK * r.W + slot] = max(given[lane, r.Q_PEAK], abs(theta))
+    every_swing = given[lane, r.Q_EXPONENT] != 0.0 or given[lane, r.Q_COULOMB] > 0.0
+    w[r.TURN * r.W + slot] = -1.0 if every_swing else w[r.PEAK * r.W + slot]
     side = 1.0 if theta > 0.0 or (theta == 0.0 and omega >= 0.0) else -1.0
     stand_on(given, w, lane, slot, side, linear)
     w[r.DIRECTION * r.W + slot] = -side if omega * side < 0.0 else side
@@ -145,6 +151,7 @@ def attend(
     fall: bool, log: Table, count: Table, general: Any, linear: Any,
 ) -> bool:  # fmt: skip
     """What a flagged lane needs after step i; True when it ends (overturned, or not a number)."""
+    begun = w[r.START0 * r.W + slot]
     theta, omega = w[r.TH0 * r.W + slot], w[r.OM0 * r.W + slot]
     th1, om1 = w[r.TH * r.W + slot], w[r.OM * r.W + slot]
     known = result[lane, r.R_OVERTURNED_AT]
@@ -153,13 +160,13 @@ def attend(
     turned_only = stepped and w[r.SIDE * r.W + slot] * th1 >= 0.0 and abs(th1) < HALF_TURN
     if turned_only and (omega * om1 >= 0.0 or w[r.COULOMB * r.W + slot] == 0.0):
         if omega * om1 < 0.0:
-            raise_peak(result, w, lane, slot, turning_point(theta, omega, th1, om1, h))
+            raise_peak(result, w, lane, slot, turning_point(theta, omega, th1, om1, (1.0 - begun) * h))
     elif not abs(th1) < HALF_TURN and stepped and abs(theta) > 1.0:
         # through pi/2 (a step never crosses zero from beyond 1 rad)
         side = 1.0 if th1 > 0.0 else -1.0
-        f = hermite_root(theta - side * HALF_TURN, omega, th1 - side * HALF_TURN, om1, h)
+        f = hermite_root(theta - side * HALF_TURN, omega, th1 - side * HALF_TURN, om1, (1.0 - begun) * h)
         if not known == known:
-            result[lane, r.R_OVERTURNED_AT] = (i + min(1.0, max(0.0, f))) * h
+            result[lane, r.R_OVERTURNED_AT] = (i + begun + (1.0 - begun) * min(1.0, max(0.0, f))) * h
     else:
         w[r.WORK * r.W + slot] -= w[r.WORK_STEP * r.W + slot]
         one_step(given, result, w, lane, slot, record, i, h, log, count, general, linear)
@@ -259,6 +266,7 @@ def advance(
                     0.0,
                     0.0,
                 )
+                w[r.START * r.W + slot], w[r.TURN * r.W + slot] = 0.0, 0.0
                 w[r.COULOMB * r.W + slot], w[r.PITCH * r.W + slot], w[r.IM * r.W + slot] = 0.0, 0.0, 1.0
                 at[slot] = 0
             else:
@@ -296,6 +304,9 @@ def advance(
                             finish(given, result, w, lane, slot, result[lane, r.R_OVERTURNED_AT])
                             of[slot] = -1
                             settle = True
+                        elif w[r.START * r.W + slot] > 0.0:
+                            # an impact inside the step: the rest of it is the lane's next step
+                            at[slot] = i
                         elif result[lane, r.R_MODE] == r.DOWN:
                             settle = True
                         elif result[lane, r.R_MODE] != r.UP or w[r.LIMIT * r.W + slot] < 0.0:

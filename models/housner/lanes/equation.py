@@ -137,7 +137,7 @@ def rk4(
     k3, _, _, e3 = acceleration(w, lane, theta + half * o2, o3, am, gm, pm, qm, general, linear)
     o4 = omega + step * k3
     k4, _, _, e4 = acceleration(w, lane, theta + step * o3, o4, a1, g1, p1, q1, general, linear)
-    sixth = step / 6.0
+    sixth = step * (1.0 / 6.0)
     return (
         theta + sixth * (omega + 2.0 * (o2 + o3) + o4),
         omega + sixth * (k1 + 2.0 * (k2 + k3) + k4),

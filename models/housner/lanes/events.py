@@ -22,10 +22,11 @@ from models.housner.lanes.step import (
     raise_peak,
     released,
     stand_on,
+    start_at,
     turning,
     turning_point,
 )  # fmt: skip
-from models.lanes.compiler import called, inlined
+from models.lanes.compiler import inlined
 
 Table = Any
 
@@ -55,12 +56,15 @@ def land(
     return float(after)
 
 
-@called
+@inlined
 def one_step(
     given: Table, result: Table, w: Table, lane: int, slot: int, record: Table, i: int, h: float,
     log: Table, count: Table, general: Any, linear: Any,
 ) -> None:  # fmt: skip
-    """Advance a lane over step i from theta0, theta0' in ``work``, whatever happens in it."""
+    """Advance a lane over step i from theta0, theta0' in ``work``, whatever happens in it.
+
+    After an impact it stops there: the rest of the step becomes the lane's next step in the vector loop.
+    """
     if general is not None:
         if given[lane, r.Q_FREQUENCY] < math.inf:
             bend(given, result, w, lane, slot, record, i, h, log, count, general, linear)
@@ -69,10 +73,11 @@ def one_step(
             slide(given, result, w, lane, slot, record, i, h, log, count, general, linear)
             return
     theta, omega = w[r.TH0 * r.W + slot], w[r.OM0 * r.W + slot]
-    f, rounds = 0.0, 0
+    f = w[r.START0 * r.W + slot]
+    stepped = w[r.LIMIT * r.W + slot] > 0.0
+    w[r.ROUNDS * r.W + slot] = w[r.ROUNDS * r.W + slot] + 1.0 if f > 0.0 else 0.0
     while f < 1.0:
-        rounds += 1
-        if rounds > MOST_IMPACTS_PER_STEP:
+        if w[r.ROUNDS * r.W + slot] > MOST_IMPACTS_PER_STEP:
             result[lane, r.R_STATUS] = r.NOT_CONVERGED
             result[lane, r.R_MODE] = r.DOWN
             theta, omega = 0.0, 0.0
@@ -103,7 +108,8 @@ def one_step(
         if omega != 0.0:
             w[r.DIRECTION * r.W + slot] = 1.0 if omega > 0.0 else -1.0
         rest = 1.0 - f
-        if rounds == 1 and f == 0.0 and w[r.LIMIT * r.W + slot] > 0.0:
+        if stepped:
+            stepped = False
             th1, om1, work = w[r.TH * r.W + slot], w[r.OM * r.W + slot], w[r.WORK_STEP * r.W + slot]
         else:
             th1, om1, work = part(w, slot, theta, omega, record, i, f, rest, h, general, linear)
@@ -121,6 +127,10 @@ def one_step(
             if general is not None:
                 if given[lane, r.Q_BOUNCE] > 0.0 and result[lane, r.R_MODE] == r.UP:
                     omega = take_off(given, result, w, lane, slot, om1, omega)
+            if result[lane, r.R_MODE] == r.UP and f < 1.0 and w[r.LIMIT * r.W + slot] > 0.0:
+                start_at(w, slot, record, i, f)
+                break
+            w[r.ROUNDS * r.W + slot] += 1.0
             continue
         if omega * om1 < 0.0:
             if w[r.COULOMB * r.W + slot] > 0.0:

@@ -33,7 +33,11 @@ FLAG = 38  # whether the lane needs attention after this step
 # --- work: degrees of freedom of a regime (`models.housner.lanes.regimes`); U, U1 in contact: slip u, u'
 U, U1 = 39, 40  # in flight: x and x' of the mass centre; in flexure: amplitude eta and eta' of the mode
 Z, Z1 = 41, 42  # in flight: z and z' of the mass centre
-N_WORK = 43
+# --- work: a step that starts inside a step of the record, after an impact
+START, START0 = 43, 44  # fraction of the coming step that is over already; of the step just taken
+ROUNDS = 45  # impacts so far within this step of the record
+TURN = 46  # a turning point matters when |theta| exceeds this: the peak so far, or always (-1)
+N_WORK = 47
 
 # --- given: constants of a lane
 (

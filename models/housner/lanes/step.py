@@ -106,7 +106,7 @@ def turning_point(theta: float, omega: float, theta1: float, omega1: float, step
     return abs(theta + f * (step * omega + f * (c + f * d)))
 
 
-@called
+@inlined
 def crossing(
     w: Table, slot: int, theta: float, omega: float, th1: float, om1: float, record: Table, i: int, f: float,
     rest: float, h: float, general: Any, linear: Any,
@@ -173,12 +173,23 @@ def released(w: Table, slot: int, theta: float, record: Table, i: int, f: float,
 
 
 @inlined
+def start_at(w: Table, slot: int, record: Table, i: int, f: float) -> None:
+    """Let the lane's next step begin at the fraction f of step i."""
+    a, g, p, q = inputs(w, slot, record, i, f)
+    w[r.A0 * r.W + slot], w[r.G0 * r.W + slot] = a, g
+    w[r.P0 * r.W + slot], w[r.PP0 * r.W + slot] = p, q
+    w[r.START * r.W + slot] = f
+
+
+@inlined
 def raise_peak(result: Table, w: Table, lane: int, slot: int, size: float) -> None:
     """Keep the largest rotation of the run and of this swing."""
     result[lane, r.R_SWING] = max(result[lane, r.R_SWING], size)
     if size > result[lane, r.R_PEAK]:
         result[lane, r.R_PEAK] = size
         w[r.PEAK * r.W + slot] = size
+        if w[r.TURN * r.W + slot] >= 0.0:
+            w[r.TURN * r.W + slot] = size
 
 
 @inlined
