@@ -54,7 +54,9 @@ class Sliding(Rocking):
         right = [inertia * fixed, -m * (felt + lift * rate**2), -m * (gravity + (eq.rho - sway) * rate**2), 0.0]
         rows = [[inertia, m * sway, 0.0, 0.0], [m * sway, m, -1.0, 0.0], [m * lift, 0.0, 0.0, -1.0]]
         second, slip, across, up = np.linalg.solve([*rows, law], right).tolist()
-        if way != 0 and up < 0.0:
+        if way == 0:
+            return second, 0.0, across, up
+        if up < 0.0:
             second, slip, across, up = np.linalg.solve([*rows, [0.0, 0.0, 1.0, 0.0]], right).tolist()
         return second, slip, across, up
 
@@ -194,7 +196,8 @@ class Sliding(Rocking):
             return rate, slip, across, up
 
         was = energy(before, v, old)
-        after, slip, across, up = solved([0.0, 1.0, 0.0, 0.0])
+        after, _, across, up = solved([0.0, 1.0, 0.0, 0.0])
+        slip = 0.0
         if abs(across) > mu * up:
             pull = math.copysign(mu, across)
             size = inertia + m * new * (new - s * pull * h)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import models
 from models.base import FloatArray
@@ -40,8 +40,6 @@ TYPICAL: dict[str, dict[str, float]] = {
     "degradation": {"loss_of_restitution_per_impact": 0.02, "floor": 0.8},
     "wall_flexibility": {"first_frequency": 12.0},
 }
-REGIMES = ("sliding", "bounce", "wall_flexibility")
-"""Mechanisms that add degrees of freedom."""
 
 
 def dotted(name: str, values: Mapping[str, Any]) -> dict[str, Any]:
@@ -61,24 +59,39 @@ def free(duration: float, step: float = 0.005) -> Shaking:
     return Shaking(step, np.zeros(round(duration / step) + 1), np.zeros(round(duration / step) + 1), False)
 
 
+@dataclass(frozen=True)
+class Told:
+    """One run: outputs, and theta, theta', shift at the samples; events as (time, kind)."""
+
+    outputs: dict[str, float]
+    rotation: FloatArray
+    rate: FloatArray
+    shift: FloatArray
+    events: tuple[tuple[float, str], ...]
+
+
 def by_lanes(
     values: Mapping[str, Any], shaking: Shaking, initial: Mapping[str, float] | None = None, refinement: int = 1
-) -> tuple[dict[str, float], FloatArray, FloatArray, NDArray[Any]]:
-    """Outputs, rotation, shift and events of one run by the kernel."""
+) -> Told:
+    """One run by the kernel, as long as the record."""
     block = build(values, shaking.vertical is not None and shaking.vertical_acts)
     ran = lanes.run(
         block, shaking, np.ones(1), initial={k: np.array([v]) for k, v in (initial or {}).items()},
         samples=shaking.horizontal.size, log=2000, refinement=refinement,
     )  # fmt: skip
-    assert ran.rotation is not None and ran.shift is not None and ran.events is not None
+    assert ran.rotation is not None and ran.rate is not None and ran.shift is not None and ran.events is not None
     outputs = {k: float(v[0]) for k, v in lanes.outputs(block, ran.result).items()}
-    return outputs, ran.rotation[0], ran.shift[0], np.array(ran.events[0])
+    return Told(outputs, ran.rotation[0], ran.rate[0], ran.shift[0], ran.events[0])
 
 
-def by_reference(
-    values: Mapping[str, Any], shaking: Shaking, initial: Mapping[str, float] | None = None
-) -> tuple[dict[str, float], FloatArray, FloatArray, NDArray[Any]]:
+def by_reference(values: Mapping[str, Any], shaking: Shaking, initial: Mapping[str, float] | None = None) -> Told:
     """The same by the reference."""
     block = build(values, shaking.vertical is not None and shaking.vertical_acts)
     ran = reference.run(block, shaking, 1.0, tail=0.0, initial=initial)
-    return ran.outputs, ran.rotation, ran.shift, np.array([(e.time, e.kind) for e in ran.events])
+    return Told(ran.outputs, ran.rotation, ran.rate, ran.shift, tuple((e.time, e.kind) for e in ran.events))
+
+
+def released(start: float) -> float:
+    """Energy (J) that `WALL` has at rest at the rotation ``start`` over standing upright."""
+    b, h = WALL["width"] / 2, WALL["height"] / 2
+    return WALL["mass"] * 9.80665 * (b * np.sin(start) + h * np.cos(start) - h)
