@@ -30,9 +30,7 @@ def bench(
     """
     wishes = suite(seed)[:cases]
     place = folder / "diagnosis" / str(seed)
-    runner.run_all(
-        wishes, seed, place / "cases", place / run, jobs=jobs, minutes=minutes, say=say, answering=answering
-    )
+    runner.run_all(wishes, seed, place / "cases", place / run, jobs=jobs, minutes=minutes, say=say, answering=answering)
     answered = [scored for _, scored in runner.answered(wishes, place / "cases", place / run)]
     figures = {**report.grouped(answered), "seed": seed, "run": run, "asked": len(wishes)}
     if not answered:

@@ -50,9 +50,7 @@ def compare(
     }
     answered = {method: found for method, found in answered.items() if found}
     common = set.intersection(*(set(found) for found in answered.values()))
-    figures = {
-        method: report.grouped([found[label] for label in sorted(common)]) for method, found in answered.items()
-    }
+    figures = {method: report.grouped([found[label] for label in sorted(common)]) for method, found in answered.items()}
     write_json(out / "diagnosis_methods.json", {"seed": seed, "cases": len(common), "methods": figures})
     say(f"{len(common)} cases that every method answered; 1 % noise, nominal size:")
     say(" " * 40 + "".join(f"{name:>19s}" for name in COLUMNS))

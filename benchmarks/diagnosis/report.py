@@ -32,9 +32,7 @@ def summary(cases: Sequence[Scored]) -> dict[str, Any]:
     figures = score(cases)
     numbers = {name: value(figures[name]) for name in (*FIGURES, *MORE)}
     shares = {name: figure for name, figure in figures.items() if isinstance(figure, Mapping) and "of" in figure}
-    intervals = {
-        name: {**share, "value": value(share)} for name, share in shares.items()
-    }
+    intervals = {name: {**share, "value": value(share)} for name, share in shares.items()}
     return {"cases": figures["cases"], "by_kind": figures["by_kind"], **numbers, "intervals": intervals}
 
 

@@ -71,3 +71,9 @@ def scaled(shaking: Shaking, factor: float, vertical: bool) -> Shaking:
 def fine(samples: np.ndarray) -> np.ndarray:
     """Linear interpolation to ``STEP / FINE``."""
     return np.interp(np.arange((samples.size - 1) * FINE + 1) / FINE, np.arange(samples.size), samples)
+
+
+def on_fine_grid(shaking: Shaking) -> Shaking:
+    """The same motion at steps of ``STEP / FINE``."""
+    vertical = None if shaking.vertical is None else fine(shaking.vertical)
+    return Shaking(shaking.time_step / FINE, fine(shaking.horizontal), vertical)

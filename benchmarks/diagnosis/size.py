@@ -45,9 +45,7 @@ def windows(rotation: FloatArray, rate: FloatArray, time_step: float, noise: flo
     """One window after the other, each from the next peak over 8 times the noise (rad)."""
     size = np.abs(rotation)
     samples = round(WINDOW / time_step)
-    peaks = 1 + np.flatnonzero(
-        (size[1:-1] >= size[:-2]) & (size[1:-1] > size[2:]) & (size[1:-1] > ABOVE_NOISE * noise)
-    )
+    peaks = 1 + np.flatnonzero((size[1:-1] >= size[:-2]) & (size[1:-1] > size[2:]) & (size[1:-1] > ABOVE_NOISE * noise))
     chosen: list[int] = []
     for peak in peaks.tolist():
         if peak + samples < size.size and (not chosen or peak >= chosen[-1] + samples):

@@ -16,6 +16,10 @@ DEVELOPMENT_SEED = 20_000
 """Seeds of cases looked at while developing; the evaluation's own is never one of them."""
 EVALUATION_SEED = 7_310_926
 
+TOO_SMALL = ("bounce",)
+"""A bouncing corner keeps the angular momentum about itself, so at the end of its range it moves the response
+of slender blocks by less than the noise (.05-.7 of 1 %): nominal size does not exist."""
+
 
 @dataclass(frozen=True)
 class Wish:
@@ -42,9 +46,9 @@ class Group:
 
 
 GROUPS = (
-    Group(0.01, 1.0, {"null": 100, "single": 135, "pair": 40, "open": 40}),
-    Group(0.03, 0.5, {"null": 30, "single": 81, "pair": 10, "open": 13}),
-    Group(0.005, 1.0, {"null": 15, "single": 27}),
+    Group(0.01, 1.0, {"null": 100, "single": 130, "pair": 40, "open": 40}),
+    Group(0.03, 0.5, {"null": 30, "single": 78, "pair": 10, "open": 13}),
+    Group(0.005, 1.0, {"null": 15, "single": 26}),
 )
 
 
@@ -67,14 +71,15 @@ def _names(kind: Kind, count: int, rng: np.random.Generator) -> list[tuple[str, 
     """Every effect as often as every other one; pairs of two classes at random."""
     if kind == "null":
         return [()] * count
+    known = [name for name in CATALOGUE if name not in TOO_SMALL]
     if kind == "pair":
         pairs: list[tuple[str, ...]] = []
         while len(pairs) < count:
-            first, second = rng.choice(list(CATALOGUE), 2, replace=False).tolist()
+            first, second = rng.choice(known, 2, replace=False).tolist()
             if CATALOGUE[first].effect_class != CATALOGUE[second].effect_class:
                 pairs.append((first, second))
         return pairs
-    known = list(CATALOGUE) if kind == "single" else list(LAWS)
+    known = known if kind == "single" else list(LAWS)
     drawn: list[tuple[str, ...]] = []
     while len(drawn) < count:
         drawn += [(known[i],) for i in rng.permutation(len(known))]

@@ -104,6 +104,16 @@ def _integrate(couple: Any, hidden: Any, ratio: Any, acceleration: Any, step: fl
             t = (k + 1) * step - left
             if held:
                 side = _tips(couple, hidden, y, t, a, p, g)
+                if side == 0.0 and _tips(couple, hidden, y, t + left, acceleration[k + 1], p, g) != 0.0:
+                    low, high = 0.0, left
+                    for _ in range(50):
+                        middle = 0.5 * (low + high)
+                        tips = _tips(couple, hidden, y, t + middle, a + slope * middle, p, g)
+                        low, high = (low, middle) if tips != 0.0 else (middle, high)
+                    y = _step(couple, hidden, y, s, True, t, high, a, slope, p, g)
+                    left -= high
+                    side = _tips(couple, hidden, y, t + high, a + slope * high, p, g)
+                    a, t = a + slope * high, t + high
                 if side != 0.0:
                     held, s = False, side
             new = _step(couple, hidden, y, s, held, t, left, a, slope, p, g)

@@ -1,0 +1,149 @@
+"""Scores on answers made by hand, and the chain that writes, hashes and resumes."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from benchmarks.diagnosis import concealed, report
+from benchmarks.diagnosis.answers import NOTHING, answer, sha256
+from benchmarks.diagnosis.scores import Scored, Share, base_covered, confusion, covered, score
+
+FIRST = "tilt"
+
+
+def said(verdict: str, effects=(), rivals=(), seconds: float = 1.0, **parameters) -> dict:
+    return {
+        "verdict": verdict,
+        "effects": [
+            {"name": n, "class": n, "parameters": parameters if n == FIRST else {}, "evidence": 50.0} for n in effects
+        ],
+        "rivals": [{"name": n, "class": n, "evidence_gap": 4.0} for n in rivals],
+        "base": {"width": {"low95": 0.2, "estimate": 0.25, "high95": 0.3}},
+        "seconds": seconds,
+        "sources": "abc",
+    }
+
+
+def key(kind: str, *names: str, weak: bool = False, noise: float = 0.01, size: float = 1.0) -> dict:
+    effects = [{"name": n, "class": n, "parameters": {"tilt": 0.01} if n == FIRST else {}} for n in names]
+    return {
+        "kind": kind, "model": "housner", "effects": effects, "weak": weak, "true_parameters": {"width": 0.26},
+        "noise_fraction_of_peak": noise, "relative_size": size, "over_peak": 0.02,
+    }  # fmt: skip
+
+
+def estimate(low: float, high: float) -> dict:
+    return {"low95": low, "estimate": 0.5 * (low + high), "high95": high}
+
+
+CASES = [
+    Scored("1", said("nothing_missing"), key("null")),
+    Scored("2", said("missing", ["gain"]), key("null")),
+    Scored("3", said("missing", [FIRST], tilt=estimate(0.005, 0.02)), key("single", FIRST)),
+    Scored("4", said("cannot_tell_apart", ["gain"], ["delay"]), key("single", "delay")),
+    Scored("5", said("nothing_missing"), key("single", "gain")),
+    Scored("6", said("nothing_missing"), key("single", "gain", weak=True)),
+    Scored("7", said("missing", [FIRST, "gain"], tilt=estimate(0.02, 0.03)), key("pair", FIRST, "gain")),
+    Scored("8", said("missing", ["gain"]), key("pair", "gain", "delay")),
+    Scored("9", said("not_in_library", ["gain"]), key("open", "x")),
+    Scored("10", said("missing", ["gain"]), key("open", "x")),
+    Scored("11", said("not_in_library", [FIRST]), key("single", FIRST)),
+    Scored("12", said("missing", ["gain"], seconds=9.0), key("mismatch")),
+]
+
+
+def test_every_figure_by_hand() -> None:
+    found = score(CASES)
+    counts = {name: (f["count"], f["of"]) for name, f in found.items() if isinstance(f, dict) and "of" in f}
+    assert counts["false_alarm"] == (1, 2)
+    assert counts["mismatch_alarm"] == (1, 1)
+    assert counts["detected"] == (3, 4)
+    assert counts["class_first"] == (2, 4)
+    assert counts["class_first_detected"] == (2, 3)
+    assert counts["class_first_weak"] == (0, 1)
+    assert counts["rivals_cover"] == (3, 4)
+    assert found["rivals_mean"] == pytest.approx((1 + 2 + 1) / 3)
+    assert counts["pairs_both"] == (1, 2)
+    assert counts["pairs_one"] == (2, 2)
+    assert counts["interval_coverage"] == (1, 2)
+    assert counts["base_coverage"] == (3, 3)
+    assert counts["open_recall"] == (1, 2)
+    assert counts["open_detected"] == (2, 2)
+    assert counts["open_false"] == (1, 9 + 1)
+    assert found["seconds_median"] == 1.0 and found["seconds_most"] == 9.0
+
+
+def test_a_failed_case_is_a_wrong_answer() -> None:
+    failed = {"verdict": "failed", "statement": "", **NOTHING, "seconds": 1.0}
+    found = score([Scored("1", failed, key("single", FIRST)), Scored("2", failed, key("null"))])
+    assert found["class_first"]["count"] == 0 and found["rivals_cover"]["count"] == 0
+    assert found["false_alarm"]["count"] == 1
+
+
+def test_share_is_exact_and_honest_at_the_ends() -> None:
+    none = Share.of_flags([False] * 20)
+    assert none.low95 == 0.0 and none.high95 == pytest.approx(1.0 - 0.025 ** (1 / 20))
+    assert math.isnan(Share.of_flags([]).value) and Share.of_flags([]).high95 == 1.0
+
+
+def test_over_peak_is_compared_in_radians() -> None:
+    effect = {"name": "offset", "class": "offset", "parameters": {"offset_over_peak": 0.1}}
+    hidden = {**key("single"), "effects": [effect]}
+    own = {"offset_over_peak": estimate(0.04, 0.06), "reference_peak": {"estimate": 0.04}}
+    answered = {"effects": [{"name": "offset", "parameters": own}]}
+    assert covered(Scored("1", answered, hidden)) == [True]
+    assert base_covered(Scored("1", {"base": {"width": estimate(0.27, 0.3)}}, hidden)) == [False]
+
+
+def test_confusion_counts_every_case_but_pairs_once() -> None:
+    rows, columns, counts = confusion(CASES)
+    assert counts.sum() == sum(case.kind != "pair" for case in CASES)
+    assert counts[rows.index(FIRST), columns.index(FIRST)] == 1
+    assert counts[rows.index("nothing_missing"), columns.index("nothing_missing")] == 1
+
+
+def test_groups_carry_their_suffix_and_models(tmp_path: Path) -> None:
+    half = [Scored("20", said("missing", [FIRST]), key("single", FIRST, noise=0.03, size=0.5))]
+    figures = report.grouped([*CASES, *half])
+    assert figures["cases"] == len(CASES)
+    assert figures["half_size_3_percent"]["class_first_half"] == 1.0
+    assert figures["by_model"]["housner"]["false_alarm"] == 0.5
+    assert figures["nominal_size_half_percent"]["class_first"] is None
+    assert "class_first " in report.table(figures, "x")
+    assert report.wrong(CASES).count("\n") == len(CASES) - 5 - 1 + 0
+    json.dumps(figures, allow_nan=False)
+    report.draw_confusion(CASES, tmp_path / "confusion.png")
+    assert (tmp_path / "confusion.png").stat().st_size > 1000
+
+
+def test_answers_are_kept_and_failures_are_answers(tmp_path: Path) -> None:
+    def broken(folder: Path) -> dict:
+        raise ValueError("no solution here")
+
+    first = answer(tmp_path, tmp_path / "a" / "1.json", broken)
+    assert first["verdict"] == "failed" and "no solution here" in first["statement"]
+    before = sha256(tmp_path / "a" / "1.json")
+    again = answer(tmp_path, tmp_path / "a" / "1.json", lambda folder: {"verdict": "missing"})
+    assert again == first and sha256(tmp_path / "a" / "1.json") == before
+
+
+def test_halves_of_a_folder_part_the_blocks_by_number(tmp_path: Path) -> None:
+    for number, model in ((1, "housner"), (2, "housner"), (3, "interface"), (5, "housner")):
+        (tmp_path / f"case_{number:02d}").mkdir()
+        (tmp_path / f"case_{number:02d}" / "specimen.toml").write_text(f'model = "{model}"\n')
+    assert [p.name for p in concealed.folders(tmp_path, "odd")] == ["case_01", "case_05"]
+    assert [p.name for p in concealed.folders(tmp_path, "even")] == ["case_02"]
+
+
+def test_weights_of_the_weak_form_integrate_by_parts() -> None:
+    from benchmarks.diagnosis.weak_form import _test_function
+
+    step, time = 1e-3, 1e-3 * np.arange(201)
+    test, curve = _test_function(201, step)
+    theta = np.sin(9.0 * time)
+    assert step * curve @ theta == pytest.approx(step * test @ (-81.0 * theta), rel=1e-4)
