@@ -20,6 +20,10 @@ Values = Mapping[str, Any]
 FloatArray = NDArray[np.float64]
 
 
+STATUS = ("not_run", "rest", "rocking", "overturned", "not_converged", "failed")
+"""What can become of a cell: the words of a cube's ``status`` flags, by their values 0 to 5."""
+
+
 @dataclass(frozen=True)
 class Parameter:
     """A number a user may give. ``low`` and ``high`` are the bounds beyond which it has no meaning.

@@ -6,7 +6,8 @@ not been computed, `failed` those of a block that raised an error and single lan
 
 from __future__ import annotations
 
-STATUS = ("not_run", "rest", "rocking", "overturned", "not_converged", "failed")
+from models.base import STATUS
+
 NOT_RUN, REST, ROCKING, OVERTURNED, NOT_CONVERGED, FAILED = range(len(STATUS))
 UNKNOWN = (NOT_RUN, NOT_CONVERGED, FAILED)
 """Flags of cells whose outputs say nothing."""

@@ -76,8 +76,6 @@ OUTPUTS = (
     Quantity("status", "", "1", "what became of the run", "not_converged: more than 200 impacts within one step", dtype="int8"),
 )
 
-STATUS = ("not_run", "rest", "rocking", "overturned", "not_converged", "failed")
-"""Values 0..5 of ``status``; the same words in every model."""
 
 DERIVED = (
     Quantity("alpha", "alpha", "rad", "slenderness angle of the side that tips first"),

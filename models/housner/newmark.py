@@ -19,10 +19,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from models.base import Event, FloatArray
+from models.base import STATUS, Event, FloatArray
 from models.errors import InputError
 from models.housner.block import Block
-from models.housner.declaration import MOST_IMPACTS_PER_STEP, REST_VELOCITY, STATUS
+from models.housner.declaration import MOST_IMPACTS_PER_STEP, REST_VELOCITY
 from models.housner.impact import restitution
 from models.shaking import Shaking
 

@@ -16,8 +16,8 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from models.base import Event, FloatArray
-from models.housner.declaration import REST_VELOCITY, STATUS
+from models.base import STATUS, Event, FloatArray
+from models.housner.declaration import REST_VELOCITY
 from models.housner.equation import MOST_INSET, Equation
 from models.housner.ground import Piece
 from models.housner.impact import restitution

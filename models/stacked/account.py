@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from models.base import STATUS
 from models.stacked.configuration import CONFIGURATIONS, NAMES
-from models.stacked.declaration import STATUS
 from models.stacked.stack import Stack
 
 (

@@ -86,8 +86,6 @@ OUTPUTS = (
     ),
 )  # fmt: skip
 
-STATUS = ("not_run", "rest", "rocking", "overturned", "not_converged", "failed")
-"""Values 0..5 of ``status``; the same words in every model."""
 
 DERIVED = (
     Quantity("alpha", "alpha", "rad", "slenderness angle of both as one body"),

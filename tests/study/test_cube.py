@@ -39,9 +39,6 @@ def test_every_variable_says_what_it_is(cube: xr.Dataset) -> None:
 def test_status_words_are_the_models(cube: xr.Dataset) -> None:
     assert cube["status"].attrs["flag_meanings"].split() == list(STATUS)
     np.testing.assert_array_equal(cube["status"].attrs["flag_values"], np.arange(len(STATUS)))
-    from models.housner.declaration import STATUS as MODEL_STATUS
-
-    assert MODEL_STATUS == STATUS
 
 
 def test_derived_coordinates_lie_over_the_axes_they_depend_on(cube: xr.Dataset) -> None:
