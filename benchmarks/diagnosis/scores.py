@@ -108,14 +108,17 @@ def base_covered(case: Scored) -> list[bool]:
     return [v["low95"] <= truth[n] <= v["high95"] for n, v in case.answer["base"].items() if n in truth]
 
 
-def score(cases: Sequence[Scored]) -> dict[str, Any]:
-    """All figures of one set of cases: shares with intervals, means, and times."""
+def score(cases: Sequence[Scored], *, weak_too: bool = False) -> dict[str, Any]:
+    """All figures of one set of cases: shares with intervals, means, and times.
+
+    ``weak_too``: singles whose range ends before nominal size count in the figures of singles.
+    """
 
     def of(*kinds: str) -> list[Scored]:
         return [case for case in cases if case.kind in kinds]
 
     nulls, singles, pairs, opens = of(*SILENT), of("single"), of("pair"), of("open")
-    full = [case for case in singles if not case.weak]
+    full = [case for case in singles if weak_too or not case.weak]
     seen = [case for case in full if case.detected]
     inside = [*nulls, *singles, *pairs]
 
@@ -136,6 +139,7 @@ def score(cases: Sequence[Scored]) -> dict[str, Any]:
         "mismatch_alarm": share(of("mismatch"), lambda case: case.detected),
         "detected": share(full, lambda case: case.detected),
         "class_first": share(full, first_right),
+        "class_first_strict": share(full, lambda case: first_right(case) and case.verdict != "not_in_library"),
         "class_first_detected": share(seen, first_right),
         "class_first_weak": share([case for case in singles if case.weak], first_right),
         "rivals_cover": share(full, among),
