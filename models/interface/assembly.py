@@ -1,0 +1,111 @@
+"""From the parameters a user gives to the coefficients of walls on layers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from models.base import FloatArray, Values
+from models.errors import InputError
+from models.interface import modes
+from models.interface.layered import LayeredWall
+from models.walls import bodies, lanes_shape
+
+JOINTS = ("base", "top")
+
+
+def assemble(values: Values, options: Mapping[str, str], vertical: bool, size: int | None = None) -> LayeredWall:
+    """The walls of the parameters alone, without mechanisms; ``values`` broadcast to ``(n,)``.
+
+    k = modulus x wall thickness / layer thickness, and from a damping ratio xi the dashpot
+    c = 2 xi k/omega_1, omega_1 the lowest circular frequency at rest, gravity included.
+    """
+    joints = options["joints"]
+    with_rubber = JOINTS if joints == "both" else (joints,)
+    shape = lanes_shape(values, size)
+    two = bodies(values, size)
+    zero = np.zeros(shape)
+
+    def value(name: str) -> FloatArray:
+        return np.broadcast_to(np.asarray(values[name], dtype=np.float64), shape).copy()
+
+    def at_joint(name: str, joint: str) -> FloatArray | None:
+        """A layer's quantity at one joint: under its own name, else under the one for both."""
+        for key in (f"{joint}_{name}", name):
+            if key in values:
+                return value(key)
+        return None
+
+    thickness: dict[str, FloatArray] = dict.fromkeys(JOINTS, zero)
+    stiffness: dict[str, FloatArray] = dict.fromkeys(JOINTS, zero)
+    for joint in with_rubber:
+        thickness[joint] = _needed(at_joint("layer_thickness", joint), joint, "layer_thickness")
+        given = at_joint("stiffness", joint)
+        if given is None:
+            modulus = _needed(at_joint("layer_modulus", joint), joint, "layer_modulus")
+            if "wall_thickness" not in values:
+                raise InputError(
+                    f"the modulus of the {joint} layer needs wall_thickness (m): give it, or {joint}_stiffness (N m-2)"
+                )
+            given = modulus * value("wall_thickness") / thickness[joint]
+        stiffness[joint] = given
+    wall = LayeredWall(
+        mass_1=two.mass_1,
+        inertia_1=two.inertia_1,
+        centre_1=two.half_height_1,
+        height_1=2.0 * two.half_height_1,
+        mass_2=two.mass_2,
+        inertia_2=two.inertia_2,
+        centre_2=two.half_height_2,
+        rise=thickness["top"],
+        base_half_width=two.half_length_1,
+        top_half_width=two.half_joint,
+        base_stiffness=stiffness["base"],
+        top_stiffness=stiffness["top"],
+        base_damping=zero,
+        top_damping=zero,
+        base_thickness=thickness["base"],
+        top_thickness=thickness["top"],
+        gravity=two.gravity,
+        offset=zero,
+        vertical_factor=np.ones(shape) if vertical else zero,
+        joints=joints,
+        toe_held=options["kinematics"] == "toe_held",
+        clip=options["dashpot"] == "B",
+    )
+    damping = {joint: at_joint("damping", joint) for joint in with_rubber}
+    if any(c is None for c in damping.values()):
+        lowest = modes.at_rest(wall).squares[:, 0]
+        with np.errstate(invalid="ignore"):
+            omega = np.sqrt(lowest)
+        for joint in with_rubber:
+            if damping[joint] is None:
+                ratio = _needed(at_joint("damping_ratio", joint), joint, "damping_ratio")
+                damping[joint] = 2.0 * ratio * stiffness[joint] / omega
+    changes: dict[str, Any] = {f"{joint}_damping": c for joint, c in damping.items()}
+    return wall.replace(**changes)
+
+
+def _needed(found: FloatArray | None, joint: str, name: str) -> FloatArray:
+    if found is None:
+        raise InputError(f"the {joint} layer has no {name}: give {name} (both layers) or {joint}_{name}")
+    return found
+
+
+def build(values: Values, options: Mapping[str, str], vertical: bool, size: int | None = None) -> LayeredWall:
+    """The walls with the mechanisms that ``values`` switch on, in the order of the catalogue."""
+    from models.mechanisms import MECHANISMS
+
+    plain = {k: v for k, v in values.items() if "." not in k}
+    switched: dict[str, dict[str, Any]] = {}
+    for key, value in values.items():
+        mechanism, dot, parameter = key.partition(".")
+        if dot:
+            switched.setdefault(mechanism, {})[parameter] = value
+    wall = assemble(plain, options, vertical, int(np.prod(lanes_shape(values, size))))
+    for name, mechanism_ in MECHANISMS.items():
+        if name in switched:
+            wall = mechanism_.acts["interface"](wall, {**mechanism_.nulls, **switched[name]})
+    return wall

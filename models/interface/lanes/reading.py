@@ -1,0 +1,73 @@
+"""What is read off the state after a step of one lane; inlined into the loop over lanes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from models.interface.lanes import rows as r
+from models.interface.lanes.rows import W
+from models.lanes.compiler import inlined
+
+Table = Any
+HALF_TURN = 1.5707963267948966
+NEVER = 1e300
+
+
+@inlined
+def read_joints(
+    w: Table, i: int, z1: float, z2: float, s1: float, sr: float, y1: float, y2: float, rb: float, rt: float
+) -> bool:
+    """Time up, closings, first uplift; False where a lane whose events are logged opens or closes a joint.
+
+    The height by which the freer end is from pressing (`models.interface.watch.uplift`) is taken as
+    linear in time over the step.
+    """
+    late_b, late_t = w[r.LATE_B * W + i], w[r.LATE_T * W + i]
+    b1, bt = w[r.B1 * W + i], w[r.BT * W + i]
+    now_b = z1 + max(b1 * abs(s1), late_b * y1 + b1 * abs(s1 + late_b * rb))
+    now_t = z2 + max(bt * abs(sr), late_t * y2 + bt * abs(sr + late_t * rt))
+    was_b, was_t = w[r.LIFT_B * W + i], w[r.LIFT_T * W + i]
+    w[r.LIFT_B * W + i], w[r.LIFT_T * W + i] = now_b, now_t
+    size_b, size_t = abs(now_b) + abs(was_b), abs(now_t) + abs(was_t)
+    inverse = 1.0 / (size_b * size_t)
+    w[r.UP_B * W + i] += (max(now_b, 0.0) + max(was_b, 0.0)) * (inverse * size_t)
+    w[r.UP_T * W + i] += (max(now_t, 0.0) + max(was_t, 0.0)) * (inverse * size_b)
+    clock = w[r.CLOCK * W + i]
+    w[r.CLOCK * W + i] = clock + 1.0
+    up_b, up_t = now_b > 0.0, now_t > 0.0
+    were_b, were_t = was_b > 0.0, was_t > 0.0
+    first_b, first_t = clock - was_b * (inverse * size_t), clock - was_t * (inverse * size_b)
+    w[r.ONSET_B * W + i] = min(w[r.ONSET_B * W + i], first_b if up_b & (not were_b) else NEVER)
+    w[r.ONSET_T * W + i] = min(w[r.ONSET_T * W + i], first_t if up_t & (not were_t) else NEVER)
+    w[r.CLOSED_B * W + i] += 1.0 if were_b & (not up_b) else 0.0
+    w[r.CLOSED_T * W + i] += 1.0 if were_t & (not up_t) else 0.0
+    return bool((w[r.LOGGED * W + i] == 0.0) | ((were_b == up_b) & (were_t == up_t)))
+
+
+@inlined
+def read_bodies(w: Table, i: int, t1: float, t2: float, kinetic: float) -> bool:
+    """Peaks of rotation and of (twice) the kinetic energy; whether both bodies stand."""
+    w[r.KINETIC * W + i] = max(w[r.KINETIC * W + i], kinetic)
+    w[r.WINDOW * W + i] = max(w[r.WINDOW * W + i], kinetic)
+    size_1, size_2 = abs(t1), abs(t2)
+    w[r.PEAK_1 * W + i] = max(w[r.PEAK_1 * W + i], size_1)
+    w[r.PEAK_2 * W + i] = max(w[r.PEAK_2 * W + i], size_2)
+    return (size_1 < HALF_TURN) & (size_2 < HALF_TURN)
+
+
+@inlined
+def account_joints(
+    w: Table, i: int, h: float, px: float, pz: float, ux: float, uz: float, power_b: float, power_t: float
+) -> None:
+    """Worst friction demand of both joints, without a division, and the work of the strips."""
+    along, across = abs(ux), max(uz, 0.0)
+    worse = along * w[r.ACROSS_T * W + i] > w[r.ALONG_T * W + i] * across
+    w[r.ALONG_T * W + i] = along if worse else w[r.ALONG_T * W + i]
+    w[r.ACROSS_T * W + i] = across if worse else w[r.ACROSS_T * W + i]
+    along, across = abs(px), max(pz, 0.0)
+    worse = along * w[r.ACROSS_B * W + i] > w[r.ALONG_B * W + i] * across
+    w[r.ALONG_B * W + i] = along if worse else w[r.ALONG_B * W + i]
+    w[r.ACROSS_B * W + i] = across if worse else w[r.ACROSS_B * W + i]
+    w[r.WORK_B * W + i] += 0.5 * h * (w[r.POWER_B * W + i] + power_b)
+    w[r.WORK_T * W + i] += 0.5 * h * (w[r.POWER_T * W + i] + power_t)
+    w[r.POWER_B * W + i], w[r.POWER_T * W + i] = power_b, power_t

@@ -1,0 +1,42 @@
+"""Names of the rows of the lane kernel's tables: ``work`` (row times W lanes), ``given``, ``result``."""
+
+W = 16
+"""Lanes under way at once: two vectors of eight doubles, four of four."""
+
+# --- work: state at the end of the last step; A is the step rule's own acceleration
+(
+    T1, T2, Z1, Z2, V1, V2, Y1, Y2, A1, A2, AZ1, AZ2,
+    # input at the end of the coming step, clock in steps
+    RA, RV, CLOCK,
+    # constants of the lane
+    SCALE, OFFSET, GRAVITY, VSCALE,
+    M1, H1, I1, M2, H2, I2, HEIGHT, B1, BT, TOE_1, TOE_T, KB, KT, CB, CT, LATE_B, LATE_T, CLIP, FREE_B, FREE_T,
+    # joints: height of the freer end over compression, time up, closings, first uplift (in steps), least share
+    LIFT_B, LIFT_T, UP_B, UP_T, CLOSED_B, CLOSED_T, ONSET_B, ONSET_T, SHARE_B, SHARE_T,
+    # power and work of the strips; forces along and across the joints at the worst ratio
+    POWER_B, POWER_T, WORK_B, WORK_T, ALONG_B, ALONG_T, ACROSS_B, ACROSS_T,
+    # bodies: peaks, kinetic energy (peak so far, peak of this window)
+    PEAK_1, PEAK_2, KINETIC, WINDOW,
+    # whether uplifts and closings are to be logged, whether the lane needs attention
+    LOGGED, FLAG,
+) = range(63)  # fmt: skip
+N_WORK = 63
+CONSTANTS = tuple(range(SCALE, FREE_T + 1))
+"""Rows copied from ``given``, in this order."""
+
+# --- given: the constants in the order above, then the state at the start and the first period (s)
+N_CONSTANTS = len(CONSTANTS)
+Q_STATE = N_CONSTANTS
+Q_PERIOD = N_CONSTANTS + 8
+N_GIVEN = N_CONSTANTS + 9
+
+# --- result: what a lane has gathered
+(
+    R_PEAK_1, R_PEAK_2, R_UP_B, R_UP_T, R_ONSET_B, R_ONSET_T, R_SHARE_B, R_SHARE_T, R_CLOSED_B, R_CLOSED_T,
+    R_LOST_B, R_LOST_T, R_FRICTION_B, R_FRICTION_T, R_END_1, R_END_2, R_OVER_1, R_OVER_2, R_FAILED,
+    R_STORED_B, R_STORED_T,
+) = range(21)  # fmt: skip
+N_RESULT = 21
+
+# kinds of events in a log, in the order of `models.interface.lanes.run.EVENTS`
+LOG_UPLIFT_B, LOG_UPLIFT_T, LOG_CLOSING_B, LOG_CLOSING_T, LOG_REST, LOG_OVER_1, LOG_OVER_2 = range(7)

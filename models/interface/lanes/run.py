@@ -1,0 +1,171 @@
+"""From walls and a shaking to the tables of the lane kernel, and back to results."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.base import STATUS, FloatArray
+from models.interface import modes
+from models.interface.declaration import STATES
+from models.interface.lanes import rows as r
+from models.interface.lanes.advance import advance
+from models.interface.layered import LayeredWall
+from models.shaking import Shaking
+
+EVENTS = (
+    ("uplift", 1), ("uplift", 2), ("closing", 1), ("closing", 2), ("rest", 1), ("overturned", 1), ("overturned", 2),
+)  # fmt: skip
+LARGEST_PHASE = (0.1, 0.4)
+"""Largest omega h of a step (rad) of the second mode of the rotations and of the slowest vertical one."""
+STEPS = np.array([1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48, 64, 80, 96, 128])
+"""Steps per sample of the record: few, so that many lanes share a refined record."""
+
+
+@dataclass(frozen=True)
+class Lanes:
+    """What the kernel returns for n lanes: results, samples of q and q' (n, m, 8), events (time, kind, body)."""
+
+    result: NDArray[np.float64]
+    samples: NDArray[np.float64]
+    events: tuple[tuple[tuple[float, str, int], ...], ...]
+    steps: int
+
+
+def substeps(wall: LayeredWall, time_step: float) -> NDArray[np.int64]:
+    """Steps per sample of the record, lane by lane: never a matter of which lanes run together."""
+    omega = np.sqrt(np.maximum(modes.at_rest(wall).squares, 0.0))
+    needed = omega[:, 1] * time_step / LARGEST_PHASE[0]
+    if wall.joints == "both":
+        needed = np.maximum(needed, omega[:, 2] * time_step / LARGEST_PHASE[1])
+    index = np.searchsorted(STEPS, needed - 1e-9)
+    return np.asarray(STEPS[np.minimum(index, STEPS.size - 1)], dtype=np.int64)
+
+
+def refined(shaking: Shaking, n: int, tail: float) -> tuple[FloatArray, int]:
+    """The record at the ends of the steps with its quiet tail, and the steps of shaking."""
+    shaken = (shaking.horizontal.size - 1) * n
+    quiet = int(np.ceil(tail / shaking.time_step * n - 1e-9))
+    record = np.zeros((2, shaken + quiet + 2))
+    fine, samples = np.arange(shaken + 1) / n, np.arange(shaking.horizontal.size)
+    for row, channel in enumerate((shaking.horizontal, shaking.vertical)):
+        if channel is not None:
+            record[row, : shaken + 1] = channel if n == 1 else np.interp(fine, samples, channel)
+    return record, shaken
+
+
+def given_table(wall: LayeredWall, scale: FloatArray, initial: Mapping[str, FloatArray]) -> FloatArray:
+    """The constants, the state at the start and the first period of the lanes, a line a lane."""
+    table = np.zeros((wall.size, r.N_GIVEN))
+    toe = 1.0 if wall.toe_held else 0.0
+    clip = 1.0 if wall.clip else 0.0
+    free_b, free_t = float(wall.joints != "top"), float(wall.joints != "base")
+    late_b = np.divide(wall.base_damping, wall.base_stiffness, out=np.zeros(wall.size), where=wall.base_stiffness > 0.0)
+    late_t = np.divide(wall.top_damping, wall.top_stiffness, out=np.zeros(wall.size), where=wall.top_stiffness > 0.0)
+    constants: dict[int, Any] = {
+        r.SCALE: scale, r.OFFSET: wall.offset, r.GRAVITY: wall.gravity, r.VSCALE: wall.vertical_factor * scale,
+        r.M1: wall.mass_1, r.H1: wall.centre_1, r.I1: wall.inertia_1, r.M2: wall.mass_2, r.H2: wall.centre_2,
+        r.I2: wall.inertia_2, r.HEIGHT: wall.height_1 + wall.rise, r.B1: wall.base_half_width,
+        r.BT: wall.top_half_width, r.TOE_1: toe * wall.base_half_width, r.TOE_T: toe * wall.top_half_width,
+        r.KB: wall.base_stiffness, r.KT: wall.top_stiffness, r.CB: wall.base_damping, r.CT: wall.top_damping,
+        r.LATE_B: clip * late_b, r.LATE_T: clip * late_t, r.CLIP: clip, r.FREE_B: free_b, r.FREE_T: free_t,
+    }  # fmt: skip
+    for row, values in constants.items():
+        table[:, row - r.SCALE] = values
+    rest = modes.static_state(wall)
+    for k, name in enumerate(STATES):
+        table[:, r.Q_STATE + k] = initial.get(name, rest[:, k] if k < 4 else 0.0)
+    table[:, r.Q_PERIOD] = 2.0 * np.pi / np.sqrt(np.abs(modes.at_rest(wall).squares[:, 0]))
+    return table
+
+
+def run(
+    wall: LayeredWall,
+    shaking: Shaking,
+    scale: FloatArray,
+    *,
+    tail: float = 0.0,
+    initial: Mapping[str, FloatArray] | None = None,
+    first: NDArray[np.int64] | None = None,
+    last: NDArray[np.int64] | None = None,
+    samples: int = 0,
+    log: int = 0,
+    may_rest: bool = True,
+    refinement: int = 1,
+) -> Lanes:
+    """Run n lanes of ``wall`` under ``scale`` (n,) times the shaking.
+
+    ``first`` and ``last`` (n,) are samples of the shaking between which each lane runs (default: all,
+    and the tail); ``samples`` > 0 returns q and q' (n, samples, 8) at the samples from ``first`` on;
+    ``log`` > 0 returns up to that many events a lane. ``refinement`` divides every step.
+    """
+    n = wall.size
+    out, trace = np.zeros((n, r.N_RESULT)), np.zeros((n, samples, 8))
+    logged: list[tuple[tuple[float, str, int], ...]] = [()] * n
+    steps = 0
+    per_sample = substeps(wall, shaking.time_step) * refinement
+    begun = {k: np.broadcast_to(np.asarray(v, float), (n,)) for k, v in (initial or {}).items()}
+    for sub in np.unique(per_sample).tolist():
+        lanes = np.flatnonzero(per_sample == sub)
+        record, shaken = refined(shaking, sub, tail)
+        begin = np.zeros(lanes.size, np.int64) if first is None else first[lanes] * sub
+        end = np.full(lanes.size, record.shape[1] - 2) if last is None else last[lanes] * sub
+        given = given_table(wall.take(lanes), scale[lanes], {k: v[lanes] for k, v in begun.items()})
+        result = np.zeros((lanes.size, r.N_RESULT))
+        part, part_log = np.zeros((lanes.size, samples, 8)), np.zeros((lanes.size, log, 2))
+        count = np.zeros(lanes.size, np.int64)
+        steps += advance(
+            record, shaking.time_step / sub, shaken, begin, end, given, result, sub if samples else 0, part,
+            part_log, count, may_rest, None if wall.joints == "both" else True,
+        )  # fmt: skip
+        out[lanes], trace[lanes] = result, part
+        for k, lane in enumerate(lanes):
+            logged[lane] = tuple((t, *EVENTS[int(kind)]) for t, kind in part_log[k, : min(count[k], log)])
+    return Lanes(out, trace, tuple(logged), steps)
+
+
+def outputs(wall: LayeredWall, table: NDArray[np.float64]) -> dict[str, NDArray[Any]]:
+    """The declared outputs, arrays ``(n,)``, from the table of results."""
+    half = np.pi / 2.0
+    rubber = np.array([wall.joints != "top", wall.joints != "base"])
+    over_at = table[:, [r.R_OVER_1, r.R_OVER_2]]
+    over: NDArray[np.bool_] = ~np.isnan(over_at)
+    peak = np.where(over, half, table[:, [r.R_PEAK_1, r.R_PEAK_2]])
+    end = table[:, [r.R_END_1, r.R_END_2]]
+    end = np.where(over, np.copysign(half, end), end)
+    ratio = peak / np.stack([wall.slenderness, wall.slenderness_2], axis=1)
+    up = np.where(rubber, table[:, [r.R_UP_B, r.R_UP_T]], 0.0)
+    onset = table[:, [r.R_ONSET_B, r.R_ONSET_T]]
+    onset = np.where(rubber & (onset < 1e200), onset, np.nan)
+    share = np.where(rubber, table[:, [r.R_SHARE_B, r.R_SHARE_T]], 1.0)
+    closed = np.where(rubber, table[:, [r.R_CLOSED_B, r.R_CLOSED_T]], 0.0).astype(np.int32)
+    lost = np.where(rubber, table[:, [r.R_LOST_B, r.R_LOST_T]], 0.0)
+    friction = table[:, [r.R_FRICTION_B, r.R_FRICTION_T]]
+    friction = np.where(rubber, np.where(friction > 1e200, np.inf, friction), np.nan)
+    failed = table[:, r.R_FAILED] != 0.0
+    status = np.where(np.isnan(onset).all(axis=1), STATUS.index("rest"), STATUS.index("rocking"))
+    status = np.where(over.any(axis=1), STATUS.index("overturned"), status)
+    larger = np.where(np.abs(end[:, 0]) >= np.abs(end[:, 1]), end[:, 0], end[:, 1])
+    return {
+        **_both("peak_rotation", "12", peak, peak.max(axis=1)),
+        **_both("peak_rotation_ratio", "12", ratio, ratio.max(axis=1)),
+        **_both("uplift_duration", "bt", up, up.max(axis=1)),
+        **_both("onset_time", "bt", onset, np.fmin(onset[:, 0], onset[:, 1])),
+        **_both("minimum_contact", "bt", share, share.min(axis=1)),
+        **_both("overturned", "12", over, np.asarray(over.any(axis=1))),
+        **_both("overturning_time", "12", over_at, np.fmin(over_at[:, 0], over_at[:, 1])),
+        **_both("impacts", "bt", closed, closed.max(axis=1)),
+        **_both("residual_rotation", "12", end, larger),
+        **_both("dissipated_energy", "bt", lost, lost.sum(axis=1)),
+        **_both("needed_friction", "bt", friction, np.fmax(friction[:, 0], friction[:, 1])),
+        "status": np.where(failed, STATUS.index("not_converged"), status).astype(np.int8),
+    }
+
+
+def _both(name: str, ends: str, pair: NDArray[Any], plain: NDArray[Any]) -> dict[str, NDArray[Any]]:
+    first, second = ("_1", "_2") if ends == "12" else ("_base", "_top")
+    return {name: plain, f"{name}{first}": pair[:, 0], f"{name}{second}": pair[:, 1]}

@@ -1,0 +1,220 @@
+"""What happens to a lane now and then: it starts, the record ends under it, it is logged, it ends."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from models.interface.lanes import rows as r
+from models.interface.lanes.rows import (
+    A1,
+    ACROSS_B,
+    ACROSS_T,
+    ALONG_B,
+    ALONG_T,
+    B1,
+    BT,
+    CLOCK,
+    CLOSED_B,
+    CLOSED_T,
+    GRAVITY,
+    H1,
+    H2,
+    HEIGHT,
+    KB,
+    KINETIC,
+    KT,
+    LIFT_B,
+    LIFT_T,
+    LOGGED,
+    M1,
+    M2,
+    N_CONSTANTS,
+    N_WORK,
+    ONSET_B,
+    ONSET_T,
+    PEAK_1,
+    PEAK_2,
+    Q_STATE,
+    RA,
+    RV,
+    SCALE,
+    SHARE_B,
+    SHARE_T,
+    T1,
+    T2,
+    TOE_1,
+    UP_B,
+    UP_T,
+    V1,
+    V2,
+    WINDOW,
+    WORK_B,
+    WORK_T,
+    Z1,
+    Z2,
+    W,
+)  # fmt: skip
+from models.interface.lanes.step import AM, step_one
+from models.lanes.compiler import called, inlined
+
+Table = Any
+HALF_TURN = 1.5707963267948966
+NEVER = 1e300
+
+
+@called
+def consistent(w: Table, slot: int, a: float, v: float, mixed: Any) -> None:
+    """Give a lane the acceleration of its state under the record's values a and v, nothing else."""
+    kept = np.empty(N_WORK)
+    for row in range(N_WORK):
+        kept[row] = w[row * W + slot]
+    w[RA * W + slot], w[RV * W + slot] = a, v
+    for row in range(A1, A1 + 4):
+        w[row * W + slot] = 0.0
+    # a step of no length from no acceleration: (1 - am) M d = Q - n
+    step_one(w, slot, 0.0, mixed)
+    for row in range(A1, A1 + 4):
+        kept[row] = (1.0 - AM) * w[row * W + slot]
+    kept[r.POWER_B], kept[r.POWER_T] = w[r.POWER_B * W + slot], w[r.POWER_T * W + slot]
+    for row in (LIFT_B, LIFT_T, ALONG_B, ALONG_T, ACROSS_B, ACROSS_T):
+        kept[row] = w[row * W + slot]
+    for row in range(N_WORK):
+        w[row * W + slot] = kept[row]
+
+
+@inlined
+def stored(k: float, b: float, z: float, s: float) -> float:
+    """Elastic energy of a strip."""
+    lean = abs(s)
+    low = -b if z + lean * b <= 0.0 else min(b, max(-b, z / lean))
+    d1, d2, d3 = b - low, 0.5 * (b * b - low * low), (b * b * b - low * low * low) / 3.0
+    return float(0.5 * k * (z * z * d1 - 2.0 * z * lean * d2 + lean * lean * d3)) if d1 > 0.0 else 0.0
+
+
+@inlined
+def stored_base(w: Table, slot: int) -> float:
+    """Elastic energy of the base layer in J."""
+    return stored(w[KB * W + slot], w[B1 * W + slot], w[Z1 * W + slot], math.sin(w[T1 * W + slot]))
+
+
+@inlined
+def stored_top(w: Table, slot: int) -> float:
+    """Elastic energy of the top layer in J."""
+    turn = math.sin(w[T2 * W + slot] - w[T1 * W + slot])
+    return stored(w[KT * W + slot], w[BT * W + slot], w[Z2 * W + slot], turn)
+
+
+@called
+def start(
+    given: Table,
+    result: Table,
+    w: Table,
+    lane: int,
+    slot: int,
+    step: int,
+    a: float,
+    v: float,
+    logged: bool,
+    mixed: Any,
+) -> None:
+    """Put a lane in a slot, in its initial state, at the start of ``step``."""
+    for row in range(N_WORK):
+        w[row * W + slot] = 0.0
+    for k in range(N_CONSTANTS):
+        w[(SCALE + k) * W + slot] = given[lane, k]
+    for k in range(8):
+        w[(T1 + k) * W + slot] = given[lane, Q_STATE + k]
+    w[ONSET_B * W + slot], w[ONSET_T * W + slot] = NEVER, NEVER
+    w[SHARE_B * W + slot], w[SHARE_T * W + slot] = 2.0 * w[B1 * W + slot], 2.0 * w[BT * W + slot]
+    w[ALONG_B * W + slot], w[ALONG_T * W + slot] = 0.0, 0.0
+    w[ACROSS_B * W + slot], w[ACROSS_T * W + slot] = 1.0, 1.0
+    w[CLOCK * W + slot] = float(step)
+    consistent(w, slot, a, v, mixed)
+    w[PEAK_1 * W + slot], w[PEAK_2 * W + slot] = abs(w[T1 * W + slot]), abs(w[T2 * W + slot])
+    w[ONSET_B * W + slot] = float(step) if w[LIFT_B * W + slot] > 0.0 else NEVER
+    w[ONSET_T * W + slot] = float(step) if w[LIFT_T * W + slot] > 0.0 else NEVER
+    w[LOGGED * W + slot] = 1.0 if logged else 0.0
+    for k in range(result.shape[1]):
+        result[lane, k] = 0.0
+    result[lane, r.R_OVER_1], result[lane, r.R_OVER_2] = math.nan, math.nan
+    result[lane, r.R_STORED_B], result[lane, r.R_STORED_T] = stored_base(w, slot), stored_top(w, slot)
+
+
+@called
+def empty(w: Table, slot: int) -> None:
+    """A slot without a lane: a light body at rest on soft layers, without gravity."""
+    for row in range(N_WORK):
+        w[row * W + slot] = 0.0
+    for row in (r.M1, r.I1, r.M2, r.I2, r.B1, r.BT, r.KB, r.KT, r.FREE_B, r.FREE_T):
+        w[row * W + slot] = 1.0
+    w[Z1 * W + slot], w[Z2 * W + slot] = -1.0, -1.0
+    w[GRAVITY * W + slot] = 0.0
+
+
+@inlined
+def ratio(along: float, across: float) -> float:
+    return along / across if across > 0.0 else NEVER
+
+
+@called
+def topple(result: Table, w: Table, lane: int, slot: int, time: float) -> None:
+    """At the end of the run: a body whose centre is past its toe and moves outwards counts as overturned."""
+    t1, t2, v1, v2 = w[T1 * W + slot], w[T2 * W + slot], w[V1 * W + slot], w[V2 * W + slot]
+    m1, m2, h1, h2 = w[M1 * W + slot], w[M2 * W + slot], w[H1 * W + slot], w[H2 * W + slot]
+    toe_t, bt, b1 = w[r.TOE_T * W + slot], w[BT * W + slot], w[B1 * W + slot]
+    turn = t2 - t1
+    if w[r.FREE_B * W + slot] > 0.0:
+        side = 1.0 if t1 >= 0.0 else -1.0
+        height = w[HEIGHT * W + slot] + w[Z2 * W + slot]
+        x1 = side * w[TOE_1 * W + slot] * (1.0 - math.cos(t1))
+        xr = math.copysign(toe_t, turn) * (1.0 - math.cos(turn))
+        xr_d = math.copysign(toe_t, turn) * math.sin(turn)
+        first = x1 + h1 * math.sin(t1)
+        second = x1 + xr * math.cos(t1) + height * math.sin(t1) + h2 * math.sin(t2)
+        x1_d = side * w[TOE_1 * W + slot] * math.sin(t1)
+        rate_1 = (x1_d + h1 * math.cos(t1)) * v1
+        rate_2 = (x1_d + (height - xr_d) * math.cos(t1) - xr * math.sin(t1)) * v1
+        rate_2 += (xr_d * math.cos(t1) + h2 * math.cos(t2)) * v2 + math.sin(t1) * w[(V1 + 3) * W + slot]
+        toe = b1 if w[TOE_1 * W + slot] > 0.0 else b1 * math.cos(t1)
+        if side * (m1 * first + m2 * second) > (m1 + m2) * toe and side * (m1 * rate_1 + m2 * rate_2) > 0.0:
+            result[lane, r.R_OVER_1], result[lane, r.R_OVER_2] = time, time
+    if w[r.FREE_T * W + slot] > 0.0 and not result[lane, r.R_OVER_2] == result[lane, r.R_OVER_2]:
+        side = 1.0 if turn >= 0.0 else -1.0
+        if side * h2 * math.sin(t2) > bt * math.cos(t2) and side * (v2 - v1) > 0.0:
+            result[lane, r.R_OVER_2] = time
+
+
+@called
+def finish(result: Table, w: Table, lane: int, slot: int, time: float, h: float, fell: bool) -> None:
+    """Close the account of a lane that ends at ``time`` (s); ``fell``: a body has reached pi/2."""
+    t1, t2 = w[T1 * W + slot], w[T2 * W + slot]
+    if t1 != t1 or t2 != t2:
+        result[lane, r.R_FAILED] = 1.0
+    elif fell:
+        if abs(t1) >= HALF_TURN:
+            result[lane, r.R_OVER_1] = time
+        result[lane, r.R_OVER_2] = time
+    else:
+        topple(result, w, lane, slot, time)
+    result[lane, r.R_PEAK_1], result[lane, r.R_PEAK_2] = w[PEAK_1 * W + slot], w[PEAK_2 * W + slot]
+    result[lane, r.R_UP_B], result[lane, r.R_UP_T] = h * w[UP_B * W + slot], h * w[UP_T * W + slot]
+    result[lane, r.R_ONSET_B], result[lane, r.R_ONSET_T] = h * w[ONSET_B * W + slot], h * w[ONSET_T * W + slot]
+    result[lane, r.R_SHARE_B] = 0.5 * w[SHARE_B * W + slot] / w[B1 * W + slot]
+    result[lane, r.R_SHARE_T] = 0.5 * w[SHARE_T * W + slot] / w[BT * W + slot]
+    result[lane, r.R_CLOSED_B], result[lane, r.R_CLOSED_T] = w[CLOSED_B * W + slot], w[CLOSED_T * W + slot]
+    result[lane, r.R_LOST_B] = result[lane, r.R_STORED_B] - stored_base(w, slot) - w[WORK_B * W + slot]
+    result[lane, r.R_LOST_T] = result[lane, r.R_STORED_T] - stored_top(w, slot) - w[WORK_T * W + slot]
+    result[lane, r.R_FRICTION_B] = ratio(w[ALONG_B * W + slot], w[ACROSS_B * W + slot])
+    result[lane, r.R_FRICTION_T] = ratio(w[ALONG_T * W + slot], w[ACROSS_T * W + slot])
+    result[lane, r.R_END_1], result[lane, r.R_END_2] = t1, t2
+
+
+@inlined
+def at_rest(w: Table, slot: int, calm: float) -> bool:
+    """Whether the kinetic energy stayed under its share ``calm`` of the peak; begins the next window."""
+    still = w[WINDOW * W + slot] <= calm * w[KINETIC * W + slot]
+    w[WINDOW * W + slot] = 0.0
+    return bool(still)

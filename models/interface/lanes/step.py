@@ -1,0 +1,171 @@
+"""One step of all W lanes: second order, one evaluation, linearly implicit in the layers.
+
+The generalised-alpha rule in the form of Wood, Bossak, Zienkiewicz: with d the change of a,
+
+    q1 = q + h v + h^2 (a/2 + beta d),  v1 = v + h (a + gamma d),  M (a + (1 - am) d) = Q - n at q1, v1,
+    gamma = 1/2 - am,  beta = (1 - am)^2/4,
+
+solved by one Newton step from d = 0 with the exact tangent of both strips (gamma h C + beta h^2 K):
+the error left is of third order in h, like that of the rule. The stiff axial mode is damped by the
+rule (am < 0) and sets no bound on h. M, n and Q are the full nonlinear ones of
+`models.interface.equation`, written in the wall's frame: x along the wall's top, z along its axis.
+
+``mixed`` is None or True (one of the joints is bonded): a compiled variant holds only what is in use.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from models.interface.lanes import rows as r
+from models.interface.lanes.reading import account_joints, read_bodies, read_joints
+from models.interface.lanes.rows import W
+from models.interface.lanes.strip import resultants, slopes
+from models.lanes.compiler import inlined
+from models.lanes.elementary import sine_cosine
+
+Table = Any
+DISSIPATION = 0.8
+"""Spectral radius at infinite frequency: 1 no numerical dissipation, 0 the most."""
+AM = (DISSIPATION - 1.0) / (DISSIPATION + 1.0)
+GAMMA = 0.5 - AM
+BETA = 0.25 * (1.0 - AM) ** 2
+
+
+@inlined
+def step_one(w: Table, i: int, h: float, mixed: Any) -> bool:
+    """One step of ``h`` (s) of the lane in slot i; returns whether it needs attention."""
+    # --- predictor and inputs at the end of the step
+    o1, o2, o3, o4 = w[r.A1 * W + i], w[r.A2 * W + i], w[r.AZ1 * W + i], w[r.AZ2 * W + i]
+    v1, v2, y1, y2 = w[r.V1 * W + i], w[r.V2 * W + i], w[r.Y1 * W + i], w[r.Y2 * W + i]
+    half = 0.5 * h * h
+    t1, t2 = w[r.T1 * W + i] + h * v1 + half * o1, w[r.T2 * W + i] + h * v2 + half * o2
+    z1, z2 = w[r.Z1 * W + i] + h * y1 + half * o3, w[r.Z2 * W + i] + h * y2 + half * o4
+    v1, v2, y1, y2 = v1 + h * o1, v2 + h * o2, y1 + h * o3, y2 + h * o4
+    a = w[r.SCALE * W + i] * w[r.RA * W + i] + w[r.OFFSET * W + i]
+    g = w[r.GRAVITY * W + i] + w[r.VSCALE * W + i] * w[r.RV * W + i]
+    # --- kinematics: columns A, B, (-s1, c1), (0, 1) of J_2 in the wall's frame
+    s1, c1 = sine_cosine(t1)
+    s2, c2 = sine_cosine(t2)
+    sr, cr = s2 * c1 - c2 * s1, c2 * c1 + s2 * s1
+    turn = v2 - v1
+    m1, m2, i1, i2 = w[r.M1 * W + i], w[r.M2 * W + i], w[r.I1 * W + i], w[r.I2 * W + i]
+    h1, h2 = w[r.H1 * W + i], w[r.H2 * W + i]
+    b1 = w[r.TOE_1 * W + i] if s1 >= 0.0 else -w[r.TOE_1 * W + i]
+    bt = w[r.TOE_T * W + i] if sr >= 0.0 else -w[r.TOE_T * W + i]
+    xr, xr_d = bt - bt * cr, bt * sr
+    height = w[r.HEIGHT * W + i] + z2
+    level = height - xr_d
+    roll = b1 * s1
+    ax, az = level + roll * c1, roll * s1 - xr
+    bx, bz = xr_d + h2 * cr, -h2 * sr
+    jx, jz = roll + h1 * c1, -h1 * s1
+    free_b, free_t = 1.0, 1.0
+    if mixed is not None:
+        # the columns of what a bonded joint takes away vanish; theta2 moves with theta1
+        free_b, free_t = w[r.FREE_B * W + i], w[r.FREE_T * W + i]
+        ax, az = free_b * (ax + (1.0 - free_t) * bx), free_b * (az + (1.0 - free_t) * bz)
+        jx, jz = free_b * jx, free_b * jz
+        bx, bz = free_t * bx, free_t * bz
+        # keeps the rows of absent coordinates regular
+        i1, i2 = i1 + free_b * (1.0 - free_t) * i2, i2 + (1.0 - free_t) * i1
+    cx, cz = -free_b * s1, free_b * c1
+    # --- accelerations of both centres with q'' = a, gravity and the base's motion included
+    q11, q22 = v1 * v1, v2 * v2
+    felt = a + b1 * c1 * q11
+    px = m1 * (felt - h1 * s1 * q11 + jx * o1)
+    pz = m1 * (g - h1 * c1 * q11 + jz * o1 + free_b * o3)
+    ux = bt * cr * turn * turn + 2.0 * v1 * y2 - q11 * xr + felt * c1 - g * s1 - h2 * sr * q22
+    uz = felt * s1 + g * c1 - 2.0 * v1 * xr_d * turn - q11 * height - h2 * cr * q22
+    ux = m2 * (ux + ax * o1 + bx * o2 + cx * o3)
+    uz = m2 * (uz + az * o1 + bz * o2 + cz * o3 + free_t * o4)
+    # --- strips
+    rb, rt = c1 * v1, cr * turn
+    kb, kt, cb, ct, clip = w[r.KB * W + i], w[r.KT * W + i], w[r.CB * W + i], w[r.CT * W + i], w[r.CLIP * W + i]
+    side_b, lean_b, slope_b, steep_b = slopes(kb, cb, s1, rb)
+    side_t, lean_t, slope_t, steep_t = slopes(kt, ct, sr, rt)
+    below, above = lean_b * steep_b, lean_t * steep_t
+    inverse = 1.0 / (below * above)
+    nb, mb, d1b, d2b, d3b = resultants(
+        w[r.B1 * W + i], clip, z1, kb * z1 + cb * y1, side_b, lean_b, slope_b, steep_b, inverse * above
+    )
+    nt, mt, d1t, d2t, d3t = resultants(
+        w[r.BT * W + i], clip, z2, kt * z2 + ct * y2, side_t, lean_t, slope_t, steep_t, inverse * below
+    )
+    # --- residual Q - n - M a, and the matrix (1 - am) M + gamma h C + beta h^2 K
+    couple = mt * cr
+    f1 = free_b * couple - mb * c1 - i1 * o1 - px * jx - pz * jz - ux * ax - uz * az
+    f2 = -couple - i2 * o2 * free_t - ux * bx - uz * bz
+    f3 = nb - free_b * pz - ux * cx - uz * cz
+    f4 = nt - free_t * uz
+    eb, et = h * (GAMMA * cb + BETA * h * kb), h * (GAMMA * ct + BETA * h * kt)
+    d2b, d3b, d2t, d3t = eb * d2b * c1, eb * d3b * c1 * c1, et * d2t * cr, et * d3t * cr * cr
+    n1, n2 = (1.0 - AM) * m1, (1.0 - AM) * m2
+    w11 = (1.0 - AM) * i1 + n1 * (jx * jx + jz * jz) + n2 * (ax * ax + az * az) + d3b + free_b * d3t
+    w12 = n2 * (ax * bx + az * bz) - free_b * d3t
+    w13 = free_b * n1 * jz + n2 * (ax * cx + az * cz) - d2b
+    w14 = free_t * n2 * az + free_b * d2t
+    w22 = (1.0 - AM) * i2 + n2 * (bx * bx + bz * bz) + d3t
+    w23 = n2 * (bx * cx + bz * cz)
+    w24 = free_t * n2 * bz - d2t
+    w33 = n1 + n2 + eb * d1b
+    w34 = free_t * n2 * cz
+    w44 = n2 + et * d1t
+    if mixed is not None:
+        w44 += (1.0 - free_t) * n1
+    # --- z1, z2 eliminated first, all over their determinant
+    det = w33 * w44 - w34 * w34
+    u13, u14 = w13 * w44 - w14 * w34, w14 * w33 - w13 * w34
+    u23, u24 = w23 * w44 - w24 * w34, w24 * w33 - w23 * w34
+    x11 = det * w11 - u13 * w13 - u14 * w14
+    x12 = det * w12 - u13 * w23 - u14 * w24
+    x22 = det * w22 - u23 * w23 - u24 * w24
+    e1 = det * f1 - u13 * f3 - u14 * f4
+    e2 = det * f2 - u23 * f3 - u24 * f4
+    both = x11 * x22 - x12 * x12
+    inverse = 1.0 / (both * det)
+    d1 = (e1 * x22 - e2 * x12) * (inverse * det)
+    d2 = (e2 * x11 - e1 * x12) * (inverse * det)
+    f3 -= w13 * d1 + w23 * d2
+    f4 -= w14 * d1 + w24 * d2
+    d3 = (f3 * w44 - f4 * w34) * (inverse * both)
+    d4 = (f4 * w33 - f3 * w34) * (inverse * both)
+    if mixed is not None:
+        d2 = d2 if free_t > 0.0 else d1 + o1 - o2
+    # --- the new state
+    near, far = BETA * h * h, GAMMA * h
+    t1, t2, z1, z2 = t1 + near * d1, t2 + near * d2, z1 + near * d3, z2 + near * d4
+    v1, v2, y1, y2 = v1 + far * d1, v2 + far * d2, y1 + far * d3, y2 + far * d4
+    w[r.T1 * W + i], w[r.T2 * W + i], w[r.Z1 * W + i], w[r.Z2 * W + i] = t1, t2, z1, z2
+    w[r.V1 * W + i], w[r.V2 * W + i], w[r.Y1 * W + i], w[r.Y2 * W + i] = v1, v2, y1, y2
+    w[r.A1 * W + i], w[r.A2 * W + i], w[r.AZ1 * W + i], w[r.AZ2 * W + i] = o1 + d1, o2 + d2, o3 + d3, o4 + d4
+    # --- what is read off it
+    sr += cr * near * (d2 - d1)
+    turn = v2 - v1
+    w[r.SHARE_B * W + i] = min(w[r.SHARE_B * W + i], d1b)
+    w[r.SHARE_T * W + i] = min(w[r.SHARE_T * W + i], d1t)
+    steady = read_joints(w, i, z1, z2, s1 + c1 * near * d1, sr, y1, y2, c1 * v1, cr * turn)
+    moves_x, moves_z = ax * v1 + bx * v2 + cx * y1, az * v1 + bz * v2 + cz * y1 + free_t * y2
+    goes_x, goes_z = jx * v1, jz * v1 + free_b * y1
+    kinetic = m1 * (goes_x * goes_x + goes_z * goes_z) + m2 * (moves_x * moves_x + moves_z * moves_z)
+    stands = read_bodies(w, i, t1, t2, kinetic + i1 * v1 * v1 + i2 * v2 * v2)
+    grown = 1.0 - AM
+    ux += m2 * grown * (ax * d1 + bx * d2 + cx * d3)
+    uz += m2 * grown * (az * d1 + bz * d2 + cz * d3 + free_t * d4)
+    px += m1 * grown * jx * d1 + ux * c1 + uz * s1
+    pz += m1 * grown * (jz * d1 + free_b * d3) + uz * c1 - ux * s1
+    power_b = (nb - eb * d1b * d3 + d2b * d1) * y1 - (mb * c1 - d2b * d3 + d3b * d1) * v1
+    power_t = (nt - et * d1t * d4 + d2t * (d2 - d1)) * y2 - (couple - d2t * d4 + d3t * (d2 - d1)) * turn
+    account_joints(w, i, h, px, pz, ux, uz, power_b, power_t)
+    attention = not (stands & steady)
+    w[r.FLAG * W + i] = 1.0 if attention else 0.0
+    return attention
+
+
+@inlined
+def step_all(w: Table, h: float, mixed: Any) -> int:
+    """One step of all lanes; returns how many need attention."""
+    flagged = 0
+    for i in range(W):
+        flagged += 1 if step_one(w, i, h, mixed) else 0
+    return flagged

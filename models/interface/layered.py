@@ -1,0 +1,98 @@
+"""The coefficients of a wall between two layers: what every integrator of the model starts from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+
+from models.base import FloatArray
+
+FREE = {
+    "both": np.eye(4),
+    "base": np.array([[1.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.0, 0.0]]),
+    "top": np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 0.0], [0.0, 1.0]]),
+}
+"""q = P p by the joints that have rubber: the other joint is bonded (theta2 = theta1, or the wall fixed)."""
+
+
+@dataclass(frozen=True)
+class LayeredWall:
+    """Geometry, inertia and layers of n walls, one array ``(n,)`` a field, SI units.
+
+    Body 1 (the wall): ``mass_1``, ``inertia_1`` about its centre at ``centre_1`` (h1), top at
+    ``height_1`` (2 h1). Body 2: its centre at ``centre_2`` (h2) over its underside. The top layer's
+    unstressed thickness ``rise`` (e_t) is part of the height. The strips have half widths
+    ``base_half_width`` (b1) and ``top_half_width`` (bt), stiffness (N m-2) and dashpot (N s m-2) per
+    metre of contact; ``*_thickness`` turns compression into strain.
+
+    The base acceleration is ``offset + scale a(t)``, the apparent gravity
+    G = ``gravity + vertical_factor scale a_z(t)``.
+
+    ``joints`` (both, base, top): where the rubber is. ``toe_held``: the toe, not the midpoint of an
+    uplifted underside is held laterally. ``clip``: dashpot law B.
+    """
+
+    mass_1: FloatArray
+    inertia_1: FloatArray
+    centre_1: FloatArray
+    height_1: FloatArray
+    mass_2: FloatArray
+    inertia_2: FloatArray
+    centre_2: FloatArray
+    rise: FloatArray
+    base_half_width: FloatArray
+    top_half_width: FloatArray
+    base_stiffness: FloatArray
+    top_stiffness: FloatArray
+    base_damping: FloatArray
+    top_damping: FloatArray
+    base_thickness: FloatArray
+    top_thickness: FloatArray
+    gravity: FloatArray
+    offset: FloatArray
+    vertical_factor: FloatArray
+    joints: str = "both"
+    toe_held: bool = True
+    clip: bool = True
+
+    @property
+    def size(self) -> int:
+        return int(self.mass_1.size)
+
+    def replace(self, **changes: Any) -> LayeredWall:
+        """A copy with array fields replaced; values broadcast to ``(n,)``."""
+        arrays = {k: np.broadcast_to(np.asarray(v, float), self.mass_1.shape) for k, v in changes.items()}
+        return self._with(arrays)
+
+    def _with(self, changes: dict[str, Any]) -> LayeredWall:
+        return replace(self, **changes)
+
+    def _map(self, function: Any) -> LayeredWall:
+        chosen = {f.name: getattr(self, f.name) for f in fields(self)}
+        return self._with({k: function(v) for k, v in chosen.items() if isinstance(v, np.ndarray)})
+
+    def take(self, index: Any) -> LayeredWall:
+        """The walls selected by an index array or mask."""
+        return self._map(lambda values: values[index])
+
+    def one(self, lane: int = 0) -> Any:
+        """One wall with plain floats in its fields, for code that runs a wall at a time."""
+        return self._map(lambda values: float(values[lane]))
+
+    @property
+    def mass(self) -> FloatArray:
+        """m1 + m2 in kg."""
+        return self.mass_1 + self.mass_2
+
+    @property
+    def slenderness(self) -> FloatArray:
+        """alpha = atan(b/h) in rad of both bodies as one on the wall's corners (without layers' sinking)."""
+        centre = self.mass_1 * self.centre_1 + self.mass_2 * (self.height_1 + self.rise + self.centre_2)
+        return np.arctan2(self.base_half_width, centre / self.mass)
+
+    @property
+    def slenderness_2(self) -> FloatArray:
+        """alpha in rad of the upper body on the top joint's ends."""
+        return np.arctan2(self.top_half_width, self.centre_2)

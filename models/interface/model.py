@@ -1,0 +1,231 @@
+"""A wall and a block on top between rubber layers as a `Model`: lanes and reference behind one interface."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.base import Event, FloatArray, History, Mechanism, Parameter, Quantity, Values
+from models.errors import InputError, nearest
+from models.interface import declaration, modes
+from models.interface.assembly import build
+from models.interface.layered import LayeredWall
+from models.interface.observe import observe
+from models.shaking import Shaking
+
+BOTH = {"layer_thickness", "layer_modulus", "damping_ratio"}
+LAYER = {f"{joint}_{name}" for joint in ("base", "top") for name in (*BOTH, "stiffness", "damping")}
+
+
+@dataclass(frozen=True)
+class Interface:
+    """Two rigid blocks, a no-tension visco-elastic layer under each (Mordant, Denoel, Degee 2015, section 3).
+
+    M(q) q'' + n(q, q', a, G) = Q(q, q') in q = (theta1, theta2, z1, z2), full nonlinear, with the exact
+    contact length of each layer; see `models.interface.equation` and docs/errata.md for the paper's
+    printed form. No sliding: ``needed_friction`` tells when that would fail.
+    """
+
+    name: str = "interface"
+    title: str = "a wall and a block on top, a rubber layer under each"
+    version: str = "1"
+    parameters: tuple[Parameter, ...] = declaration.PARAMETERS
+    alternatives: tuple[tuple[tuple[str, ...], ...], ...] = declaration.ALTERNATIVES
+    outputs: tuple[Quantity, ...] = declaration.OUTPUTS
+    derived: tuple[Quantity, ...] = declaration.DERIVED
+    observables: tuple[Quantity, ...] = declaration.OBSERVABLES
+    states: tuple[str, ...] = declaration.STATES
+    integrators: tuple[str, ...] = ("lanes", "reference")
+    chaotic: bool = True
+    vertical_by_default: bool = True
+
+    @property
+    def options(self) -> Mapping[str, tuple[str, ...]]:
+        return declaration.OPTIONS
+
+    @property
+    def mechanisms(self) -> Mapping[str, Mechanism]:
+        from models.mechanisms import MECHANISMS
+
+        return {name: m for name, m in MECHANISMS.items() if self.name in m.acts}
+
+    def words(self, options: Mapping[str, str] | None) -> dict[str, str]:
+        """Every option with its word, the default where none is given."""
+        chosen = {name: known[0] for name, known in declaration.OPTIONS.items()}
+        for name, word in (options or {}).items():
+            if name not in chosen:
+                raise InputError(f"interface has no option '{name}'; {nearest(name, chosen)}")
+            if word not in declaration.OPTIONS[name]:
+                raise InputError(f"{name} is '{word}'; {nearest(word, declaration.OPTIONS[name])}")
+            chosen[name] = word
+        return chosen
+
+    def check(self, values: Values) -> list[str]:
+        """Walls that cannot stand between their layers under their own weight."""
+        wall = self._as_described(values)
+        lowest = modes.at_rest(wall).squares[:, 0]
+        if np.any(~(lowest > 0.0)):
+            worst = int(np.argmax(~(lowest > 0.0)))
+            return [
+                f"the layers are too soft to hold the wall upright (k_b = {wall.base_stiffness[worst]:.3g}, "
+                f"k_t = {wall.top_stiffness[worst]:.3g} N m-2): make them stiffer or the wall longer"
+            ]
+        found = []
+        sunk = -modes.static_state(wall)
+        for joint, sinking, thickness in (
+            ("base", sunk[:, 2], wall.base_thickness),
+            ("top", sunk[:, 3], wall.top_thickness),
+        ):
+            if wall.joints in ("both", joint) and np.any(sinking > thickness):
+                worst = int(np.argmax(sinking - thickness))
+                found.append(
+                    f"under its load the {joint} layer is compressed by {sinking[worst] * 1e3:.3g} mm, more than its "
+                    f"thickness of {thickness[worst] * 1e3:.3g} mm: make it stiffer or thicker"
+                )
+        return found
+
+    def _as_described(self, values: Values) -> LayeredWall:
+        """The walls of values alone, rubber where they describe a layer."""
+        told = {
+            prefix for prefix in ("base", "top") if any(name.startswith(f"{prefix}_") for name in LAYER & set(values))
+        }
+        joints = told.pop() if len(told) == 1 and not BOTH & set(values) else "both"
+        return build(values, self.words({"joints": joints}), False)
+
+    def derive(self, values: Values) -> dict[str, FloatArray]:
+        """Static state, natural frequencies, mode shapes and modal damping at rest, arrays ``(n,)``."""
+        return modes.derived(self._as_described(values))
+
+    def _wall(self, values: Values, options: Mapping[str, str] | None, shaking: Shaking, size: int) -> LayeredWall:
+        wall = build(values, self.words(options), shaking.vertical is not None and shaking.vertical_acts, size)
+        if wall.size != size:
+            raise ValueError(f"values broadcast to {wall.size} lanes, {size} are asked for")
+        return wall
+
+    def _integrator(self, integrator: str) -> None:
+        if integrator not in self.integrators:
+            raise InputError(f"integrator is '{integrator}'; {nearest(integrator, self.integrators)}")
+
+    def evaluate(
+        self,
+        values: Values,
+        shaking: Shaking,
+        scale: FloatArray,
+        *,
+        outputs: Sequence[str],
+        tail: float,
+        options: Mapping[str, str] | None = None,
+        integrator: str = "lanes",
+    ) -> dict[str, NDArray[Any]]:
+        """Outputs ``(n,)`` of n lanes under ``scale`` (n,) times the shaking; see `Model.evaluate`."""
+        scale = np.atleast_1d(np.asarray(scale, float))
+        wall = self._wall(values, options, shaking, scale.size)
+        self._integrator(integrator)
+        if integrator == "lanes":
+            from models.interface.lanes import run as lanes
+
+            found = lanes.outputs(wall, lanes.run(wall, shaking, scale, tail=tail).result)
+        else:
+            from models.interface import reference
+
+            each = [
+                reference.run(wall.take(slice(k, k + 1)), shaking, float(scale[k]), tail=tail).outputs
+                for k in range(scale.size)
+            ]
+            kinds = {q.name: np.dtype(q.dtype) for q in self.outputs}
+            found = {name: np.array([one[name] for one in each]).astype(kinds[name]) for name in kinds}
+        return {name: found[name] for name in outputs}
+
+    def trajectories(
+        self,
+        values: Values,
+        shaking: Shaking,
+        *,
+        first: NDArray[np.int64],
+        samples: int,
+        initial: Mapping[str, FloatArray],
+        options: Mapping[str, str] | None = None,
+        scale: FloatArray | float = 1.0,
+    ) -> dict[str, FloatArray]:
+        """Observables ``(n, samples)`` of n lanes, each from its own sample ``first`` and state.
+
+        ``initial`` holds arrays ``(n,)`` by the names of `states`; what it leaves out is as at rest.
+        """
+        from models.interface.lanes import run as lanes
+
+        n = first.size
+        wall = self._wall(values, options, shaking, n)
+        last = np.minimum(first + samples - 1, shaking.horizontal.size - 1)
+        ran = lanes.run(
+            wall, shaking, np.broadcast_to(np.asarray(scale, float), (n,)), initial=initial, first=first, last=last,
+            samples=samples, may_rest=False,
+        )  # fmt: skip
+        return observe(wall, ran.samples)
+
+    def simulate(
+        self,
+        values: Values,
+        shaking: Shaking,
+        *,
+        scale: float = 1.0,
+        initial: Mapping[str, float] | None = None,
+        duration: float | None = None,
+        tail: float = 0.0,
+        options: Mapping[str, str] | None = None,
+        integrator: str = "lanes",
+    ) -> History:
+        """One run with its history at the samples of the shaking and of its quiet tail.
+
+        ``duration`` (s) cuts the run or lengthens it beyond the shaking; the channels of a run that
+        overturns stay where a body reached pi/2.
+        """
+        wall = self._wall(values, options, shaking, 1)
+        self._integrator(integrator)
+        end = shaking.duration + tail if duration is None else duration
+        count = round(end / shaking.time_step) + 1
+        time: FloatArray = np.arange(count, dtype=np.float64) * shaking.time_step
+        for name in initial or {}:
+            if name not in self.states:
+                raise InputError(f"[initial] has no state '{name}'; {nearest(name, self.states)}")
+        if integrator == "lanes":
+            from models.interface.lanes import run as lanes
+
+            ran = lanes.run(
+                wall, shaking, np.array([scale]), tail=max(0.0, end - shaking.duration),
+                initial={k: np.array([v]) for k, v in (initial or {}).items()},
+                last=np.array([count - 1]), samples=count, log=20_000, may_rest=False,
+            )  # fmt: skip
+            state = ran.samples
+            events = tuple(Event(*event) for event in ran.events[0])
+            outputs = {k: float(v[0]) for k, v in lanes.outputs(wall, ran.result).items()}
+        else:
+            from models.interface import reference
+
+            told = reference.run(wall, shaking, scale, initial=initial, duration=end)
+            state = told.state.T[None, :count]
+            events, outputs = told.events, dict(told.outputs)
+        over = outputs["overturning_time"]
+        if over == over:
+            fallen = int(np.ceil(over / shaking.time_step - 1e-9))
+            state[:, fallen:, :4] = state[:, max(fallen - 1, 0), None, :4]
+            for body in (1, 2):
+                if outputs[f"overturned_{body}"]:
+                    state[:, fallen:, body - 1] = outputs[f"residual_rotation_{body}"]
+            state[:, fallen:, 4:] = 0.0
+        channels = {name: one[0] for name, one in observe(wall, state).items()}
+        return History(time, channels, _with_onset(events), outputs)
+
+
+def _with_onset(events: tuple[Event, ...]) -> tuple[Event, ...]:
+    """The first uplift is the onset too."""
+    for k, event in enumerate(events):
+        if event.kind == "uplift":
+            return (*events[:k], Event(event.time, "onset", event.body), *events[k:])
+    return events
+
+
+MODEL = Interface()

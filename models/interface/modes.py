@@ -1,0 +1,133 @@
+"""Small motions about rest in full contact: static state, natural frequencies, shapes, modal damping.
+
+q = (theta1, theta2, z1, z2). At rest z1 = -(m1+m2) g/(2 k_b b1), z2 = -m2 g/(2 k_t bt); with
+l = 2 h1 + e_t + z2 the matrices are M, C = B(c_b, c_t), K = B(k_b, k_t) - diag(g (m1 h1 + m2 l), g m2 h2, 0, 0)
+of full contact; they equal the Jacobian of the full equations there, for either kinematics.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from models.base import FloatArray
+from models.interface.layered import FREE, LayeredWall
+
+
+def static_state(wall: LayeredWall) -> FloatArray:
+    """q ``(n, 4)`` of the linear law at rest under gravity; a bonded joint does not sink."""
+    state = np.zeros((wall.size, 4))
+    if wall.joints != "top":
+        state[:, 2] = -wall.mass * wall.gravity / (2.0 * wall.base_stiffness * wall.base_half_width)
+    if wall.joints != "base":
+        state[:, 3] = -wall.mass_2 * wall.gravity / (2.0 * wall.top_stiffness * wall.top_half_width)
+    return state
+
+
+def mass_matrix(wall: LayeredWall, lever: FloatArray) -> FloatArray:
+    """M ``(n, 4, 4)`` at zero rotation with the top joint ``lever`` (n,) above the wall's underside."""
+    m = np.zeros((wall.size, 4, 4))
+    m2, h2 = wall.mass_2, wall.centre_2
+    m[:, 0, 0] = wall.inertia_1 + wall.mass_1 * wall.centre_1**2 + m2 * lever**2
+    m[:, 0, 1] = m[:, 1, 0] = m2 * h2 * lever
+    m[:, 1, 1] = wall.inertia_2 + m2 * h2**2
+    m[:, 2, 2] = wall.mass
+    m[:, 2, 3] = m[:, 3, 2] = m[:, 3, 3] = m2
+    return m
+
+
+def layer_matrix(wall: LayeredWall, base: FloatArray, top: FloatArray) -> FloatArray:
+    """B ``(n, 4, 4)`` in full contact for values ``base``, ``top`` (n,) per metre of contact."""
+    b = np.zeros((wall.size, 4, 4))
+    turn = 2.0 * top * wall.top_half_width**3 / 3.0
+    b[:, 0, 0] = 2.0 * base * wall.base_half_width**3 / 3.0 + turn
+    b[:, 0, 1] = b[:, 1, 0] = -turn
+    b[:, 1, 1] = turn
+    b[:, 2, 2] = 2.0 * base * wall.base_half_width
+    b[:, 3, 3] = 2.0 * top * wall.top_half_width
+    return b
+
+
+def gravity_matrix(wall: LayeredWall, lever: FloatArray) -> FloatArray:
+    """What gravity takes from the stiffness: diag(g (m1 h1 + m2 l), g m2 h2, 0, 0)."""
+    k = np.zeros((wall.size, 4, 4))
+    k[:, 0, 0] = wall.gravity * (wall.mass_1 * wall.centre_1 + wall.mass_2 * lever)
+    k[:, 1, 1] = wall.gravity * wall.mass_2 * wall.centre_2
+    return k
+
+
+@dataclass(frozen=True)
+class Modes:
+    """``squares`` omega^2 (n, m), ascending, negative where gravity tips the wall at rest; ``shapes``
+    (n, 4, m), the largest component 1; ``damping`` ratios (n, m) from the diagonal of the modal C."""
+
+    squares: FloatArray
+    shapes: FloatArray
+    damping: FloatArray
+
+    @property
+    def frequencies(self) -> FloatArray:
+        """Natural frequencies in Hz, (n, m); nan where the wall is not stable at rest."""
+        with np.errstate(invalid="ignore"):
+            return np.sqrt(self.squares) / (2.0 * np.pi)
+
+
+def at_rest(wall: LayeredWall) -> Modes:
+    """Undamped modes in full contact, gravity included, with l as the wall stands at rest."""
+    lever = wall.height_1 + wall.rise + static_state(wall)[:, 3]
+    stiffness = layer_matrix(wall, wall.base_stiffness, wall.top_stiffness) - gravity_matrix(wall, lever)
+    return modes(wall, mass_matrix(wall, lever), stiffness)
+
+
+def modes(wall: LayeredWall, mass: FloatArray, stiffness: FloatArray) -> Modes:
+    """Modes of given matrices ``(n, 4, 4)`` in the coordinates that the wall's joints leave free."""
+    free = FREE[wall.joints]
+
+    def reduced(matrix: FloatArray) -> FloatArray:
+        return np.asarray(free.T @ matrix @ free)
+
+    root = np.linalg.cholesky(reduced(mass))
+    inverse = np.linalg.inv(root)
+    transposed = np.swapaxes(inverse, 1, 2)
+    squares, vectors = np.linalg.eigh(inverse @ reduced(stiffness) @ transposed)
+    normal = transposed @ vectors
+    damping = reduced(layer_matrix(wall, wall.base_damping, wall.top_damping))
+    with np.errstate(invalid="ignore"):
+        ratios = np.einsum("nik,nij,njk->nk", normal, damping, normal) / (2.0 * np.sqrt(squares))
+    shapes = free @ normal
+    largest = np.take_along_axis(shapes, np.argmax(np.abs(shapes), axis=1)[:, None], axis=1)
+    return Modes(squares, shapes / largest, ratios)
+
+
+def derived(wall: LayeredWall) -> dict[str, FloatArray]:
+    """The declared derived quantities, arrays ``(n,)``; nan for modes that a bonded joint takes away."""
+    rest, found = static_state(wall), at_rest(wall)
+    missing = np.full((wall.size, 4), np.nan)
+    frequencies, damping, shapes = missing.copy(), missing.copy(), np.full((wall.size, 4, 4), np.nan)
+    count = found.squares.shape[1]
+    frequencies[:, :count], damping[:, :count] = found.frequencies, found.damping
+    # rotations times b_1, so that all components are lengths
+    lengths = (
+        found.shapes
+        * np.stack([wall.base_half_width, wall.base_half_width, *np.ones((2, wall.size))], axis=1)[:, :, None]
+    )
+    largest = np.take_along_axis(lengths, np.argmax(np.abs(lengths), axis=1)[:, None], axis=1)
+    shapes[:, :, :count] = lengths / largest
+    with np.errstate(divide="ignore"):
+        uplift = wall.mass * wall.gravity / (2.0 * wall.base_stiffness * wall.base_half_width**2)
+    result = {
+        "alpha": wall.slenderness,
+        "alpha_2": wall.slenderness_2,
+        "static_sinking_base": -rest[:, 2],
+        "static_sinking_top": -rest[:, 3],
+        "uplift_rotation": uplift,
+        "base_damping_used": wall.base_damping,
+        "top_damping_used": wall.top_damping,
+    }
+    names = ("rotation_1", "rotation_2", "sinking_base", "sinking_top")
+    for k in range(4):
+        result[f"frequency_{k + 1}"] = frequencies[:, k]
+        result[f"modal_damping_{k + 1}"] = damping[:, k]
+        result |= {f"mode_{k + 1}_{name}": shapes[:, j, k] for j, name in enumerate(names)}
+    return result

@@ -1,0 +1,58 @@
+"""Observable channels from the state of many walls at once."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from models.base import FloatArray
+from models.interface.layered import LayeredWall
+
+
+def observe(wall: LayeredWall, state: FloatArray) -> dict[str, FloatArray]:
+    """Observables ``(n, m)`` of states q, q' ``(n, m, 8)`` of n walls; see `declaration.OBSERVABLES`."""
+    t1, t2, z1, z2, v1, v2, y1, y2 = np.moveaxis(state, 2, 0)
+
+    def lane(values: FloatArray) -> FloatArray:
+        return values[:, None]
+
+    toe = 1.0 if wall.toe_held else 0.0
+    turn = t2 - t1
+    roll = toe * np.sign(t1) * lane(wall.base_half_width) * (1.0 - np.cos(t1))
+    along = toe * np.sign(turn) * lane(wall.top_half_width) * (1.0 - np.cos(turn))
+    height = lane(wall.height_1 + wall.rise) + z2
+    base, top = np.ones_like(t1), np.ones_like(t1)
+    if wall.joints != "top":
+        late = np.where(wall.clip, wall.base_damping / wall.base_stiffness, 0.0)
+        base = share(lane(wall.base_half_width), lane(late), z1, np.sin(t1), y1, np.cos(t1) * v1)
+    if wall.joints != "base":
+        late = np.where(wall.clip, wall.top_damping / wall.top_stiffness, 0.0)
+        top = share(lane(wall.top_half_width), lane(late), z2, np.sin(turn), y2, np.cos(turn) * (v2 - v1))
+    return {
+        "rotation_1": t1,
+        "rotation_2": t2,
+        "rotation_rate_1": v1,
+        "rotation_rate_2": v2,
+        "displacement_1_x": roll + lane(wall.centre_1) * np.sin(t1),
+        "displacement_2_x": roll + along * np.cos(t1) + height * np.sin(t1) + lane(wall.centre_2) * np.sin(t2),
+        "sinking_1": -z1,
+        "sinking_2": -z2,
+        "contact_1": base,
+        "contact_2": top,
+    }
+
+
+def share(
+    b: FloatArray, late: FloatArray, z: FloatArray, s: FloatArray, z_rate: FloatArray, s_rate: FloatArray
+) -> FloatArray:
+    """Share of [-b, b] on which w < 0 and w + late w' < 0, w = z - x S; ``late`` = c/k under law B, else 0.
+
+    Each condition holds on one side of the root of its line; the share is the overlap of both.
+    """
+    low, high = -b + np.zeros_like(z), b + np.zeros_like(z)
+    for level, slope in ((z, s), (z + late * z_rate, s + late * s_rate)):
+        with np.errstate(divide="ignore", invalid="ignore"):
+            root = level / slope
+        flat = np.where(level < 0.0, -np.inf, np.inf)
+        low = np.where(slope > 0.0, np.maximum(low, root), np.where(slope == 0.0, np.maximum(low, flat), low))
+        high = np.where(slope < 0.0, np.minimum(high, root), high)
+    return np.asarray(np.maximum(high - low, 0.0) / (2.0 * b))

@@ -1,0 +1,157 @@
+"""The plain, slow and exact route: scipy's DOP853 over every straight piece of the ground's motion."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from models.base import Event, FloatArray
+from models.interface import modes
+from models.interface.account import Account
+from models.interface.declaration import CALM, STATES
+from models.interface.equation import Equation, power
+from models.interface.ground import Piece, pieces
+from models.interface.layered import LayeredWall
+from models.shaking import Shaking
+
+
+@dataclass(frozen=True)
+class ReferenceResult:
+    """Outputs by name, and the history at the shaking's time step: q, q' ``(8, n_times)``, events."""
+
+    outputs: dict[str, float]
+    time: FloatArray
+    state: FloatArray
+    events: tuple[Event, ...]
+
+
+def run(
+    wall: LayeredWall,
+    shaking: Shaking,
+    scale: float = 1.0,
+    *,
+    tail: float = 10.0,
+    initial: Mapping[str, float] | None = None,
+    duration: float | None = None,
+    rtol: float = 1e-10,
+) -> ReferenceResult:
+    """One wall (a `LayeredWall` of one lane) under ``scale`` times the shaking.
+
+    ``tail``: free motion after the record at most, in s; ``duration`` replaces record plus tail and
+    goes on through rest. ``initial``: values by the names of `STATES`, the others as at rest.
+    """
+    until = shaking.duration + tail if duration is None else duration
+    grid = shaking.time_step * np.arange(round(until / shaking.time_step) + 1, dtype=np.float64)
+    body = _Run(wall, grid, rtol, may_rest=duration is None)
+    rest = dict(zip(STATES, [*modes.static_state(wall)[0], 0.0, 0.0, 0.0, 0.0], strict=True))
+    body.begin(np.array([(initial or {}).get(name, rest[name]) for name in STATES]))
+    for piece in pieces(wall, shaking, scale, until):
+        body.advance(piece, shaken=piece.start < shaking.duration)
+        if body.finished:
+            break
+    return body.result()
+
+
+class _Run:
+    """State of one run: y = (p, p', works of both strips), p the free coordinates."""
+
+    def __init__(self, wall: LayeredWall, grid: FloatArray, rtol: float, *, may_rest: bool) -> None:
+        self.equation = Equation(wall)
+        self.free = self.equation.free
+        self.half = self.free.shape[1]
+        self.grid, self.rtol, self.may_rest = grid, rtol, may_rest
+        self.history = np.zeros((8, grid.size))
+        self.written, self.finished = 0, False
+        self.time, self.calm_since, self.most = 0.0, math.nan, 0.0
+        self.y = np.zeros(2 * self.half + 2)
+        self.pick = [int(np.flatnonzero(column)[-1]) for column in self.free.T]
+        scale = np.abs(modes.static_state(wall)[0])
+        free_sizes = np.array([float(wall.slenderness[0]), float(wall.slenderness_2[0]), *scale[2:]])[self.pick]
+        fastest = math.sqrt(abs(float(modes.at_rest(wall).squares[0, 0])))
+        weight = float(wall.mass[0] * wall.gravity[0] * wall.base_half_width[0] * wall.slenderness[0])
+        self.atol = rtol * np.concatenate([free_sizes, free_sizes * fastest, (weight, weight)])
+        self.period = 2.0 * math.pi / fastest
+        self.account = Account(self.equation)
+
+    def begin(self, state: FloatArray) -> None:
+        self.y = np.concatenate([state[:4][self.pick], state[4:][self.pick], (0.0, 0.0)])
+
+    def spread(self, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """q and q' of the free coordinates."""
+        return self.free @ y[: self.half], self.free @ y[self.half : -2]
+
+    def advance(self, piece: Piece, shaken: bool) -> None:
+        """Through one straight piece of the ground's motion; ``shaken`` is false after the record's end."""
+        self.time = piece.start
+        change = np.empty(2 * self.half + 2)
+
+        def derivative(time: float, y: FloatArray) -> FloatArray:
+            q, v = (part.tolist() for part in self.spread(y))
+            second = self.equation.acceleration(q, v, *piece.at(time))
+            change[: self.half] = y[self.half : 2 * self.half]
+            change[self.half : -2] = second[self.pick]
+            change[-2:] = power(self.equation.strips(q, v), q, v)
+            return change.copy()
+
+        def fall(time: float, y: FloatArray) -> float:
+            q, _ = self.spread(y)
+            return float(np.max(np.abs(q[:2])) - math.pi / 2.0)
+
+        fall.terminal = True  # type: ignore[attr-defined]
+        # without shaking, look at the motion now and then: it may have come to rest
+        ends = [piece.end] if shaken else [*np.arange(piece.start + self.period, piece.end, self.period), piece.end]
+        for end in ends:
+            solution = solve_ivp(
+                derivative, (self.time, end), self.y, "DOP853", events=fall, dense_output=True, rtol=self.rtol,
+                atol=self.atol,
+            )  # fmt: skip
+            if not solution.success:
+                self.account.failed, self.finished = True, True
+                return
+            self._note(solution, piece)
+            self.time, self.y = float(solution.t[-1]), solution.y[:, -1]
+            if solution.status == 1:
+                q, _ = self.spread(self.y)
+                self.account.fall(self.time, q)
+                self.finished = True
+                return
+            if not shaken and self._at_rest():
+                self.finished = self.may_rest
+                self.account.rest(self.time)
+                if self.finished:
+                    return
+
+    def _note(self, solution: object, piece: Piece) -> None:
+        """Samples of the steps just taken: outputs at four points a step, history at the grid's times."""
+        nodes, dense = solution.t, solution.sol  # type: ignore[attr-defined]
+        fine = np.interp(np.arange(4 * (nodes.size - 1) + 1) / 4.0, np.arange(nodes.size), nodes)
+        for time, y in zip(fine.tolist(), dense(fine).T, strict=True):
+            q, v = self.spread(y)
+            self.account.work = y[-2:].tolist()
+            self.account.sample(time, q.tolist(), v.tolist(), *piece.at(time))
+            self.most = max(self.most, self.account.kinetic)
+            if self.account.kinetic >= CALM * self.most:
+                self.calm_since = time
+        stop = int(np.searchsorted(self.grid, nodes[-1], side="right"))
+        if stop > self.written:
+            y = dense(self.grid[self.written : stop])
+            self.history[:4, self.written : stop] = self.free @ y[: self.half]
+            self.history[4:, self.written : stop] = self.free @ y[self.half : -2]
+            self.written = stop
+
+    def _at_rest(self) -> bool:
+        return self.time - self.calm_since >= self.period or self.most == 0.0
+
+    def result(self) -> ReferenceResult:
+        q, v = self.spread(self.y)
+        self.history[:, self.written :] = np.concatenate([q, v])[:, None]
+        if self.account.fallen:
+            self.history[:4, self.written :] = np.clip(q, -math.pi / 2.0, math.pi / 2.0)[:, None]
+            self.history[4:, self.written :] = 0.0
+        elif not self.account.failed:
+            self.account.close(self.time, q.tolist(), v.tolist())
+        return ReferenceResult(self.account.outputs(q), self.grid, self.history, tuple(self.account.events))

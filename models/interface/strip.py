@@ -1,0 +1,65 @@
+"""The exact no-tension strip under a rigid body: closed form, one state at a time.
+
+Half width b; spring k (N m-2) and dashpot c (N s m-2) per unit length. The body's underside lies at
+w(x) = z - x S over the unstressed layer, S the sine of its rotation; contact where w < 0. The stress
+-(Y0 - x Y1), Y0 = k z + c z', Y1 = k S + c S', positive in compression, may pull under dashpot law A
+and is clipped at zero under law B.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+OPEN = (0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Strip:
+    """Resultants of one strip: N (N, up), M (N m, restoring) and the share of the length that presses."""
+
+    force: float
+    moment: float
+    share: float
+
+
+def touching(b: float, z: float, s: float) -> tuple[float, float]:
+    """The stretch of [-b, b] on which z - x s < 0."""
+    if s > 0.0:
+        low, high = max(-b, z / s), b
+    elif s < 0.0:
+        low, high = -b, min(b, z / s)
+    else:
+        return (-b, b) if z < 0.0 else OPEN
+    return (low, high) if low < high else OPEN
+
+
+def pressing(
+    b: float, k: float, c: float, z: float, s: float, z_rate: float, s_rate: float, clip: bool
+) -> tuple[float, float]:
+    """The stretch that carries stress: in contact, and under law B (``clip``) not pulled."""
+    low, high = touching(b, z, s)
+    if not clip:
+        return low, high
+    y0, y1 = k * z + c * z_rate, k * s + c * s_rate
+    if y1 == 0.0:
+        return (low, high) if y0 < 0.0 else OPEN
+    edge = y0 / y1
+    low, high = (max(low, edge), high) if y1 > 0.0 else (low, min(high, edge))
+    return (low, high) if low < high else OPEN
+
+
+def strip(
+    b: float, k: float, c: float, z: float, s: float, z_rate: float = 0.0, s_rate: float = 0.0, clip: bool = True
+) -> Strip:
+    """Resultants of the linear law; N = -(Y0 d1 - Y1 d2), M = -(Y0 d2 - Y1 d3), d_n = [x^n/n]."""
+    low, high = pressing(b, k, c, z, s, z_rate, s_rate, clip)
+    d1, d2, d3 = high - low, (high**2 - low**2) / 2.0, (high**3 - low**3) / 3.0
+    y0, y1 = k * z + c * z_rate, k * s + c * s_rate
+    return Strip(-(y0 * d1 - y1 * d2), -(y0 * d2 - y1 * d3), d1 / (2.0 * b))
+
+
+def stored(b: float, k: float, z: float, s: float) -> float:
+    """Elastic energy of the linear law, k/2 times the integral of w^2 over the contact, in J."""
+    low, high = touching(b, z, s)
+    d1, d2, d3 = high - low, (high**2 - low**2) / 2.0, (high**3 - low**3) / 3.0
+    return 0.5 * k * (z * z * d1 - 2.0 * z * s * d2 + s * s * d3)
