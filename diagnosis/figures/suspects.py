@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from diagnosis.figures.palette import PAPER, Palette
-from diagnosis.figures.panels import FONT, WIDE, is_narrow, legend, new_panels
+from diagnosis.figures.panels import WIDE, is_narrow, legend, new_panels
 from diagnosis.result import Screened
 
 MOST = 14
@@ -38,7 +38,7 @@ def plot_suspects(
     shown = order_of(screen)[:MOST]
     (ax,) = new_panels([0.36 * max(len(shown), 2) + 1.1], width, palette)
     ax.set_xscale("log")
-    ax.axvspan(LEAST, max(null_band, LEAST), color=palette.band, linewidth=0.0, zorder=0)
+    ax.axvspan(LEAST, max(null_band, LEAST), color=palette.band, linewidth=0.0, zorder=0, label="chance")
     rows = np.arange(len(shown))[::-1]
     for row, suspect in zip(rows, shown, strict=True):
         score, gain = max(suspect.score, LEAST), suspect.gain
@@ -62,9 +62,5 @@ def plot_suspects(
     ax.set_xticks(ticks, [f"{t:,}".replace(",", " ") for t in ticks])
     ax.minorticks_off()
     ax.set_xlabel("evidence" if is_narrow(width) else "evidence (gain in 2 log likelihood)")
-    ax.text(
-        np.sqrt(LEAST * max(null_band, LEAST)), len(shown) - 0.35, "chance", ha="center", va="bottom",
-        fontsize=FONT - 1, color=palette.before,
-    )  # fmt: skip
     legend(ax, palette)
     return ax

@@ -53,7 +53,7 @@ def picture(draw: Draw, name: str) -> Picture:
 def _svg(draw: Draw, width: float, salt: str) -> str:
     drawn = draw(width=width, palette=DRAWN)
     written = io.StringIO()
-    with rc_context({"svg.fonttype": "none", "svg.hashsalt": salt, "path.simplify_threshold": 0.3}):
+    with rc_context({"svg.fonttype": "none", "svg.hashsalt": salt, "path.simplify_threshold": 0.6}):
         figure_of(drawn[0] if isinstance(drawn, tuple) else drawn).savefig(written, format="svg")
     return _lean(written.getvalue())
 
@@ -70,10 +70,15 @@ def _lean(text: str) -> str:
     text = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->|<style.*?</style>", "", text, flags=re.DOTALL)
     text = re.sub(r"<svg[^>]*(viewBox=\"[^\"]*\")[^>]*>", r"<svg \1>", text, count=1)
     text = re.sub(r'<g id="[^"]*"', "<g", text)
+    text = re.sub(r' transform="rotate\(-0 [^"]*"', "", text)
     text = re.sub(r"font-family: [^;\"]*;? ?", "", text)
-    text = re.sub(r"(\d+\.\d)\d+", r"\1", text)
+    text = re.sub(r' (?:d|x|y|transform)="[^"]*"', lambda found: _tenths_only(found[0]), text)
     text = re.sub(r"\s*\n\s*", "\n", text)
     return re.sub(r'\bd="([MLz\s\d.-]+)"', lambda found: f'd="{_relative(found[1])}"', text)
+
+
+def _tenths_only(attribute: str) -> str:
+    return re.sub(r"(\d+\.\d)\d+", r"\1", attribute)
 
 
 def _relative(path: str) -> str:

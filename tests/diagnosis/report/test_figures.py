@@ -2,18 +2,28 @@
 
 from __future__ import annotations
 
+import re
+from functools import partial
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.patches import PathPatch
 
-from diagnosis.figures import plot_before_after, plot_fits, plot_parameters, plot_raster, plot_suspects
+from diagnosis.figures import (
+    plot_before_after,
+    plot_fits,
+    plot_missing_force,
+    plot_parameters,
+    plot_raster,
+    plot_suspects,
+)
 from diagnosis.figures.curve import MOST_POINTS, thin
 from diagnosis.figures.levels import BORDERS, DEPTHS, level_of
 from diagnosis.figures.phase_plane import noise_of_trace
-from diagnosis.report.svg import _relative
-from tests.diagnosis.report.example import SIGMA, diagnosis, specimen
+from diagnosis.report.svg import _relative, picture
+from tests.diagnosis.report.example import FORCE, SIGMA, diagnosis, specimen
 
 
 @given(st.integers(10, 20_000), st.integers(0, 1000), st.booleans())
@@ -71,6 +81,15 @@ def test_parameters_are_drawn_in_percent_of_nominal() -> None:
     ax = plot_parameters(diagnosis().base, specimen().parameters, specimen().tolerance)
     middle = {round(float(x), 4) for line in ax.lines for x in np.atleast_1d(line.get_xdata())}
     assert round(100 * (0.2501 / 0.25 - 1), 4) in middle
+
+
+def test_numbers_and_depths_survive_the_way_to_the_page() -> None:
+    force = picture(partial(plot_missing_force, FORCE), "force")
+    ticks = [float(t.replace("−", "-")) for t in re.findall(r">(−?[\d.]+)</text>", force.wide)]
+    assert max(t for t in ticks if t < 1.0) == pytest.approx(0.02, abs=0.0011)
+    found = picture(partial(plot_raster, diagnosis().windows), "raster")
+    drawn = {float(depth) for depth in re.findall(r"(?<!-)opacity: ([\d.]+)", found.wide)}
+    assert drawn - {0.0} == set(DEPTHS) - {1.0}
 
 
 points = st.lists(st.tuples(st.integers(-9999, 9999), st.integers(-9999, 9999)), min_size=2, max_size=30)
