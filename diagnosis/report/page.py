@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import models
+from diagnosis.heldout import HORIZON
 from diagnosis.report import words
 from diagnosis.report.suspects import Suspect, suspect_of
 from diagnosis.result import Diagnosis, Rival, Windows
@@ -117,9 +118,15 @@ def _window_counts(windows: Sequence[Windows]) -> dict[str, int]:
 
 def _horizons(diagnosis: Diagnosis) -> list[tuple[str, ...]]:
     return [
-        (name, *(f"{seconds:.2f} s" if seconds >= 0.01 else "under 0.01 s" for seconds in pair))
+        (name, *(_horizon(seconds) for seconds in pair))
         for name, pair in diagnosis.prediction_horizon.items()
     ]
+
+
+def _horizon(seconds: float) -> str:
+    if seconds >= HORIZON:
+        return f"over {HORIZON:g} s"
+    return f"{seconds:.2f} s" if seconds >= 0.01 else "under 0.01 s"
 
 
 def _parameters(diagnosis: Diagnosis, specimen: Specimen) -> list[Mapping[str, Any]]:
