@@ -64,7 +64,7 @@ def inputs(w: Table, slot: int, record: Table, i: int, f: float) -> tuple[float,
     )
 
 
-@inlined
+@called
 def part(
     w: Table, slot: int, theta: float, omega: float, record: Table, i: int, f: float, share: float, h: float,
     general: Any, linear: Any,

@@ -1,5 +1,7 @@
 """Sliding, bouncing and bending blocks against closed forms, limits and balances."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -50,9 +52,9 @@ def test_friction_over_the_demand_changes_nothing(factor: float) -> None:
 def test_a_nearly_smooth_base_leaves_the_mass_centre_where_it_is() -> None:
     """Only friction moves it: |x''| <= mu N, and N stays under M g while the block falls back."""
     mu, step = 0.03, 0.002
-    told = HOUSNER.simulate({**WALL, "sliding.friction": mu}, free(0.3, step), initial=START)
+    told = HOUSNER.simulate({**WALL, "sliding.friction": mu}, free(0.2, step), initial=START)
     moved = told.channels["displacement_1_x"] - told.channels["displacement_1_x"][0]
-    assert all(kind != "impact" for kind in (event.kind for event in told.events))
+    assert not told.events
     assert np.max(np.abs(moved) - 0.5 * mu * G * told.time**2) < 1e-9
     # the corner slips by far more than that
     slip = moved - 1.0 * (np.sin(told.channels["rotation_1"]) - np.sin(START["rotation_1"]))
@@ -126,7 +128,7 @@ def test_a_clamped_wall_rings_at_its_declared_frequency() -> None:
     crossings = (up - ring[up] / (ring[up + 1] - ring[up])) * step
     damped = frequency * np.sqrt(1 - STRUCTURAL_DAMPING**2)
     np.testing.assert_allclose(1 / np.diff(crossings), damped, rtol=1e-4)
-    tops = np.array([np.max(ring[i:j]) for i, j in zip(up[:-1], up[1:], strict=True)])
+    tops = np.array([np.max(ring[i:j]) for i, j in pairwise(up)])
     decay = np.log(tops[:-1] / tops[1:])
     np.testing.assert_allclose(decay, 2 * np.pi * STRUCTURAL_DAMPING, rtol=2e-2)
 

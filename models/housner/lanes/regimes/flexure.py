@@ -15,7 +15,7 @@ from models.housner.lanes import rows as r
 from models.housner.lanes.equation import acceleration
 from models.housner.lanes.impact import pivot, restitution
 from models.housner.lanes.step import come_down, inputs, lift_off, note, raise_peak, stand_on, turning_point
-from models.lanes.compiler import called, inlined
+from models.lanes.compiler import called
 
 Table = Any
 
@@ -39,9 +39,7 @@ def bend(
 
 
 @called
-def relax(
-    given: Table, w: Table, lane: int, slot: int, record: Table, i: int, general: Any, linear: Any
-) -> None:
+def relax(given: Table, w: Table, lane: int, slot: int, record: Table, i: int, general: Any, linear: Any) -> None:
     """The mode starts where it would stay under the rigid block's motion."""
     theta, omega = w[r.TH * r.W + slot], w[r.OM * r.W + slot]
     a, g, p, q = inputs(w, slot, record, i, 0.0)
@@ -52,7 +50,7 @@ def relax(
     w[r.U * r.W + slot] = push / (m * given[lane, r.Q_FREQUENCY] ** 2)
 
 
-@inlined
+@called
 def rates(
     given: Table, w: Table, lane: int, slot: int, up: bool, theta: float, omega: float, eta: float, speed: float,
     a: float, g: float, p: float, q: float, general: Any, linear: Any,
@@ -118,7 +116,7 @@ def note_demand(
     w[r.DEMAND * r.W + slot] = max(w[r.DEMAND * r.W + slot], demand)
 
 
-@inlined
+@called
 def lifting(
     given: Table, w: Table, lane: int, slot: int, side: float, eta: float, speed: float, record: Table, i: int,
     f: float, general: Any, linear: Any,

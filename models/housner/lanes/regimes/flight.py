@@ -53,9 +53,7 @@ def energy(given: Table, lane: int, omega: float, across: float, up: float) -> f
 
 
 @called
-def take_off(
-    given: Table, result: Table, w: Table, lane: int, slot: int, before: float, after: float
-) -> float:
+def take_off(given: Table, result: Table, w: Table, lane: int, slot: int, before: float, after: float) -> float:
     """After an impact at theta = 0: the landed corner (on ``SIDE``) leaves; returns theta' then.
 
     ``before`` is theta' before the impact, ``after`` what the law of restitution left of it.
