@@ -93,10 +93,9 @@ class _Run:
         self.finished = False
 
     def begin(self, initial: Mapping[str, float], piece: Piece) -> None:
-        q = initial.get("q1", 0.0), initial.get("q2", 0.0)
-        rate = initial.get("w1", 0.0), initial.get("w2", 0.0)
-        first = [a or b for a, b in zip(q, rate, strict=True)]
-        self.joints.state = State(((first[0] > 0) - (first[0] < 0), (first[1] > 0) - (first[1] < 0)), q, rate)
+        q1, q2, w1, w2 = (float(initial.get(name, 0.0)) for name in ("q1", "q2", "w1", "w2"))
+        q, rate = (q1, q2), (w1, w2)
+        self.joints.state = State((_sign(q1 or w1), _sign(q2 or w2)), q, rate)
         self.ledger.peaks([(*q, *rate)])
         self.ledger.visit(self.joints.state.sides)
         if any(self.joints.state.sides):
@@ -234,6 +233,10 @@ class _Run:
         if self.ledger.frozen is None and self.time < self.grid[-1]:
             self.ledger.spend(state.sides, float(self.grid[-1]) - self.time)
         return ReferenceResult(self.ledger.closed(state), self.ledger.history, tuple(self.ledger.events))
+
+
+def _sign(number: float) -> int:
+    return (number > 0.0) - (number < 0.0)
 
 
 def _hop(state: State, slope: list[float]) -> float:

@@ -12,6 +12,8 @@ Table = Any
 State = tuple[float, float, float, float]
 NONE = 2.0
 """A fraction of the step that never comes."""
+LATE = 1e-6
+"""Share of the moment at the end of the step by which an opening is located late."""
 
 
 @inlined
@@ -122,26 +124,28 @@ def locate(
     """Share of the step until ``joint`` closes or opens; state, margin of the other joint and work there.
 
     ``margin`` < 0 is that after ``rest`` of the step. Newton within a bracket on the step itself for a
-    joint that closes, false position (Illinois) for one that opens; a late opening costs only the
-    square of the delay. The last Newton correction, under 1e-7 of the step, is applied to the state.
+    joint that closes; its last correction, under 1e-7 of the step, is applied to the state. False
+    position (Illinois) for one that opens, to a moment `LATE` of the last: from there on it does open,
+    and a late opening costs only the square of the delay.
     """
     closing = (w[FREE_1 * W + slot] if joint == 0 else w[FREE_2 * W + slot]) > 0.0
     side = w[SIDE_1 * W + slot] if joint == 0 else w[SIDE_2 * W + slot]
-    low, high, high_margin = 0.0, rest, margin
+    low, high, late = 0.0, rest, 0.0
+    low_margin, high_margin = 0.0, margin
     if closing:
         share = rest * hermite_root(
             pick(joint, (state[0], state[1])), pick(joint, (state[2], state[3])),
             pick(joint, (end[0], end[1])), pick(joint, (end[2], end[3])), rest * h,
         )  # fmt: skip
-        low_margin = 0.0
     else:
         _, _, m1, m2, _, _ = look(w, slot, state, record, i, f, linear)
+        late = -LATE * margin
         low_margin = max(0.0, pick(joint, (m1, m2)))
+        high_margin = margin + late
         share = rest * low_margin / (low_margin - margin)
     if not low < share < high:
         share = 0.5 * rest
     found, other, work = state, 0.0, 0.0
-    scale = abs(margin)
     for _ in range(60):
         found, m1, m2, work = part(w, slot, state, second, record, i, f, share, h, linear)
         now, other = pick(joint, (m1, m2)), pick(joint, (m2, m1))
@@ -163,13 +167,14 @@ def locate(
                 return share + more, found, other, work
             trial = share - now / (v * h) if v < 0.0 else -1.0
         else:
-            if abs(now) <= 1e-8 * scale:
+            past = now + late
+            if abs(past) <= 0.1 * late:
                 break
-            if now < 0.0:
-                high, high_margin = share, now
+            if past < 0.0:
+                high, high_margin = share, past
                 low_margin *= 0.5
             else:
-                low, low_margin = share, now
+                low, low_margin = share, past
                 high_margin *= 0.5
             trial = low + (high - low) * low_margin / (low_margin - high_margin)
         if high - low <= 1e-14:

@@ -1,0 +1,95 @@
+"""Mechanisms on two stacked blocks: nulls, and what each does by a closed form."""
+
+import numpy as np
+import pytest
+
+from models.shaking import Shaking
+from models.stacked.model import MODEL
+from models.stacked.stack import build
+from tests.models.stacked.walls import LANES, A, B, G
+from tests.models.strategies import random_motion
+
+ACTING = {"pivot_inset", "tilt", "eccentricity", "restitution", "viscous_damping"}
+
+
+def test_the_mechanisms_that_act() -> None:
+    assert set(MODEL.mechanisms) >= ACTING
+
+
+@pytest.mark.parametrize("name", sorted(ACTING))
+def test_at_its_null_a_mechanism_is_not_there(name: str) -> None:
+    shaking = random_motion(np.random.default_rng(1), duration=5.0)
+    nulls = {f"{name}.{p.name}": p.null for p in MODEL.mechanisms[name].parameters}
+    plain, switched = (
+        MODEL.simulate(values, shaking, scale=2.5, tail=1.0) for values in (B, {**B, **nulls})
+    )
+    assert plain.outputs["impacts_top"] > 2
+    np.testing.assert_array_equal(plain.channels["rotation_2"], switched.channels["rotation_2"])
+    assert plain.events == switched.events
+
+
+def test_inset_moves_the_onset_of_its_joint() -> None:
+    """Thresholds fall in proportion to 1 - inset: at both joints, or at the one that is named."""
+    plain = MODEL.derive(B)
+    both = MODEL.derive({**B, "pivot_inset.inset_over_half_width": 0.2})
+    top = MODEL.derive({**B, "pivot_inset.inset_over_half_width_top": 0.1})
+    mixed = MODEL.derive({**B, "pivot_inset.inset_over_half_width": 0.2, "pivot_inset.inset_over_half_width_top": 0.1})
+    for name, factors in (("onset_acceleration_base", (0.8, 1.0, 0.8)), ("onset_acceleration_top", (0.8, 0.9, 0.9))):
+        for found, factor in zip((both, top, mixed), factors, strict=True):
+            np.testing.assert_allclose(found[name], factor * plain[name], rtol=1e-14)
+
+
+@pytest.mark.parametrize("integrator", LANES)
+def test_onset_of_a_leaning_eccentric_stack(integrator: str) -> None:
+    """A slow ramp lifts the stack at tan(alpha -+ lean) of the side it tips to."""
+    values = {**A, "tilt.tilt": 0.02, "eccentricity.offset_over_half_width": 0.1}
+    ramp = Shaking(0.01, np.linspace(0.0, 0.4 * G, 4001))
+    centre = (1000 * 1.5 + 500 * 3.6) / 1500
+    shift = (1000 * 0.05 + 500 * 0.03) / 1500
+    for sign in (1.0, -1.0):
+        run = MODEL.simulate(values, Shaking(0.01, sign * ramp.horizontal), integrator=integrator)
+        # a to the right tips to the left, away from the lean
+        reach = np.arctan((0.5 + sign * shift) / centre)
+        expected = G * (np.cos(0.02) * np.tan(reach) + sign * np.sin(0.02))
+        assert run.outputs["onset_time"] * 0.01 * G == pytest.approx(expected, rel=1e-9)
+        assert run.outputs["onset_time_base"] == run.outputs["onset_time"]
+        assert np.sign(run.channels["rotation_1"][-1]) == -sign
+
+
+@pytest.mark.parametrize("integrator", LANES)
+def test_a_given_ratio_is_the_ratio_of_the_relative_rates(integrator: str) -> None:
+    """Upper block alone on a wall that cannot lift: peaks of free rocking fall with e^2 of the energy."""
+    values = {**B, "wall_mass": 1e7, "wall_length": 20.0, "top_restitution": 0.8}
+    initial = {"rotation_1": 0.0, "rotation_2": 0.1}
+    run = MODEL.simulate(values, Shaking.silence(6.0, 0.002), initial=initial, integrator=integrator)
+    size = np.abs(run.channels["rotation_2"])
+    peaks = [0.1, *size[1:-1][(size[1:-1] > size[:-2]) & (size[1:-1] >= size[2:])][:3]]
+    alpha = np.arctan(0.3 / 1.6)
+    height = np.cos(alpha - np.array(peaks)) - np.cos(alpha)
+    np.testing.assert_allclose(height[1:] / height[:-1], 0.64, rtol=2e-5)
+
+
+@pytest.mark.parametrize("integrator", LANES)
+def test_restitution_factor_at_the_base(integrator: str) -> None:
+    """As one body every impact keeps f e of the angular velocity: the first takes (1 - f^2 e^2) of the energy."""
+    values = {**A, "wall_length": 0.6, "top_height": 0.2, "restitution.factor_on_housner_base": 0.9}
+    stack = build(values, vertical=False)
+    e = 0.9 * float(stack.momentum_restitution[0])
+    radius, alpha = float(np.hypot(0.3, stack.centre[0])), float(stack.slenderness[0])
+    released = 1500 * G * radius * (np.cos(alpha - 0.05) - np.cos(alpha))
+    silence = Shaking.silence(1.0, 0.005)
+    run = MODEL.simulate(values, silence, initial={"rotation_1": 0.05}, integrator=integrator)
+    assert run.outputs["impacts_base"] == 1
+    assert run.outputs["dissipated_energy"] == pytest.approx((1 - e**2) * released, rel=1e-9)
+
+
+@pytest.mark.parametrize("integrator", LANES)
+def test_viscous_couple_takes_the_energy_it_should(integrator: str) -> None:
+    """As one body: the loss before the first impact is the integral of d I_O theta'^2."""
+    values = {**A, "wall_length": 0.6, "top_height": 0.2, "viscous_damping.rate": 0.3}
+    corner = float(build(values, vertical=False).corner_inertia(1.0)[0])
+    run = MODEL.simulate(values, Shaking.silence(0.4, 0.001), initial={"rotation_1": 0.05}, integrator=integrator)
+    rate = run.channels["rotation_rate_1"]
+    assert run.outputs["impacts_base"] == 0
+    lost = 0.3 * corner * np.trapezoid(rate**2, run.time)
+    assert run.outputs["dissipated_energy"] == pytest.approx(lost, rel=1e-5)
