@@ -137,7 +137,7 @@ def _parameters(diagnosis: Diagnosis, specimen: Specimen) -> list[Mapping[str, A
         for name, value in effect.parameters.items():
             rows.append(
                 {
-                    "name": f"{words.plain(effect.name)}: {words.plain(name)}",
+                    "name": words.plain(effect.name if name == effect.name else f"{effect.name}.{name}"),
                     "meaning": declared.get(name, ""),
                     "value": value,
                     "stated": "",

@@ -15,6 +15,8 @@ CHANNEL_WORDS = {
     "base_displacement_x": "base displacement",
     "rotation_1": "rotation of the lower body",
     "rotation_2": "rotation of the upper body",
+    "rotation_rate_1": "angular velocity of the lower body",
+    "rotation_rate_2": "angular velocity of the upper body",
     "displacement_1_x": "displacement of the lower body",
     "displacement_2_x": "displacement of the upper body",
     "level_acceleration_x": "acceleration of the levels",
