@@ -22,6 +22,7 @@ from diagnosis.fit import Fitted, normal
 from diagnosis.misfit import STEP, reduce
 from diagnosis.prediction import Point
 from models.base import FloatArray
+from models.errors import InputError
 
 
 @dataclass(frozen=True)
@@ -81,9 +82,14 @@ def open_screen(fitted: Fitted) -> Screen:
 
 
 def score(screen: Screen, candidates: Sequence[Candidate]) -> list[Score]:
-    """Statistics of all candidates, strongest first; all windows of all candidates in a few batches."""
+    """Statistics of all candidates, strongest first; those that the model refuses beside others are left out."""
     base = screen.fitted.misfit.point(screen.fitted.u, screen.fitted.states)
-    found = [_score_one(screen, base, candidate) for candidate in candidates]
+    found = []
+    for candidate in candidates:
+        try:
+            found.append(_score_one(screen, base, candidate))
+        except InputError:  # it does not act together with a mechanism that is switched on
+            continue
     return sorted(found, key=lambda s: -s.statistic)
 
 

@@ -1,0 +1,82 @@
+"""The whole chain on recordings made by the plain reference."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diagnosis import calibrate, diagnose
+from diagnosis.result import Diagnosis
+from models.errors import InputError
+from tests.diagnosis.made import SPECIMEN, TRUE, recording
+
+
+def told(effect: dict[str, dict[str, float]] | None, **options: object) -> Diagnosis:
+    training = [recording("train_1", 1, effect), recording("train_2", 2, effect)]
+    return diagnose(SPECIMEN, training, [recording("test_1", 3, effect)], **options)  # type: ignore[arg-type]
+
+
+def test_nothing_missing() -> None:
+    found = told(None)
+    assert found.verdict == "nothing_missing", found.statement
+    assert not found.effects and not found.rivals
+    assert found.p_value > 0.001
+    assert found.holdout is not None and found.holdout.share_of_achievable is None
+    for name in ("width", "height"):
+        value = found.base[name]
+        assert value.low95 - 0.003 * TRUE[name] < TRUE[name] < value.high95 + 0.003 * TRUE[name]
+
+
+def test_restitution_is_named_and_recovered() -> None:
+    truth = 0.93
+    found = told({"restitution": {"factor_on_housner": truth}})
+    assert found.effects[0].name == "restitution", found.statement
+    value = found.effects[0].parameters["factor_on_housner"]
+    assert value.low95 <= truth <= value.high95
+    assert value.high95 - value.low95 < 0.03
+    assert found.p_value < 1e-6 and found.effects[0].evidence > 50
+    assert found.holdout is not None and found.holdout.share_of_achievable is not None
+    assert found.holdout.share_of_achievable > 0.8
+    assert found.located and "impact" in found.located[0].where
+    assert "restitution" in found.statement
+
+
+def test_a_stopped_search_tells_what_it_has() -> None:
+    def stop(text: str, share: float) -> None:
+        if text.startswith("looking for a second effect"):
+            raise KeyboardInterrupt
+
+    found = told({"restitution": {"factor_on_housner": 0.93}}, progress=stop)
+    assert not found.finished
+    assert found.effects and found.effects[0].name == "restitution"
+    assert "stopped" in found.statement
+
+
+def test_priors_hold_what_the_recordings_do_not_tell() -> None:
+    tight = replace(SPECIMEN, tolerance={"width": 1e-6, "height": 0.005, "mass": 0.01})
+    found = calibrate(tight, [recording("train_1", 1)], profile=False)
+    assert found.parameters["width"].estimate == pytest.approx(0.25, rel=1e-5)
+    mass = found.parameters["mass"]
+    assert mass.estimate == pytest.approx(540.0, rel=1e-6)
+    assert mass.high95 - mass.low95 == pytest.approx(2 * 1.96 * 5.4, rel=0.05)
+
+
+def test_a_range_is_searched_globally() -> None:
+    ranged = replace(
+        SPECIMEN, parameters={"width": 0.25, "mass": 540.0}, tolerance={"width": 0.002}, calibrate={"height": (0.9, 3.6)}
+    )
+    found = calibrate(ranged, [recording("train_1", 1), recording("train_2", 2)], profile=False)
+    assert found.parameters["height"].estimate == pytest.approx(TRUE["height"], rel=0.01)
+    assert set(found.by_recording) == {"train_1", "train_2"}
+    assert 0.8 < found.misfit_per_sample < 1.2
+
+
+def test_nothing_to_compare_is_said() -> None:
+    flat = recording("flat", 1)
+    still = replace(flat, channels={**flat.channels, "rotation_1": np.random.default_rng(0).normal(size=flat.time.size)})
+    with pytest.raises(InputError, match="never rises above 8 times its noise"):
+        diagnose(SPECIMEN, [still])
+    with pytest.raises(InputError, match="no recording"):
+        diagnose(SPECIMEN, [])
