@@ -13,7 +13,10 @@ import numpy as np
 
 from models.interface.declaration import CALM
 from models.interface.lanes.rows import (
+    CLOCK,
     FLAG,
+    GROWTH_A,
+    GROWTH_V,
     LIFT_B,
     LIFT_T,
     LOG_CLOSING_B,
@@ -23,13 +26,15 @@ from models.interface.lanes.rows import (
     LOG_UPLIFT_B,
     N_WORK,
     Q_PERIOD,
+    Q_STEPS,
     RA,
     RV,
+    STEP,
     T1,
     T2,
     W,
 )
-from models.interface.lanes.settle import HALF_TURN, at_rest, consistent, empty, finish, start
+from models.interface.lanes.settle import HALF_TURN, at_rest, consistent, empty, finish, load, start
 from models.interface.lanes.step import step_all
 from models.lanes.compiler import called, compiled
 
@@ -46,100 +51,100 @@ def note(log: Table, count: Table, lane: int, time: float, kind: float) -> None:
 
 
 @called
-def note_joints(log: Table, count: Table, was: Table, w: Table, lane: int, slot: int, i: int, h: float) -> None:
-    """Write the joints' uplifts and closings of step i; ``was`` (2, W) holds the heights before it."""
+def note_joints(log: Table, count: Table, was: Table, w: Table, lane: int, slot: int) -> None:
+    """Write the uplifts and closings of the step just done; ``was`` (2, W) holds the heights before it."""
     for joint in range(2):
         before, now = was[joint, slot], w[(LIFT_B + joint) * W + slot]
         if (before > 0.0) != (now > 0.0):
-            at = (i + before / (before - now)) * h
+            at = (w[CLOCK * W + slot] - now / (now - before)) * w[STEP * W + slot]
             kind = LOG_UPLIFT_B if now > 0.0 else LOG_CLOSING_B
             note(log, count, lane, at, float(kind + joint))
 
 
 @compiled
 def advance(
-    record: Table, h: float, shaken_steps: int, first: Table, last: Table, given: Table, result: Table,
-    every: int, trace: Table, log: Table, count: Table, may_rest: bool,
-    mixed: Any,
+    record: Table, time_step: float, shaken: int, first: Table, last: Table, given: Table, result: Table,
+    sampled: bool, trace: Table, log: Table, count: Table, may_rest: bool, mixed: Any,
 ) -> int:  # fmt: skip
-    """Run every lane from step ``first`` to ``last``; returns the number of lane-steps computed.
+    """Run every lane from sample ``first`` to ``last``; returns the number of lane-steps computed.
 
-    ``record`` (2, n): a and a_z at the ends of the steps of length ``h`` (s), the shaking ends at
-    ``shaken_steps``. ``trace`` (n, m, 8) takes q and q' every ``every`` steps (0: never). ``log``
-    (n, k, 2) takes uplifts, closings, rest and overturning. ``may_rest``: a lane ends when it has
-    come to rest.
+    ``record`` (2, n): a and a_z every ``time_step`` (s), linear between; the shaking ends at sample
+    ``shaken``. Each lane takes its own number of steps per sample. ``trace`` (n, m, 8) takes q and q'
+    at every sample if ``sampled``. ``log`` (n, k, 2) takes uplifts, closings, rest and overturning.
+    ``may_rest``: a lane ends when it has come to rest.
     """
     n = given.shape[0]
     w = np.zeros(N_WORK * W)
     was = np.zeros((2, W))
     at, bound, of = np.zeros(W, np.int64), np.zeros(W, np.int64), np.full(W, -1)
-    window = np.zeros(W, np.int64)
+    sub, per, window = np.zeros(W, np.int64), np.ones(W, np.int64), np.zeros(W, np.int64)
     waiting, steps = 0, 0
     logged = log.shape[1] > 0
     for slot in range(W):
         empty(w, slot)
     while True:
+        # --- settle lanes at their boundaries, fill empty slots
         active = 0
         for slot in range(W):
             lane = of[slot]
             while True:
                 if lane < 0:
+                    at[slot], sub[slot] = 0, 0
                     if waiting == n:
-                        at[slot] = 0
                         break
                     lane = waiting
                     waiting += 1
-                    i = first[lane]
-                    at[slot], bound[slot], window[slot] = i, i, -1
-                    live = 1.0 if i < shaken_steps else 0.0
-                    start(given, result, w, lane, slot, i, live * record[0, i], live * record[1, i], logged, mixed)
+                    at[slot], bound[slot], window[slot] = first[lane], first[lane], -1
+                    per[slot] = int(given[lane, Q_STEPS])
+                    start(given, result, w, lane, slot, record, at[slot], time_step, logged, mixed)
                 if at[slot] < bound[slot]:
                     break
                 i = at[slot]
-                if every > 0 and (i - first[lane]) % every == 0 and (i - first[lane]) // every < trace.shape[1]:
+                if sampled and i - first[lane] < trace.shape[1]:
                     for k in range(8):
-                        trace[lane, (i - first[lane]) // every, k] = w[(T1 + k) * W + slot]
-                if i == shaken_steps and i > first[lane]:
-                    # the record may jump to zero at its end
+                        trace[lane, i - first[lane], k] = w[(T1 + k) * W + slot]
+                if i == shaken and i > first[lane]:
                     consistent(w, slot, 0.0, 0.0, mixed)
                 ended = i >= last[lane]
-                if i >= shaken_steps:
-                    if i == window[slot] and at_rest(w, slot, CALM):
+                if i >= shaken and i >= window[slot]:
+                    if at_rest(w, slot, CALM) and window[slot] >= 0:
                         if logged:
-                            note(log, count, lane, i * h, float(LOG_REST))
+                            note(log, count, lane, i * time_step, float(LOG_REST))
                         ended = ended or may_rest
-                    if i >= window[slot]:
-                        at_rest(w, slot, CALM)
-                        window[slot] = i + max(1, int(given[lane, Q_PERIOD] / h))
+                    window[slot] = i + 1 + int(given[lane, Q_PERIOD] / time_step)
                 if ended:
-                    finish(result, w, lane, slot, i * h, h, False)
+                    finish(result, w, lane, slot, False)
                     lane = -1
                     empty(w, slot)
                     continue
-                bound[slot] = min(last[lane], shaken_steps if i < shaken_steps else window[slot])
-                if every > 0:
-                    bound[slot] = min(bound[slot], i + every - (i - first[lane]) % every)
+                bound[slot] = min(last[lane], shaken if i < shaken else window[slot])
+                if sampled:
+                    bound[slot] = i + 1
+                load(w, slot, record, i, shaken, float(per[slot]))
                 break
             of[slot] = lane
             active += 1 if lane >= 0 else 0
         if active == 0:
             return steps
+        # --- common steps until the first boundary, or until a lane has to be settled
         common = 1 << 62
         for slot in range(W):
             if of[slot] >= 0:
-                common = min(common, bound[slot] - at[slot])
+                common = min(common, (bound[slot] - at[slot]) * per[slot] - sub[slot])
         settle = False
         for _ in range(common):
             for slot in range(W):
-                # unsigned: no code for negative indices
-                i = np.uint64(at[slot] + 1)
-                w[RA * W + slot] = record[0, i]
-                w[RV * W + slot] = record[1, i]
-                at[slot] += 1
+                sub[slot] += 1
+                w[RA * W + slot] += w[GROWTH_A * W + slot]
+                w[RV * W + slot] += w[GROWTH_V * W + slot]
+            for slot in range(W):
+                if sub[slot] == per[slot]:
+                    sub[slot] = 0
+                    at[slot] += 1
             if logged:
                 for slot in range(W):
                     was[0, slot], was[1, slot] = w[LIFT_B * W + slot], w[LIFT_T * W + slot]
-            flagged = step_all(w, h, mixed)
+            flagged = step_all(w, mixed)
             steps += active
             if flagged > 0:
                 for slot in range(W):
@@ -147,14 +152,18 @@ def advance(
                     if w[FLAG * W + slot] == 0.0 or lane < 0:
                         continue
                     if logged:
-                        note_joints(log, count, was, w, lane, slot, at[slot] - 1, h)
+                        note_joints(log, count, was, w, lane, slot)
                     if not (abs(w[T1 * W + slot]) < HALF_TURN and abs(w[T2 * W + slot]) < HALF_TURN):
-                        over = abs(w[T1 * W + slot]) >= HALF_TURN
                         if logged:
-                            note(log, count, lane, at[slot] * h, float(LOG_OVER_1 if over else LOG_OVER_2))
-                        finish(result, w, lane, slot, at[slot] * h, h, True)
+                            over = LOG_OVER_1 if abs(w[T1 * W + slot]) >= HALF_TURN else LOG_OVER_2
+                            note(log, count, lane, w[CLOCK * W + slot] * w[STEP * W + slot], float(over))
+                        finish(result, w, lane, slot, True)
                         of[slot] = -1
                         empty(w, slot)
                         settle = True
             if settle:
                 break
+            # --- lanes that have come to a sample take up its growth
+            for slot in range(W):
+                if sub[slot] == 0 and of[slot] >= 0 and at[slot] < bound[slot]:
+                    load(w, slot, record, at[slot], shaken, float(per[slot]))

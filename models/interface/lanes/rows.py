@@ -6,8 +6,8 @@ W = 16
 # --- work: state at the end of the last step; A is the step rule's own acceleration
 (
     T1, T2, Z1, Z2, V1, V2, Y1, Y2, A1, A2, AZ1, AZ2,
-    # input at the end of the coming step, clock in steps
-    RA, RV, CLOCK,
+    # record at the end of the coming step, its growth from step to step, length of the steps (s), steps done
+    RA, RV, GROWTH_A, GROWTH_V, STEP, CLOCK,
     # constants of the lane
     SCALE, OFFSET, GRAVITY, VSCALE,
     M1, H1, I1, M2, H2, I2, HEIGHT, B1, BT, TOE_1, TOE_T, KB, KT, CB, CT, LATE_B, LATE_T, CLIP, FREE_B, FREE_T,
@@ -19,16 +19,17 @@ W = 16
     PEAK_1, PEAK_2, KINETIC, WINDOW,
     # whether uplifts and closings are to be logged, whether the lane needs attention
     LOGGED, FLAG,
-) = range(63)  # fmt: skip
-N_WORK = 63
+) = range(66)  # fmt: skip
+N_WORK = 66
 CONSTANTS = tuple(range(SCALE, FREE_T + 1))
 """Rows copied from ``given``, in this order."""
 
-# --- given: the constants in the order above, then the state at the start and the first period (s)
+# --- given: the constants in the order above, then the state at the start, the first period (s), steps per sample
 N_CONSTANTS = len(CONSTANTS)
 Q_STATE = N_CONSTANTS
 Q_PERIOD = N_CONSTANTS + 8
-N_GIVEN = N_CONSTANTS + 9
+Q_STEPS = N_CONSTANTS + 9
+N_GIVEN = N_CONSTANTS + 10
 
 # --- result: what a lane has gathered
 (

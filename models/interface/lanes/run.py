@@ -22,8 +22,6 @@ EVENTS = (
 )  # fmt: skip
 LARGEST_PHASE = (0.1, 0.4)
 """Largest omega h of a step (rad) of the second mode of the rotations and of the slowest vertical one."""
-STEPS = np.array([1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48, 64, 80, 96, 128])
-"""Steps per sample of the record: few, so that many lanes share a refined record."""
 
 
 @dataclass(frozen=True)
@@ -42,20 +40,17 @@ def substeps(wall: LayeredWall, time_step: float) -> NDArray[np.int64]:
     needed = omega[:, 1] * time_step / LARGEST_PHASE[0]
     if wall.joints == "both":
         needed = np.maximum(needed, omega[:, 2] * time_step / LARGEST_PHASE[1])
-    index = np.searchsorted(STEPS, needed - 1e-9)
-    return np.asarray(STEPS[np.minimum(index, STEPS.size - 1)], dtype=np.int64)
+    return np.maximum(1, np.ceil(needed - 1e-9)).astype(np.int64)
 
 
-def refined(shaking: Shaking, n: int, tail: float) -> tuple[FloatArray, int]:
-    """The record at the ends of the steps with its quiet tail, and the steps of shaking."""
-    shaken = (shaking.horizontal.size - 1) * n
-    quiet = int(np.ceil(tail / shaking.time_step * n - 1e-9))
-    record = np.zeros((2, shaken + quiet + 2))
-    fine, samples = np.arange(shaken + 1) / n, np.arange(shaking.horizontal.size)
+def padded(shaking: Shaking, tail: float) -> FloatArray:
+    """The record (2, samples) with its quiet tail and one sample to spare."""
+    quiet = int(np.ceil(tail / shaking.time_step - 1e-9))
+    record = np.zeros((2, shaking.horizontal.size + quiet + 1))
     for row, channel in enumerate((shaking.horizontal, shaking.vertical)):
         if channel is not None:
-            record[row, : shaken + 1] = channel if n == 1 else np.interp(fine, samples, channel)
-    return record, shaken
+            record[row, : channel.size] = channel
+    return record
 
 
 def given_table(wall: LayeredWall, scale: FloatArray, initial: Mapping[str, FloatArray]) -> FloatArray:
@@ -104,28 +99,23 @@ def run(
     ``log`` > 0 returns up to that many events a lane. ``refinement`` divides every step.
     """
     n = wall.size
-    out, trace = np.zeros((n, r.N_RESULT)), np.zeros((n, samples, 8))
-    logged: list[tuple[tuple[float, str, int], ...]] = [()] * n
-    steps = 0
-    per_sample = substeps(wall, shaking.time_step) * refinement
+    record = padded(shaking, tail)
     begun = {k: np.broadcast_to(np.asarray(v, float), (n,)) for k, v in (initial or {}).items()}
-    for sub in np.unique(per_sample).tolist():
-        lanes = np.flatnonzero(per_sample == sub)
-        record, shaken = refined(shaking, sub, tail)
-        begin = np.zeros(lanes.size, np.int64) if first is None else first[lanes] * sub
-        end = np.full(lanes.size, record.shape[1] - 2) if last is None else last[lanes] * sub
-        given = given_table(wall.take(lanes), scale[lanes], {k: v[lanes] for k, v in begun.items()})
-        result = np.zeros((lanes.size, r.N_RESULT))
-        part, part_log = np.zeros((lanes.size, samples, 8)), np.zeros((lanes.size, log, 2))
-        count = np.zeros(lanes.size, np.int64)
-        steps += advance(
-            record, shaking.time_step / sub, shaken, begin, end, given, result, sub if samples else 0, part,
-            part_log, count, may_rest, None if wall.joints == "both" else True,
-        )  # fmt: skip
-        out[lanes], trace[lanes] = result, part
-        for k, lane in enumerate(lanes):
-            logged[lane] = tuple((t, *EVENTS[int(kind)]) for t, kind in part_log[k, : min(count[k], log)])
-    return Lanes(out, trace, tuple(logged), steps)
+    given = given_table(wall, scale, begun)
+    given[:, r.Q_STEPS] = substeps(wall, shaking.time_step) * refinement
+    result, trace = np.zeros((n, r.N_RESULT)), np.zeros((n, samples, 8))
+    written, count = np.zeros((n, log, 2)), np.zeros(n, np.int64)
+    steps = advance(
+        record, shaking.time_step, shaking.horizontal.size - 1,
+        np.zeros(n, np.int64) if first is None else first,
+        np.full(n, record.shape[1] - 2) if last is None else last,
+        given, result, samples > 0, trace, written, count, may_rest, None if wall.joints == "both" else True,
+    )  # fmt: skip
+    events = tuple(
+        tuple((t, *EVENTS[int(kind)]) for t, kind in lane[: min(k, log)])
+        for lane, k in zip(written, count, strict=True)
+    )
+    return Lanes(result, trace, events, steps)
 
 
 def outputs(wall: LayeredWall, table: NDArray[np.float64]) -> dict[str, NDArray[Any]]:

@@ -20,6 +20,7 @@ from models.interface.lanes.rows import (
     CLOSED_B,
     CLOSED_T,
     GRAVITY,
+    GROWTH_A,
     H1,
     H2,
     HEIGHT,
@@ -38,11 +39,13 @@ from models.interface.lanes.rows import (
     PEAK_1,
     PEAK_2,
     Q_STATE,
+    Q_STEPS,
     RA,
     RV,
     SCALE,
     SHARE_B,
     SHARE_T,
+    STEP,
     T1,
     T2,
     TOE_1,
@@ -75,7 +78,8 @@ def consistent(w: Table, slot: int, a: float, v: float, mixed: Any) -> None:
     for row in range(A1, A1 + 4):
         w[row * W + slot] = 0.0
     # a step of no length from no acceleration: (1 - am) M d = Q - n
-    step_one(w, slot, 0.0, mixed)
+    w[STEP * W + slot] = 0.0
+    step_one(w, slot, mixed)
     for row in range(A1, A1 + 4):
         kept[row] = (1.0 - AM) * w[row * W + slot]
     kept[r.POWER_B], kept[r.POWER_T] = w[r.POWER_B * W + slot], w[r.POWER_T * W + slot]
@@ -109,18 +113,10 @@ def stored_top(w: Table, slot: int) -> float:
 
 @called
 def start(
-    given: Table,
-    result: Table,
-    w: Table,
-    lane: int,
-    slot: int,
-    step: int,
-    a: float,
-    v: float,
-    logged: bool,
-    mixed: Any,
-) -> None:
-    """Put a lane in a slot, in its initial state, at the start of ``step``."""
+    given: Table, result: Table, w: Table, lane: int, slot: int, record: Table, sample: int, time_step: float,
+    logged: bool, mixed: Any,
+) -> None:  # fmt: skip
+    """Put a lane in a slot, in its initial state, at ``sample`` of the record."""
     for row in range(N_WORK):
         w[row * W + slot] = 0.0
     for k in range(N_CONSTANTS):
@@ -131,11 +127,12 @@ def start(
     w[SHARE_B * W + slot], w[SHARE_T * W + slot] = 2.0 * w[B1 * W + slot], 2.0 * w[BT * W + slot]
     w[ALONG_B * W + slot], w[ALONG_T * W + slot] = 0.0, 0.0
     w[ACROSS_B * W + slot], w[ACROSS_T * W + slot] = 1.0, 1.0
-    w[CLOCK * W + slot] = float(step)
-    consistent(w, slot, a, v, mixed)
+    n = given[lane, Q_STEPS]
+    w[STEP * W + slot], w[CLOCK * W + slot] = time_step / n, sample * n
+    consistent(w, slot, record[0, sample], record[1, sample], mixed)
     w[PEAK_1 * W + slot], w[PEAK_2 * W + slot] = abs(w[T1 * W + slot]), abs(w[T2 * W + slot])
-    w[ONSET_B * W + slot] = float(step) if w[LIFT_B * W + slot] > 0.0 else NEVER
-    w[ONSET_T * W + slot] = float(step) if w[LIFT_T * W + slot] > 0.0 else NEVER
+    w[ONSET_B * W + slot] = sample * n if w[LIFT_B * W + slot] > 0.0 else NEVER
+    w[ONSET_T * W + slot] = sample * n if w[LIFT_T * W + slot] > 0.0 else NEVER
     w[LOGGED * W + slot] = 1.0 if logged else 0.0
     for k in range(result.shape[1]):
         result[lane, k] = 0.0
@@ -188,8 +185,10 @@ def topple(result: Table, w: Table, lane: int, slot: int, time: float) -> None:
 
 
 @called
-def finish(result: Table, w: Table, lane: int, slot: int, time: float, h: float, fell: bool) -> None:
-    """Close the account of a lane that ends at ``time`` (s); ``fell``: a body has reached pi/2."""
+def finish(result: Table, w: Table, lane: int, slot: int, fell: bool) -> None:
+    """Close the account of a lane that ends now; ``fell``: a body has reached pi/2."""
+    h = w[STEP * W + slot]
+    time = h * w[CLOCK * W + slot]
     t1, t2 = w[T1 * W + slot], w[T2 * W + slot]
     if t1 != t1 or t2 != t2:
         result[lane, r.R_FAILED] = 1.0
@@ -218,3 +217,13 @@ def at_rest(w: Table, slot: int, calm: float) -> bool:
     still = w[WINDOW * W + slot] <= calm * w[KINETIC * W + slot]
     w[WINDOW * W + slot] = 0.0
     return bool(still)
+
+
+@inlined
+def load(w: Table, slot: int, record: Table, sample: int, shaken: int, n: float) -> None:
+    """The record's values at ``sample`` and their growth over each of the n steps that follow."""
+    for row in range(2):
+        # beyond the record's last sample the base is at rest: it may jump there
+        value = record[row, sample] if sample < shaken else 0.0
+        growth = (record[row, sample + 1] - record[row, sample]) / n if sample < shaken else 0.0
+        w[(RA + row) * W + slot], w[(GROWTH_A + row) * W + slot] = value, growth

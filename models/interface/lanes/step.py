@@ -33,8 +33,9 @@ BETA = 0.25 * (1.0 - AM) ** 2
 
 
 @inlined
-def step_one(w: Table, i: int, h: float, mixed: Any) -> bool:
-    """One step of ``h`` (s) of the lane in slot i; returns whether it needs attention."""
+def step_one(w: Table, i: int, mixed: Any) -> bool:
+    """One step of the lane in slot i; returns whether it needs attention."""
+    h = w[r.STEP * W + i]
     # --- predictor and inputs at the end of the step
     o1, o2, o3, o4 = w[r.A1 * W + i], w[r.A2 * W + i], w[r.AZ1 * W + i], w[r.AZ2 * W + i]
     v1, v2, y1, y2 = w[r.V1 * W + i], w[r.V2 * W + i], w[r.Y1 * W + i], w[r.Y2 * W + i]
@@ -163,9 +164,9 @@ def step_one(w: Table, i: int, h: float, mixed: Any) -> bool:
 
 
 @inlined
-def step_all(w: Table, h: float, mixed: Any) -> int:
+def step_all(w: Table, mixed: Any) -> int:
     """One step of all lanes; returns how many need attention."""
     flagged = 0
     for i in range(W):
-        flagged += 1 if step_one(w, i, h, mixed) else 0
+        flagged += 1 if step_one(w, i, mixed) else 0
     return flagged

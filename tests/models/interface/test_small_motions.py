@@ -7,7 +7,10 @@ from models.interface import modes
 from models.interface.equation import Equation
 from tests.models.interface.walls import LONG, MODEL, SHORT, block_on_strip, random_wall, wall
 
-FREQUENCIES = ((SHORT, (1.35130, 6.38983, 10.59931, 119.10733), 5e-6), (LONG, (6.3723, 17.5377, 29.4294, 119.975), 5e-5))
+FREQUENCIES = (
+    (SHORT, (1.35130, 6.38983, 10.59931, 119.10733), 5e-6),
+    (LONG, (6.3723, 17.5377, 29.4294, 119.975), 5e-5),
+)
 
 
 @pytest.mark.parametrize(("values", "expected", "digit"), FREQUENCIES)

@@ -1,5 +1,7 @@
 """The no-tension strip: closed form against quadrature, and the static uplift curve."""
 
+import itertools
+
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
@@ -47,7 +49,7 @@ def test_eight_thousand_random_states_against_gauss_points_between_the_kinks() -
         cuts = [-b, b, z / s, (k * z + c * z_rate) / (k * s + c * s_rate)]
         cuts = np.sort(np.clip(cuts, -b, b))
         force = moment = scale = 0.0
-        for low, high in zip(cuts[:-1], cuts[1:], strict=True):
+        for low, high in itertools.pairwise(cuts):
             x = 0.5 * (low + high) + 0.5 * (high - low) * nodes
             stress = -(k * (z - x * s) + c * (z_rate - x * s_rate))
             stress = np.where(z - x * s < 0.0, np.maximum(stress, 0.0), 0.0)

@@ -1,0 +1,131 @@
+"""The compiled lanes: against the reference on random walls, order of convergence, independence of lanes.
+
+Rocking on rubber is sensitive too (a change of the motion by 1e-6 moves the peak by more than 1 % in one
+of twelve walls of the study), so agreement is asked over a few seconds of motion.
+"""
+
+import numpy as np
+import pytest
+
+from models.interface import reference
+from models.interface.lanes import run as lanes
+from models.interface.observe import observe
+from models.shaking import Shaking
+from tests.models.interface.walls import MODEL, SHORT, block_on_strip, random_wall, undamped, wall
+from tests.models.strategies import random_motion
+
+
+def burst(rng: np.random.Generator) -> Shaking:
+    """1.5 s of noise, both components."""
+    return random_motion(rng, duration=1.5)
+
+
+CASES = [("toe_held", "B", 1), ("toe_held", "A", 2), ("midpoint_held", "B", 3), ("toe_held", "B", 6)]
+"""Walls of which a change of the motion by 1e-5 is amplified less than ten times (checked below)."""
+
+
+@pytest.mark.parametrize(("kinematics", "dashpot", "seed"), CASES)
+def test_lanes_agree_with_the_reference_on_random_walls(kinematics: str, dashpot: str, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    values, shaking = random_wall(rng), burst(rng)
+    scale = 9.81 * values["aspect_ratio"] * float(rng.uniform(0.5, 1.2))
+    one = wall(values, kinematics=kinematics, dashpot=dashpot).replace(vertical_factor=1.0)
+    slow = reference.run(one, shaking, scale, duration=1.5, rtol=1e-7)
+    expected = {k: v[0] for k, v in observe(one, slow.state.T[None]).items()}
+    near = lanes.run(one, shaking, scale * np.array([1.0 + 1e-5]), samples=151, refinement=4).samples[0]
+    assert np.max(np.abs(near.T - slow.state)[:2]) < 4e-4 * np.max(np.abs(slow.state[:2]))
+    for refinement, share in ((1, 2e-3), (4, 3e-4)):
+        ran = lanes.run(one, shaking, np.array([scale]), samples=151, refinement=refinement)
+        found = {k: v[0] for k, v in observe(one, ran.samples).items()}
+        for name in ("rotation_1", "rotation_2"):
+            size = np.max(np.abs(expected[name]))
+            np.testing.assert_allclose(found[name], expected[name], rtol=0, atol=share * size, err_msg=name)
+        outputs = {k: v[0] for k, v in lanes.outputs(one, ran.result).items()}
+        for name in ("peak_rotation_1", "peak_rotation_2", "uplift_duration_base", "onset_time", "needed_friction"):
+            expects = pytest.approx(slow.outputs[name], rel=share, abs=1e-4, nan_ok=True)
+            assert outputs[name] == expects, (name, refinement)
+        assert outputs["dissipated_energy"] == pytest.approx(slow.outputs["dissipated_energy"], rel=10 * share)
+
+
+@pytest.mark.parametrize("joints", ["base", "top"])
+def test_rubber_at_one_joint_only(joints: str) -> None:
+    rng = np.random.default_rng(11)
+    values, shaking = random_wall(rng), burst(rng)
+    scale = 9.81 * values["aspect_ratio"]
+    one = wall(values, joints=joints)
+    slow = reference.run(one.replace(vertical_factor=1.0), shaking, scale, duration=1.5, rtol=1e-7)
+    fast = MODEL.simulate(values, shaking, scale=scale, options={"joints": joints})
+    expected = {k: v[0] for k, v in observe(one, slow.state.T[None]).items()}
+    for name in ("rotation_1", "rotation_2", "sinking_1", "sinking_2"):
+        np.testing.assert_allclose(
+            fast.channels[name], expected[name], rtol=0, atol=4e-3 * np.max(np.abs(expected[name])) + 1e-15
+        )
+    bonded, other = ("top", "base") if joints == "base" else ("base", "top")
+    assert fast.outputs[f"uplift_duration_{bonded}"] == 0.0
+    assert fast.outputs[f"minimum_contact_{bonded}"] == 1.0
+    assert np.isnan(fast.outputs[f"needed_friction_{bonded}"])
+    assert fast.outputs[f"dissipated_energy_{other}"] > 0.0
+
+
+def test_the_step_rule_is_of_second_order_in_full_contact() -> None:
+    one = wall(SHORT)
+    shaking = Shaking(0.01, 0.3 * np.sin(2 * np.pi * 1.2 * 0.01 * np.arange(101)))
+    found = [lanes.run(one, shaking, np.ones(1), samples=101, refinement=n).samples[0, :, :2] for n in (1, 2, 4, 32)]
+    errors = [np.max(np.abs(f - found[-1])) for f in found[:-1]]
+    assert 3.0 < errors[0] / errors[1] < 6.0
+    assert 3.0 < errors[1] / errors[2] < 6.0
+
+
+def test_a_stiff_axial_mode_sets_no_bound_on_the_step() -> None:
+    # E = 20 MPa and 10 %: an explicit fourth-order step would have to stay below .11 ms
+    one = wall({**SHORT, "layer_modulus": 2e7, "damping_ratio": 0.10})
+    shaking = Shaking(0.005, 1.9 * np.sin(2 * np.pi * 1.2 * 0.005 * np.arange(401)))
+    step = 0.005 / int(lanes.substeps(one, 0.005)[0])
+    assert step > 5 * 0.11e-3
+    coarse = lanes.run(one, shaking, np.ones(1), samples=401).samples[0]
+    fine = lanes.run(one, shaking, np.ones(1), samples=401, refinement=16).samples[0]
+    assert np.max(np.abs(coarse - fine)[:, :2]) < 2e-3 * np.max(np.abs(fine[:, :2]))
+
+
+def test_energy_of_free_rocking_hardly_decays_without_dashpots() -> None:
+    one = wall(undamped(block_on_strip(1e8)), joints="base")
+    told = lanes.run(one, Shaking.silence(2.0, 0.01), np.ones(1), initial={"rotation_1": 0.1}, refinement=4)
+    found = lanes.outputs(one, told.result)
+    assert abs(found["dissipated_energy"][0]) < 2e-2 * 1000.0 * 9.81 * 0.02
+
+
+def test_a_lane_does_not_depend_on_the_others() -> None:
+    rng = np.random.default_rng(5)
+    walls = [random_wall(rng) for _ in range(37)]
+    values = {name: np.array([one[name] for one in walls]) for name in walls[0]}
+    shaking, names = burst(rng), [q.name for q in MODEL.outputs]
+    scale = rng.uniform(1.0, 9.0, 37)
+    together = MODEL.evaluate(values, shaking, scale, outputs=names, tail=2.0)
+    for k in (0, 15, 16, 36):
+        alone = MODEL.evaluate(walls[k], shaking, scale[k : k + 1], outputs=names, tail=2.0)
+        for name in names:
+            np.testing.assert_array_equal(alone[name][0], together[name][k], err_msg=name)
+
+
+def test_an_overturned_wall_and_one_that_comes_to_rest() -> None:
+    time = 0.01 * np.arange(301)
+    shaking = Shaking(0.01, np.sin(2 * np.pi * time / 3.0))
+    found = MODEL.evaluate(SHORT, shaking, np.array([9.0, 0.01]), outputs=[q.name for q in MODEL.outputs], tail=60.0)
+    assert found["overturned"].tolist() == [True, False]
+    assert found["peak_rotation"][0] == np.pi / 2
+    assert 1.0 < found["overturning_time"][0] < 4.0
+    assert found["uplift_duration_base"][0] < found["overturning_time"][0]
+    assert found["status"].tolist() == [3, 1]
+    assert np.isnan(found["onset_time"][1])
+    history = MODEL.simulate(SHORT, shaking, scale=9.0, tail=2.0)
+    assert abs(history.channels["rotation_1"][-1]) == np.pi / 2
+    assert [e.kind for e in history.events][:2] == ["onset", "uplift"]
+
+
+def test_at_rest_ends_the_run_early_and_changes_nothing() -> None:
+    time = 0.01 * np.arange(101)
+    shaking = Shaking(0.01, 1.5 * np.sin(2 * np.pi * time))
+    one = wall(SHORT)
+    short, long = (lanes.run(one, shaking, np.ones(1), tail=tail) for tail in (60.0, 90.0))
+    assert short.steps == long.steps
+    assert lanes.run(one, shaking, np.ones(1), tail=60.0, may_rest=False).steps > short.steps
