@@ -51,4 +51,4 @@ class Shaking:
     @classmethod
     def silence(cls, duration: float, time_step: float) -> Shaking:
         """No shaking for ``duration`` seconds (free rocking)."""
-        return cls(time_step, np.zeros(int(round(duration / time_step)) + 1))
+        return cls(time_step, np.zeros(round(duration / time_step) + 1))

@@ -12,29 +12,46 @@ PARAMETERS = (
     Parameter("aspect_ratio", "b/h", "1", "width over height", 0.0, low_open=True),
     Parameter("mass", "m_1", "kg", "mass of the block, without the mass on top", 0.0),
     Parameter(
-        "inertia", "I_1", "kg m2", "moment of inertia of the block about its own centre (default: solid rectangle)",
-        0.0, default=np.nan,
+        "inertia",
+        "I_1",
+        "kg m2",
+        "moment of inertia of the block about its own centre (default: solid rectangle)",
+        0.0,
+        default=np.nan,
     ),
     Parameter("top_mass", "m_2", "kg", "mass on top, moving with the block as one body", 0.0, default=0.0),
-    Parameter(
-        "top_mass_height", "h_2", "m", "centre of the top mass above the top of the block", 0.0, default=0.0
-    ),
+    Parameter("top_mass_height", "h_2", "m", "centre of the top mass above the top of the block", 0.0, default=0.0),
     Parameter(
         "top_mass_inertia", "I_2", "kg m2", "moment of inertia of the top mass about its own centre", 0.0, default=0.0
     ),
     Parameter(
-        "restitution", "e", "1", "given ratio of angular velocities at impact (default: angular momentum)",
-        0.0, 1.0, default=np.nan, low_open=True,
+        "restitution",
+        "e",
+        "1",
+        "given ratio of angular velocities at impact (default: angular momentum)",
+        0.0,
+        1.0,
+        default=np.nan,
+        low_open=True,
     ),
     Parameter(
-        "restitution_aspect_coefficient", "c_a", "1",
+        "restitution_aspect_coefficient",
+        "c_a",
+        "1",
         "e = e_H [1 - c_a (b/h)^2] (theta_prev/theta_max)^c_t; form and coefficients are this project's, "
         "after the description in words of Mordant, Dietz, Degee (COMPDYN 2013)",
-        -10.0, 10.0, default=0.0,
+        -10.0,
+        10.0,
+        default=0.0,
     ),
     Parameter(
-        "restitution_amplitude_exponent", "c_t", "1",
-        "exponent of (peak before this impact / largest peak so far) in the same law", 0.0, 10.0, default=0.0,
+        "restitution_amplitude_exponent",
+        "c_t",
+        "1",
+        "exponent of (peak before this impact / largest peak so far) in the same law",
+        0.0,
+        10.0,
+        default=0.0,
     ),
     Parameter("gravity", "g", "m s-2", "acceleration of gravity", 0.0, default=9.80665, low_open=True),
 )
@@ -47,6 +64,7 @@ OVERTURNED = (
     "overturned when |theta| reaches pi/2, or, once the shaking has ended, when |theta| exceeds alpha "
     "while the velocity and the acceleration both point outwards"
 )
+MOST_IMPACTS_PER_STEP = 200
 REST_VELOCITY = 4.5e-3
 """|theta'| over p alpha below which an impact ends in rest: the swing ahead is 1e-5 alpha."""
 AT_REST = (
@@ -57,23 +75,46 @@ AT_REST = (
 OUTPUTS = (
     Quantity("peak_rotation", "max |theta|", "rad", "largest absolute rotation", "pi/2 when overturned"),
     Quantity(
-        "peak_rotation_ratio", "max |theta| / alpha", "1", "largest absolute rotation over the slenderness angle",
+        "peak_rotation_ratio",
+        "max |theta| / alpha",
+        "1",
+        "largest absolute rotation over the slenderness angle",
         "(pi/2)/alpha when overturned",
     ),
-    Quantity("uplift_duration", "t_up", "s", "time spent rocking", f"up while it rocks; {AT_REST}; counted to overturning"),
+    Quantity(
+        "uplift_duration",
+        "t_up",
+        "s",
+        "time spent rocking",
+        f"up while it rocks; {AT_REST}; counted to overturning",
+    ),
     Quantity("onset_time", "t_on", "s", "time of the first uplift", "nan when it never rocks"),
     Quantity("overturned", "", "1", "whether the block overturned", OVERTURNED, dtype="bool"),
     Quantity("overturning_time", "t_ov", "s", "time of overturning", f"nan when it stands; {OVERTURNED}"),
     Quantity("impacts", "n", "1", "number of impacts", "every change of pivot counts", dtype="int32"),
-    Quantity("residual_rotation", "theta_end", "rad", "rotation at the end of the run", "0 at rest; signed pi/2 when overturned"),
     Quantity(
-        "dissipated_energy", "E_d", "J", "energy lost at impacts and in couples", "counted to overturning"
+        "residual_rotation",
+        "theta_end",
+        "rad",
+        "rotation at the end of the run",
+        "0 at rest; signed pi/2 when overturned",
     ),
+    Quantity("dissipated_energy", "E_d", "J", "energy lost at impacts and in couples", "counted to overturning"),
     Quantity(
-        "needed_friction", "max |H|/N", "1", "largest friction demand while rocking",
+        "needed_friction",
+        "max |H|/N",
+        "1",
+        "largest friction demand while rocking",
         "0 when it never rocks; inf when N <= 0, that is when the block would leave the ground; impulses not included",
     ),
-    Quantity("status", "", "1", "what became of the run", "not_converged: more than 200 impacts within one step", dtype="int8"),
+    Quantity(
+        "status",
+        "",
+        "1",
+        "what became of the run",
+        f"not_converged: more than {MOST_IMPACTS_PER_STEP} impacts within one step",
+        dtype="int8",
+    ),
 )
 
 
@@ -92,5 +133,3 @@ OBSERVABLES = (
     Quantity("contact_1", "", "1", "share of the base in contact: 1 at rest, 0 while rocking"),
 )
 STATES = ("rotation_1", "rotation_rate_1")
-
-MOST_IMPACTS_PER_STEP = 200

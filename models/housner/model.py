@@ -220,7 +220,7 @@ class Housner:
         linear = self._integrator(integrator, block, options)
         quiet = tail if duration is None else max(0.0, duration - shaking.duration)
         end = shaking.duration + quiet if duration is None else duration
-        count = int(round(end / shaking.time_step)) + 1
+        count = round(end / shaking.time_step) + 1
         time: FloatArray = np.arange(count, dtype=np.float64) * shaking.time_step
         start = dict(initial or {})
         for name in start:

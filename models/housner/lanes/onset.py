@@ -54,9 +54,7 @@ def onset(
 
 
 @called
-def slip_onset(
-    given: Table, w: Table, lane: int, slot: int, record: Table, i: int, f: float
-) -> tuple[float, float]:
+def slip_onset(given: Table, w: Table, lane: int, slot: int, record: Table, i: int, f: float) -> tuple[float, float]:
     """First fraction >= f of step i at which |H| > mu N in full contact, and the direction of slip."""
     a0, g0, p0, q0 = inputs(w, slot, record, i, f)
     a1, g1, p1, q1 = inputs(w, slot, record, i, 1.0)
