@@ -49,7 +49,9 @@ from models.stacked.lanes.rows import (
     WORK,
     WORK_STEP,
     X1,
+    X1S,
     X2,
+    X2S,
     W,
 )  # fmt: skip
 
@@ -65,12 +67,12 @@ def step_all(w: Table, h: float, linear: Any) -> int:
         a0, g0 = w[A0 * W + lane], w[G0 * W + lane]
         a1 = w[SCALE * W + lane] * w[RA * W + lane] + w[OFFSET * W + lane]
         g1 = w[GRAVITY * W + lane] + w[VSCALE * W + lane] * w[RV * W + lane]
-        p1, p2, u1, u2, work = rk4(
-            w, lane, q1, q2, v1, v2, w[X1 * W + lane], w[X2 * W + lane], h, a0, a1, g0, g1, linear
-        )
+        x1s, x2s = w[X1 * W + lane], w[X2 * W + lane]
+        p1, p2, u1, u2, work = rk4(w, lane, q1, q2, v1, v2, x1s, x2s, h, a0, a1, g0, g1, linear)
         x1, x2, m1, m2, d1, d2 = contact(w, lane, p1, p2, u1, u2, a1, g1, linear)
         w[Q1S * W + lane], w[Q2S * W + lane] = q1, q2
         w[V1S * W + lane], w[V2S * W + lane] = v1, v2
+        w[X1S * W + lane], w[X2S * W + lane] = x1s, x2s
         w[Q1 * W + lane], w[Q2 * W + lane] = p1, p2
         w[V1 * W + lane], w[V2 * W + lane] = u1, u2
         w[X1 * W + lane], w[X2 * W + lane] = x1, x2

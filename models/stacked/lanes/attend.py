@@ -171,9 +171,7 @@ def attend(
             over = (i + f) * h
         elif not shaken and result[lane, R_CLOSED] == 0.0:
             a, g = w[OFFSET * W + slot], w[GRAVITY * W + slot]
-            body = overturned(
-                system, given, lane, result[lane, R_SIDE_1], result[lane, R_SIDE_2], q1, q2, v1, v2, a, g
-            )
+            body = overturned(given, lane, result[lane, R_SIDE_1], result[lane, R_SIDE_2], q1, q2, v1, v2, a, g)
         if body > 0:
             result[lane, OVERTURNED_2] = over
             if body == 1:

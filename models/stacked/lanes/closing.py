@@ -8,7 +8,7 @@ from models.lanes.compiler import called
 from models.stacked.account import IMPACTS_BASE, IMPACTS_TOP, LOST_BASE, LOST_TOP
 from models.stacked.lanes.bookkeeping import configure, note
 from models.stacked.lanes.choice import choose
-from models.stacked.lanes.corners import impulses, motion
+from models.stacked.lanes.corners import impulses, kinetic_energy, motion
 from models.stacked.lanes.impact import imposed, land
 from models.stacked.lanes.rows import LOG_IMPACT, LOG_REST, P_CALM_1, P_CALM_2, R_SIDE_1, R_SIDE_2
 
@@ -53,7 +53,7 @@ def close(
         n1, n2 = choose(system, n1, n2, False)
     k1 = n1 if n1 != 0.0 else 1.0
     k2 = n2 if n2 != 0.0 else 1.0
-    lost = energy - impulses(system, given, lane, k1, k2, q1, q2, after[2], after[3], linear)
+    lost = energy - kinetic_energy(given, lane, k1, k2, q1, q2, after[2], after[3], linear)
     if joint == 0:
         result[lane, IMPACTS_BASE] += 1.0
         result[lane, LOST_BASE] += lost

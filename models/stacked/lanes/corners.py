@@ -6,10 +6,10 @@ those of `models.stacked.equation` and `models.stacked.impact`.
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 from models.lanes.compiler import called, inlined
+from models.lanes.elementary import sine_cosine
 from models.stacked.lanes.rows import (
     P_B1,
     P_B2,
@@ -84,7 +84,9 @@ def turns(q1: float, q2: float, linear: Any) -> tuple[float, float, float, float
     """Sines and cosines of theta_1 and theta_2."""
     if linear is not None:
         return q1, 1.0, q1 + q2, 1.0
-    return math.sin(q1), math.cos(q1), math.sin(q1 + q2), math.cos(q1 + q2)
+    sine_1, cosine_1 = sine_cosine(q1)
+    sine_2, cosine_2 = sine_cosine(q1 + q2)
+    return sine_1, cosine_1, sine_2, cosine_2
 
 
 UPRIGHT = (0.0, 1.0, 0.0, 1.0)
@@ -116,6 +118,16 @@ def motion(
             m11, m12, _, m22 = products(given, lane, still, still)
             system[k, 0], system[k, 1], system[k, 2] = m11, m12, m22
             system[k, 3], system[k, 4] = f1, f2
+
+
+@inlined
+def kinetic_energy(
+    given: Table, lane: int, s1: float, s2: float, q1: float, q2: float, v1: float, v2: float, linear: Any
+) -> float:  # fmt: skip
+    """In J, about the pivots s1, s2 (1 or -1)."""
+    v = vectors(given, lane, s1, s2, turns(q1, q2, linear) if linear is None else UPRIGHT, 1.0)
+    m11, m12, _, m22 = products(given, lane, v, v)
+    return 0.5 * (m11 * v1 * v1 + m22 * v2 * v2) + m12 * v1 * v2
 
 
 @called

@@ -14,11 +14,13 @@ from models.stacked.lanes.bookkeeping import configure, note, raise_peaks
 from models.stacked.lanes.choice import choose, held
 from models.stacked.lanes.closing import close
 from models.stacked.lanes.corners import line, motion
-from models.stacked.lanes.locate import inputs, locate, look, onset, part
+from models.stacked.lanes.locate import closing, inputs, look, onset, opening, part
 from models.stacked.lanes.rows import (
     A0,
     DEMAND_1,
     DEMAND_2,
+    FREE_1,
+    FREE_2,
     G0,
     LIMIT_1,
     LOG_CHANGE,
@@ -39,7 +41,9 @@ from models.stacked.lanes.rows import (
     WORK,
     WORK_STEP,
     X1,
+    X1S,
     X2,
+    X2S,
     W,
 )  # fmt: skip
 
@@ -49,10 +53,10 @@ AHEAD = 1e-6
 
 
 @inlined
-def demand(w: Table, slot: int, base: float, top: float) -> None:
+def demand(w: Table, slot: int, demands: tuple[float, float]) -> None:
     """Keep the largest friction demands."""
-    w[DEMAND_1 * W + slot] = max(w[DEMAND_1 * W + slot], base)
-    w[DEMAND_2 * W + slot] = max(w[DEMAND_2 * W + slot], top)
+    w[DEMAND_1 * W + slot] = max(w[DEMAND_1 * W + slot], demands[0])
+    w[DEMAND_2 * W + slot] = max(w[DEMAND_2 * W + slot], demands[1])
 
 
 @inlined
@@ -96,7 +100,8 @@ def one_step(
     """Advance a lane over step i from its state at the start of the step, whatever happens in it."""
     q1, q2 = w[Q1S * W + slot], w[Q2S * W + slot]
     v1, v2 = w[V1S * W + slot], w[V2S * W + slot]
-    f, rounds = 0.0, 0
+    f, rounds, joint = 0.0, 0, 0
+    x = (0.0, 0.0)
     known = w[LIMIT_1 * W + slot] > 0.0
     if not known and result[lane, R_CLOSED] == 0.0:
         # the ground has jumped: the closed joints answer before the step
@@ -120,30 +125,36 @@ def one_step(
             note(log, count, lane, (i + f) * h, LOG_ONSET, 1.0 if result[lane, R_SIDE_1] != 0.0 else 2.0)
         share = 1.0 - f
         state = (q1, q2, v1, v2)
-        x1, x2, _, _, d1, d2 = look(w, slot, state, record, i, f, linear)
-        if f > 0.0 or not known:
-            demand(w, slot, d1, d2)
         if known and rounds == 1:
+            second, started = (w[X1S * W + slot], w[X2S * W + slot]), (0.0, 0.0)
             end = (w[Q1 * W + slot], w[Q2 * W + slot], w[V1 * W + slot], w[V2 * W + slot])
-            m1, m2 = w[MARGIN_1 * W + slot], w[MARGIN_2 * W + slot]
-            work = w[WORK_STEP * W + slot]
+            x, margins = (w[X1 * W + slot], w[X2 * W + slot]), (w[MARGIN_1 * W + slot], w[MARGIN_2 * W + slot])
+            demands, work = (0.0, 0.0), w[WORK_STEP * W + slot]
         else:
-            end, m1, m2, work = part(w, slot, state, (x1, x2), record, i, f, share, h, linear)
+            second, started, demands = look(w, slot, state, record, i, f, linear)
+            demand(w, slot, demands)
+            end, x, margins, demands, work = part(w, slot, state, second, record, i, f, share, h, linear)
         joint = -1
-        if m1 < 0.0:
-            joint = 0
-            share, end, m2, work = locate(w, slot, 0, state, (x1, x2), end, m1, record, i, f, share, h, linear)
-        if m2 < 0.0:
-            joint = 1
-            share, end, m1, work = locate(w, slot, 1, state, (x1, x2), end, m2, record, i, f, share, h, linear)
+        for k in range(2):
+            if margins[k] < 0.0:
+                joint = k
+                if (w[FREE_1 * W + slot] if k == 0 else w[FREE_2 * W + slot]) > 0.0:
+                    share, end, x, margins, demands, work = closing(
+                        w, slot, k, state, second, end, x, record, i, f, share, h, linear
+                    )
+                else:
+                    if known and rounds == 1:
+                        _, started, _ = look(w, slot, state, record, i, f, linear)
+                    share, end, x, margins, demands, work = opening(
+                        w, slot, k, state, second, started[k], margins[k], record, i, f, share, h, linear
+                    )
         raise_peaks(result, lane, state, end, share * h)
+        demand(w, slot, demands)
         w[WORK * W + slot] += work
-        f = f + share if joint >= 0 else 1.0
         q1, q2, v1, v2 = end
         if joint < 0:
             break
-        _, _, _, _, d1, d2 = look(w, slot, end, record, i, f, linear)
-        demand(w, slot, d1, d2)
+        f += share
         time = (i + f) * h
         side = result[lane, R_SIDE_1] if joint == 0 else result[lane, R_SIDE_2]
         if side == 0.0:
@@ -159,8 +170,7 @@ def one_step(
             given, result, w, system, lane, slot, joint, q1, q2, v1, v2, a, g, time, log, count, linear
         )  # fmt: skip
     w[Q1 * W + slot], w[Q2 * W + slot], w[V1 * W + slot], w[V2 * W + slot] = q1, q2, v1, v2
-    x1, x2, _, _, d1, d2 = look(w, slot, (q1, q2, v1, v2), record, i, 1.0, linear)
-    w[X1 * W + slot], w[X2 * W + slot] = x1, x2
     w[A0 * W + slot], w[G0 * W + slot] = inputs(w, slot, record, i, 1.0)
-    if result[lane, R_CLOSED] == 0.0:
-        demand(w, slot, d1, d2)
+    if joint >= 0:
+        x, _, _ = look(w, slot, (q1, q2, v1, v2), record, i, 1.0, linear)
+    w[X1 * W + slot], w[X2 * W + slot] = x

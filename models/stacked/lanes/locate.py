@@ -6,10 +6,11 @@ from typing import Any
 
 from models.lanes.compiler import called, inlined
 from models.stacked.lanes.equation import contact, rk4
-from models.stacked.lanes.rows import FREE_1, FREE_2, GRAVITY, OFFSET, P_LEFT, P_RIGHT, SCALE, SIDE_1, SIDE_2, VSCALE, W
+from models.stacked.lanes.rows import GRAVITY, OFFSET, P_LEFT, P_RIGHT, SCALE, SIDE_1, SIDE_2, VSCALE, W
 
 Table = Any
 State = tuple[float, float, float, float]
+Pair = tuple[float, float]
 NONE = 2.0
 """A fraction of the step that never comes."""
 LATE = 1e-6
@@ -74,110 +75,107 @@ def next_onset(
 @called
 def look(
     w: Table, slot: int, state: State, record: Table, i: int, f: float, linear: Any
-) -> tuple[float, float, float, float, float, float]:  # fmt: skip
-    """`contact` of a state at fraction f of step i."""
+) -> tuple[Pair, Pair, Pair]:
+    """`contact` of a state at fraction f of step i: q'', margins and friction demands of both joints."""
     a, g = inputs(w, slot, record, i, f)
-    return contact(w, slot, state[0], state[1], state[2], state[3], a, g, linear)
+    x1, x2, m1, m2, d1, d2 = contact(w, slot, state[0], state[1], state[2], state[3], a, g, linear)
+    return (x1, x2), (m1, m2), (d1, d2)
 
 
 @called
 def part(
-    w: Table, slot: int, state: State, second: tuple[float, float], record: Table, i: int, f: float, share: float,
-    h: float, linear: Any,
-) -> tuple[State, float, float, float]:  # fmt: skip
-    """State, margins of both joints and work after ``share`` of step i from its fraction f."""
+    w: Table, slot: int, state: State, second: Pair, record: Table, i: int, f: float, share: float, h: float,
+    linear: Any,
+) -> tuple[State, Pair, Pair, Pair, float]:  # fmt: skip
+    """State, q'', margins, demands and work after ``share`` of step i from its fraction f."""
     a0, g0 = inputs(w, slot, record, i, f)
     a1, g1 = inputs(w, slot, record, i, f + share)
     q1, q2, v1, v2, work = rk4(
         w, slot, state[0], state[1], state[2], state[3], second[0], second[1], share * h, a0, a1, g0, g1, linear
     )
-    end = (q1, q2, v1, v2)
-    _, _, m1, m2, _, _ = look(w, slot, end, record, i, f + share, linear)
-    return end, m1, m2, work
+    x1, x2, m1, m2, d1, d2 = contact(w, slot, q1, q2, v1, v2, a1, g1, linear)
+    return (q1, q2, v1, v2), (x1, x2), (m1, m2), (d1, d2), work
 
 
 @inlined
-def hermite_root(q: float, v: float, q_end: float, v_end: float, step: float) -> float:
-    """Fraction of the step at which the cubic through both ends passes zero (q_end beyond it)."""
-    c = 3.0 * (q_end - q) - step * (2.0 * v + v_end)
-    d = 2.0 * (q - q_end) + step * (v + v_end)
+def hermite_root(q: float, v: float, x: float, q_end: float, v_end: float, x_end: float, step: float) -> float:
+    """Fraction of the step at which the quintic through both ends passes zero (q_end beyond it)."""
+    c1, c2 = step * v, 0.5 * step * step * x
+    d = q_end - q - c1 - c2
+    e = step * v_end - c1 - 2.0 * c2
+    b = step * step * x_end - 2.0 * c2
+    c3, c4, c5 = 10.0 * d - 4.0 * e + 0.5 * b, 7.0 * e - 15.0 * d - b, 6.0 * d - 3.0 * e + 0.5 * b
     f = 1.0
     for _ in range(4):
-        value = q + f * (step * v + f * (c + f * d))
-        slope = step * v + f * (2.0 * c + 3.0 * d * f)
+        value = q + f * (c1 + f * (c2 + f * (c3 + f * (c4 + f * c5))))
+        slope = c1 + f * (2.0 * c2 + f * (3.0 * c3 + f * (4.0 * c4 + f * 5.0 * c5)))
         if slope * q_end <= 0.0:
             break
         f -= value / slope
     return f
 
 
-@inlined
-def pick(joint: int, pair: tuple[float, float]) -> float:
-    return pair[0] if joint == 0 else pair[1]
+@called
+def closing(
+    w: Table, slot: int, joint: int, state: State, second: Pair, end: State, second_end: Pair, record: Table, i: int,
+    f: float, rest: float, h: float, linear: Any,
+) -> tuple[float, State, Pair, Pair, Pair, float]:  # fmt: skip
+    """Share of the step until ``joint`` closes; state, q'', margins, demands and work there.
+
+    It has closed by ``rest`` of the step. Newton within a bracket on the step itself, from the root of
+    the interpolant; the last correction, under 1e-7 of the step, is applied to the state.
+    """
+    side = w[SIDE_1 * W + slot] if joint == 0 else w[SIDE_2 * W + slot]
+    low, high = 0.0, rest
+    share = rest * hermite_root(
+        state[joint], state[joint + 2], second[joint], end[joint], end[joint + 2], second_end[joint], rest * h
+    )
+    if not low < share < high:
+        share = 0.5 * rest
+    while True:
+        found, x, margins, demands, work = part(w, slot, state, second, record, i, f, share, h, linear)
+        opening, v = margins[joint], side * found[joint + 2]
+        if opening < 0.0:
+            high = share
+        else:
+            low = share
+        if v < 0.0 and abs(opening) <= -1e-7 * v * h:
+            more = -opening / (v * h)
+            t = more * h
+            moved = (
+                found[0] + t * found[2], found[1] + t * found[3], found[2] + t * x[0], found[3] + t * x[1],
+            )  # fmt: skip
+            return share + more, moved, x, margins, demands, work
+        if high - low <= 1e-14:
+            return share, found, x, margins, demands, work
+        trial = share - opening / (v * h) if v < 0.0 else -1.0
+        share = trial if low < trial < high else 0.5 * (low + high)
 
 
 @called
-def locate(
-    w: Table, slot: int, joint: int, state: State, second: tuple[float, float], end: State, margin: float,
-    record: Table, i: int, f: float, rest: float, h: float, linear: Any,
-) -> tuple[float, State, float, float]:  # fmt: skip
-    """Share of the step until ``joint`` closes or opens; state, margin of the other joint and work there.
+def opening(
+    w: Table, slot: int, joint: int, state: State, second: Pair, first: float, last: float, record: Table, i: int,
+    f: float, rest: float, h: float, linear: Any,
+) -> tuple[float, State, Pair, Pair, Pair, float]:  # fmt: skip
+    """Share of the step until the closed ``joint`` opens; state, q'', margins, demands and work there.
 
-    ``margin`` < 0 is that after ``rest`` of the step. Newton within a bracket on the step itself for a
-    joint that closes; its last correction, under 1e-7 of the step, is applied to the state. False
-    position (Illinois) for one that opens, to a moment `LATE` of the last: from there on it does open,
-    and a late opening costs only the square of the delay.
+    ``first`` and ``last`` < 0 are its margins at the start and after ``rest`` of the step. False
+    position (Illinois), to a moment `LATE` of the last: from there on it does open, and a late opening
+    costs only the square of the delay.
     """
-    closing = (w[FREE_1 * W + slot] if joint == 0 else w[FREE_2 * W + slot]) > 0.0
-    side = w[SIDE_1 * W + slot] if joint == 0 else w[SIDE_2 * W + slot]
-    low, high, late = 0.0, rest, 0.0
-    low_margin, high_margin = 0.0, margin
-    if closing:
-        share = rest * hermite_root(
-            pick(joint, (state[0], state[1])), pick(joint, (state[2], state[3])),
-            pick(joint, (end[0], end[1])), pick(joint, (end[2], end[3])), rest * h,
-        )  # fmt: skip
-    else:
-        _, _, m1, m2, _, _ = look(w, slot, state, record, i, f, linear)
-        late = -LATE * margin
-        low_margin = max(0.0, pick(joint, (m1, m2)))
-        high_margin = margin + late
-        share = rest * low_margin / (low_margin - margin)
-    if not low < share < high:
-        share = 0.5 * rest
-    found, other, work = state, 0.0, 0.0
-    for _ in range(60):
-        found, m1, m2, work = part(w, slot, state, second, record, i, f, share, h, linear)
-        now, other = pick(joint, (m1, m2)), pick(joint, (m2, m1))
-        if closing:
-            v = side * pick(joint, (found[2], found[3]))
-            if now < 0.0:
-                high = share
-            else:
-                low = share
-            if v < 0.0 and abs(now) <= -1e-7 * v * h:
-                more = -now / (v * h)
-                k = more / share
-                found = (
-                    found[0] + more * h * found[2],
-                    found[1] + more * h * found[3],
-                    found[2] + (found[2] - state[2]) * k,
-                    found[3] + (found[3] - state[3]) * k,
-                )
-                return share + more, found, other, work
-            trial = share - now / (v * h) if v < 0.0 else -1.0
-        else:
-            past = now + late
-            if abs(past) <= 0.1 * late:
-                break
-            if past < 0.0:
-                high, high_margin = share, past
-                low_margin *= 0.5
-            else:
-                low, low_margin = share, past
-                high_margin *= 0.5
-            trial = low + (high - low) * low_margin / (low_margin - high_margin)
-        if high - low <= 1e-14:
-            break
+    late = -LATE * last
+    low, high = 0.0, rest
+    m_low, m_high = max(0.0, first) + late, last + late
+    while True:
+        trial = low + (high - low) * m_low / (m_low - m_high)
         share = trial if low < trial < high else 0.5 * (low + high)
-    return share, found, other, work
+        found, x, margins, demands, work = part(w, slot, state, second, record, i, f, share, h, linear)
+        past = margins[joint] + late
+        if abs(past) <= 0.1 * late or high - low <= 1e-14:
+            return share, found, x, margins, demands, work
+        if past < 0.0:
+            high, m_high = share, past
+            m_low *= 0.5
+        else:
+            low, m_low = share, past
+            m_high *= 0.5

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from models.lanes.compiler import called
-from models.stacked.lanes.corners import impulses, turns, vectors
+from models.stacked.lanes.corners import kinetic_energy, turns, vectors
 from models.stacked.lanes.rows import P_B1, P_B2, P_D1, P_D2, P_H1, P_H2, P_M1, P_M2, P_TALL
 
 Table = Any
@@ -14,8 +14,7 @@ Table = Any
 
 @called
 def overturned(
-    system: Table, given: Table, lane: int, s1: float, s2: float, q1: float, q2: float, v1: float, v2: float,
-    a: float, g: float,
+    given: Table, lane: int, s1: float, s2: float, q1: float, q2: float, v1: float, v2: float, a: float, g: float
 ) -> int:  # fmt: skip
     """1 for the wall (and what stands on it), 2 for the upper block, 0 for none: what cannot come back."""
     m1, m2 = given[lane, P_M1], given[lane, P_M2]
@@ -23,7 +22,7 @@ def overturned(
     c2 = s2 if s2 != 0.0 else 1.0
     v = vectors(given, lane, c1, c2, turns(q1, q2, None), 1.0)
     pivot = c1 * given[lane, P_B1]
-    energy = impulses(system, given, lane, c1, c2, q1, q2, v1, v2, None)
+    energy = kinetic_energy(given, lane, c1, c2, q1, q2, v1, v2, None)
     energy += g * (m1 * v[1] + m2 * v[5]) + a * (m1 * (pivot + v[0]) + m2 * (pivot + v[4]))
     whole = math.sqrt(a * a + g * g)
     if s1 != 0.0 and s1 * (g * v[0] - a * v[1]) > 0.0 and s1 * v1 > 0.0:

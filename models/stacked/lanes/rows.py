@@ -17,6 +17,7 @@ W = 16
 Q1, Q2, V1, V2 = 0, 1, 2, 3
 Q1S, Q2S, V1S, V2S = 4, 5, 6, 7
 X1, X2 = 8, 9  # q'' at the present time
+X1S, X2S = 43, 44  # and at the start of the step
 A0, G0 = 10, 11  # base acceleration and apparent gravity at the present time
 RA, RV = 12, 13  # record, horizontal and vertical, at the end of the step
 SCALE, OFFSET, GRAVITY, VSCALE = 14, 15, 16, 17
@@ -34,7 +35,7 @@ DEMAND_1, DEMAND_2 = 36, 37  # largest |H|/N
 WORK, WORK_STEP = 38, 39  # work lost in the couple over M: in all, in this step
 MARGIN_1, MARGIN_2 = 40, 41  # negative: the joint has opened or closed in the step
 FLAG = 42
-N_WORK = 43
+N_WORK = 45
 
 # --- given: constants of a lane
 (
