@@ -45,11 +45,11 @@ class Fitted:
         return "low" if self.u[index] <= low + slack else "high" if self.u[index] >= high - slack else ""
 
 
-def fit(misfit: Misfit, u: FloatArray, states: FloatArray, iterations: int = ITERATIONS) -> Fitted:
-    """The minimum of the loss next to (u, states); windows that are stuck start again from scattered states."""
-    found = _descend(misfit, u, states, iterations)
+def fit_thoroughly(misfit: Misfit, u: FloatArray, states: FloatArray) -> Fitted:
+    """The minimum; windows that are stuck there start again from scattered states."""
+    found = fit(misfit, u, states)
     scattered = scatter(found)
-    return found if scattered is None else _descend(misfit, found.u, scattered, iterations)
+    return found if scattered is None else fit(misfit, found.u, scattered)
 
 
 def scatter(found: Fitted) -> FloatArray | None:
@@ -69,7 +69,8 @@ def scatter(found: Fitted) -> FloatArray | None:
     return np.where(better[:, None], trials[pick, np.arange(pick.size)], found.states)
 
 
-def _descend(misfit: Misfit, u: FloatArray, states: FloatArray, iterations: int) -> Fitted:
+def fit(misfit: Misfit, u: FloatArray, states: FloatArray, iterations: int = ITERATIONS) -> Fitted:
+    """The minimum of the loss next to (u, states)."""
     u = clip(misfit.unknowns, np.asarray(u, float))
     window = misfit.losses(misfit.residuals([misfit.point(u, states)]))[0]
     loss = float(window.sum()) + misfit.prior(u)

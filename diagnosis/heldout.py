@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.fit import fit
+from diagnosis.fit import fit_thoroughly
 from diagnosis.measured import Measured
 from diagnosis.memory import counted
 from diagnosis.misfit import Misfit
@@ -48,7 +48,7 @@ def frozen(explanation: Explanation, measured: Measured) -> tuple[Point, FloatAr
     states = measured.states
     for _ in range(2):
         alone = Misfit(predictor, sensor_noise_only(predictor), (), fixed)
-        states = fit(alone, np.zeros(0), states).states
+        states = fit_thoroughly(alone, np.zeros(0), states).states
         point = alone.point(np.zeros(0), states)
         predictor = replace(predictor, measured=counted(predictor, point))
     return point, predictor.predict([point])[0]

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis.candidates import Candidate
-from diagnosis.fit import ITERATIONS, Fitted, fit
+from diagnosis.fit import ITERATIONS, Fitted, fit, fit_thoroughly
 from models.base import FloatArray
 
 
@@ -72,10 +72,10 @@ def without(explanation: Explanation, candidate: Candidate, iterations: int = IT
     return Explanation(rest, fit(misfit, base.u[keep], base.states, iterations))
 
 
-def again(explanation: Explanation, iterations: int = ITERATIONS) -> Explanation:
-    """The same fit taken further from where it stands."""
+def again(explanation: Explanation) -> Explanation:
+    """The same fit taken further from where it stands, stuck windows started again."""
     f = explanation.fitted
-    return replace(explanation, fitted=fit(f.misfit, f.u, f.states, iterations))
+    return replace(explanation, fitted=fit_thoroughly(f.misfit, f.u, f.states))
 
 
 def from_other(explanation: Explanation, other: Explanation, iterations: int = ITERATIONS) -> Explanation:

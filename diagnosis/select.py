@@ -29,6 +29,11 @@ PER_SHAPE = 2.0
 WORTH = 4.0
 """Screen statistic under which a refit is not tried (the strongest FEWEST are tried all the same)."""
 FEWEST, MOST = 5, 16
+QUICK = 6
+"""Iterations of a first refit; the strongest are then taken further."""
+THOROUGH = 3
+NEAR, NEAR_ADEQUATE = 0.2, 0.6
+"""Share of the leader's gain from which a single is refitted from the leader's optimum too."""
 FIRST_POOL = 4
 SECOND_TRIES = 8
 MOST_EFFECTS = 3
@@ -107,7 +112,9 @@ def _refits(
 ) -> list[Explanation]:
     """The strongest of a screen, each from its starts."""
     wanted = [s for k, s in enumerate(scores) if s.starts and (k < fewest or s.statistic >= WORTH)][:most]
-    return [best_of([extend(explanation, s.candidate, start) for start in s.starts]) for s in wanted]
+    fits = [best_of([extend(explanation, s.candidate, start, QUICK) for start in s.starts]) for s in wanted]
+    fits.sort(key=adjusted)
+    return [again(e) if k < THOROUGH else e for k, e in enumerate(fits)]
 
 
 def _singles(found: Search, progress: Progress) -> None:
@@ -117,19 +124,22 @@ def _singles(found: Search, progress: Progress) -> None:
     wanted = [s for k, s in enumerate(found.scores) if s.starts and (k < FEWEST or s.statistic >= WORTH)][:MOST]
     for k, entry in enumerate(wanted):
         progress(f"refitting {entry.candidate.name}", 0.15 + 0.3 * k / len(wanted))
-        fits = [extend(found.base, entry.candidate, start) for start in entry.starts]
+        fits = [extend(found.base, entry.candidate, start, QUICK) for start in entry.starts]
         found.singles.append(best_of(fits))
     found.singles.sort(key=adjusted)
-    if not found.singles or found.gain(found.singles[0]) < MISSING:
+    if not found.singles:
         return
-    leader = found.singles[0]
+    leader = found.singles[0] = again(found.singles[0])
+    if found.gain(leader) < MISSING:
+        return
     restarted = from_other(found.base, leader)
     if restarted.loss < found.base.loss - 1.0:
         found.base = restarted
-    for k, single in enumerate(found.singles):
-        if single is not leader and found.gain(single) > 0.1 * found.gain(leader):
-            found.singles[k] = from_other(single, leader)
-    found.singles = sorted((again(e, 6) for e in found.singles), key=adjusted)
+    near = NEAR_ADEQUATE if adequate(leader) else NEAR
+    for k, single in enumerate(found.singles[1:], start=1):
+        if found.gain(single) > near * found.gain(leader):
+            found.singles[k] = from_other(again(single), leader)
+    found.singles.sort(key=adjusted)
     recounted = with_memory(found.singles[0])
     if recounted.loss < found.singles[0].loss - 1.0:
         found.singles[0] = recounted
@@ -184,7 +194,7 @@ def _pairs(found: Search, progress: Progress) -> None:
     pair = min(pairs, key=adjusted)
     alone = best_of([e for e in found.singles if e.names[0] in pair.names] or [found.best])
     if adjusted(found.best) - adjusted(pair) >= MISSING and survives(alone, pair):
-        found.best = again(pair, 6)
+        found.best = again(pair)
 
 
 def _extended(found: Search, explanation: Explanation) -> list[Explanation]:

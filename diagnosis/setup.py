@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import models
-from diagnosis.fit import Fitted, fit
+from diagnosis.fit import Fitted, fit_thoroughly
 from diagnosis.measured import Measured, arrange
 from diagnosis.memory import counted
 from diagnosis.misfit import Misfit
@@ -46,4 +46,4 @@ def base_fit(specimen: Specimen, measured: Measured, seed: int = 0) -> Fitted:
     point = plain.point(first.u, first.states)
     whitening = with_base_noise(predictor, responses(predictor, point))
     predictor = replace(predictor, measured=counted(predictor, point))
-    return fit(Misfit(predictor, whitening, unknowns, plain.fixed), first.u, first.states)
+    return fit_thoroughly(Misfit(predictor, whitening, unknowns, plain.fixed), first.u, first.states)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from diagnosis.fit import Fitted, fit
+from diagnosis.fit import Fitted, fit_thoroughly
 from diagnosis.misfit import Misfit
 from diagnosis.unknowns import Unknown, clip
 from models.base import FloatArray
@@ -22,7 +22,7 @@ def calibrate_base(misfit: Misfit, seed: int = 0) -> Fitted:
     ranged = [i for i, unknown in enumerate(misfit.unknowns) if unknown.prior is None]
     if ranged:
         starts = _best_of_sobol(misfit, ranged, starts[0], seed)
-    fits = [fit(misfit, u, states) for u in starts]
+    fits = [fit_thoroughly(misfit, u, states) for u in starts]
     return min(fits, key=lambda f: f.loss)
 
 
