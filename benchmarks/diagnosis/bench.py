@@ -8,7 +8,7 @@ from pathlib import Path
 from benchmarks.diagnosis import report, runner
 from benchmarks.diagnosis.answers import Answering, diagnosed
 from benchmarks.diagnosis.files import write_json
-from benchmarks.diagnosis.suite import suite
+from benchmarks.diagnosis.suite import place, suite
 
 
 def bench(
@@ -24,23 +24,23 @@ def bench(
 ) -> dict[str, object]:
     """Run the first ``cases`` of the suite of ``seed`` (default: all), score what is answered, write it.
 
-    Cases lie in ``folder``/diagnosis/<seed>/cases, answers in .../<run>; another ``run`` answers the same
-    cases anew. Every answer is on disk before a key is opened. Returns the figures, written to
+    Cases lie in ``folder``/diagnosis/<seed>-<hash of their makers>/cases, answers in .../<run>; another
+    ``run`` answers the same cases anew. Every answer is on disk before a key is opened. Returns the figures, written to
     ``folder``/diagnosis.json and, with the confusion matrix and a list of wrong answers, beside the answers.
     """
     wishes = suite(seed)[:cases]
-    place = folder / "diagnosis" / str(seed)
-    runner.run_all(wishes, seed, place / "cases", place / run, jobs=jobs, minutes=minutes, say=say, answering=answering)
-    answered = [scored for _, scored in runner.answered(wishes, place / "cases", place / run)]
+    here = place(folder, seed)
+    runner.run_all(wishes, seed, here / "cases", here / run, jobs=jobs, minutes=minutes, say=say, answering=answering)
+    answered = [scored for _, scored in runner.answered(wishes, here / "cases", here / run)]
     figures = {**report.grouped(answered), "seed": seed, "run": run, "asked": len(wishes)}
     if not answered:
         say("no case was answered")
         return figures
     write_json(folder / "diagnosis.json", figures)
-    write_json(place / f"{run}.json", figures)
-    report.draw_confusion(answered, place / f"{run}_confusion.png")
+    write_json(here / f"{run}.json", figures)
+    report.draw_confusion(answered, here / f"{run}_confusion.png")
     wrong = report.wrong(answered)
-    (place / f"{run}_wrong.txt").write_text(wrong + "\n", encoding="utf-8")
+    (here / f"{run}_wrong.txt").write_text(wrong + "\n", encoding="utf-8")
     say(report.table(figures, "1 % noise, nominal size"))
     for title, name in (("3 % noise, half size", "half_size_3_percent"), ("0.5 % noise", "nominal_size_half_percent")):
         part = figures[name]

@@ -29,10 +29,12 @@ from models import get
 from models.base import Mechanism, MechanismParameter
 
 FloatArray = NDArray[np.float64]
+Sensor = Mapping[str, Mapping[str, float]]
+
 STRONG = 10.0
-STARTS = (0.1, 0.5)
-"""Shares of the way from the null to the end of a range that fits start from."""
-EVALUATIONS = 12
+STARTS = (0.2,)
+"""Shares of the way from the null to an end of the range that fits start from."""
+EVALUATIONS = 10
 
 
 def answer(folder: Path) -> dict[str, Any]:
@@ -91,28 +93,27 @@ class _Fit:
         """From ``share`` of the way between the null and ``end`` (the parameter, or its inverse)."""
         count = len(self.free)
         start, low, high = [0.0] * count, [-3.0] * count, [3.0] * count
+        step = [1e-2] * count
         if mechanism is not None:
             primary = mechanism.parameters[0]
             null = _inner(primary.null, primary)
             start.append(null + share * (end - null))
-            bounds = sorted(_inner(v, primary) for v in (primary.low, primary.high))
-            low.append(min(bounds[0], null))
-            high.append(max(bounds[1], null))
-
-        def values(x: FloatArray) -> dict[str, float]:
-            if mechanism is None:
-                return {}
-            primary = mechanism.parameters[0]
-            given = {p.name: p.null for p in mechanism.parameters[1:]}
-            return {**given, primary.name: _outer(float(x[count]), primary)}
+            bounds = sorted([_inner(primary.low, primary), _inner(primary.high, primary), null])
+            low.append(bounds[0])
+            high.append(bounds[-1])
+            step.append(1e-3 * (bounds[-1] - bounds[0]))
 
         def residual(x: FloatArray) -> FloatArray:
-            return np.concatenate([*self._misfit(x, mechanism, values(x)), x[:count]])
+            return self._misfit(x[None], mechanism)[0]
+
+        def jacobian(x: FloatArray) -> FloatArray:
+            way = np.where(x + step <= high, 1.0, -1.0) * step
+            all_at_once = self._misfit(np.vstack([x, x + np.diag(way)]), mechanism)
+            return ((all_at_once[1:] - all_at_once[0]) / way[:, None]).T
 
         x = np.clip(start, np.add(low, 1e-9), np.subtract(high, 1e-9))
-        step = np.array([1e-2] * count + [1e-3] * (len(start) - count))
         found: OptimizeResult = least_squares(
-            residual, x, bounds=(low, high), x_scale="jac", diff_step=step, max_nfev=EVALUATIONS
+            residual, x, jac=jacobian, bounds=(low, high), x_scale="jac", max_nfev=EVALUATIONS
         )
         samples = sum(r.time.size for r in self.recordings)
         mean = 2.0 * found.cost / samples
@@ -126,27 +127,43 @@ class _Fit:
             parameters = {primary.name: {"low95": at[0], "estimate": at[1], "high95": at[2], "unit": primary.unit}}
         return {"bic": bic, "parameters": parameters}
 
-    def _misfit(self, x: FloatArray, mechanism: Mechanism | None, given: Mapping[str, float]) -> list[FloatArray]:
-        specimen = self.specimen
-        base = dict(specimen.parameters)
-        for name, change in zip(self.free, x, strict=False):
-            base[name] *= 1.0 + specimen.tolerance[name] * float(change)
-        sensor = {}
-        if mechanism is not None and mechanism.name in SENSORS:
-            sensor = {mechanism.name: given}
-        elif mechanism is not None:
-            base |= {f"{mechanism.name}.{name}": value for name, value in given.items()}
-        left = []
+    def _misfit(self, points: FloatArray, mechanism: Mechanism | None) -> FloatArray:
+        """Residuals over the noise of both recordings, and the priors: (points, samples + priors)."""
+        count, specimen = len(self.free), self.specimen
+        base: dict[str, Any] = dict(specimen.parameters)
+        for k, name in enumerate(self.free):
+            base[name] = base[name] * (1.0 + specimen.tolerance[name] * points[:, k])
+        if mechanism is None:
+            return self._run(base, {}, points)
+        primary = mechanism.parameters[0]
+        given = {p.name: p.null for p in mechanism.parameters[1:]}
+        values = np.array([_outer(float(v), primary) for v in points[:, count]])
+        if mechanism.name not in SENSORS:
+            named = {**given, primary.name: values}
+            return self._run({**base, **{f"{mechanism.name}.{k}": v for k, v in named.items()}}, {}, points)
+        rows = []
+        for k, value in enumerate(values.tolist()):
+            alone = {name: v[k : k + 1] if np.ndim(v) else v for name, v in base.items()}
+            rows.append(self._run(alone, {mechanism.name: {**given, primary.name: value}}, points[k : k + 1])[0])
+        return np.array(rows)
+
+    def _run(self, values: Mapping[str, Any], sensor: Sensor, points: FloatArray) -> FloatArray:
+        specimen, lanes = self.specimen, len(points)
+        left_out = "vertical_acceleration.kappa" in values
+        parts = []
         for recording, sigma in zip(self.recordings, self.noise, strict=True):
-            vertical = "vertical_acceleration.kappa" in base
-            shaking = moved(recording.shaking(bool(specimen.vertical) or vertical), sensor)
-            if vertical:
-                shaking = replace(shaking, vertical_acts=False)
-            run = self.model.simulate(base, shaking)
-            true = {"rotation_1": run.channels["rotation_1"][: recording.time.size]}
-            said = recorded(true, sensor, recording.time_step, recording.channels["base_acceleration_x"])
-            left.append((recording.channels["rotation_1"] - said["rotation_1"]) / sigma)
-        return left
+            shaking = moved(recording.shaking(bool(specimen.vertical) or left_out), sensor)
+            shaking = replace(shaking, vertical_acts=not left_out)
+            still = {"rotation_1": np.zeros(lanes), "rotation_rate_1": np.zeros(lanes)}
+            ran = self.model.trajectories(
+                values, shaking, first=np.zeros(lanes, np.int64), samples=recording.time.size, initial=still
+            )["rotation_1"]
+            for k in range(lanes if sensor else 0):
+                true = {"rotation_1": ran[k]}
+                measured = recording.channels["base_acceleration_x"]
+                ran[k] = recorded(true, sensor, recording.time_step, measured)["rotation_1"]
+            parts.append((recording.channels["rotation_1"] - ran) / sigma)
+        return np.hstack([*parts, points[:, : len(self.free)]])
 
 
 def _inner(value: float, parameter: MechanismParameter) -> float:

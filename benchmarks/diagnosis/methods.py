@@ -9,7 +9,7 @@ from typing import Any
 from benchmarks.diagnosis import from_rest, report, runner, weak_form
 from benchmarks.diagnosis.answers import Answering
 from benchmarks.diagnosis.files import write_json
-from benchmarks.diagnosis.suite import suite
+from benchmarks.diagnosis.suite import place, suite
 
 METHODS: dict[str, Answering] = {
     "from rest, least squares, BIC": from_rest.answer,
@@ -34,18 +34,18 @@ def compare(
 
     Only cases that all methods answered count. Writes ``out``/diagnosis_methods.json.
     """
-    place = out / "diagnosis" / str(seed)
+    here = place(out, seed)
     wishes = suite(seed)[:cases]
-    folders = {"windows, score test, refit (diagnosis)": place / run}
+    folders = {"windows, score test, refit (diagnosis)": here / run}
     for method, answering in METHODS.items():
-        folders[method] = place / answering.__module__.rpartition(".")[2]
+        folders[method] = here / answering.__module__.rpartition(".")[2]
         say(f"{method}:")
         runner.run_all(
-            wishes, seed, place / "cases", folders[method],
+            wishes, seed, here / "cases", folders[method],
             jobs=jobs, minutes=minutes / len(METHODS), say=say, answering=answering,
         )  # fmt: skip
     answered = {
-        method: {wish.label: scored for wish, scored in runner.answered(wishes, place / "cases", folder)}
+        method: {wish.label: scored for wish, scored in runner.answered(wishes, here / "cases", folder)}
         for method, folder in folders.items()
     }
     answered = {method: found for method, found in answered.items() if found}

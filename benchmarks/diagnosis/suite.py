@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Literal
 
 import numpy as np
@@ -50,6 +52,20 @@ GROUPS = (
     Group(0.03, 0.5, {"null": 30, "single": 78, "pair": 10, "open": 13}),
     Group(0.005, 1.0, {"null": 15, "single": 26}),
 )
+
+
+MAKERS = (
+    "cases", "effects", "instruments", "open_laws", "shakings", "size", "specimens", "suite", "truth",
+)  # fmt: skip
+"""Files that the cases of a seed depend on."""
+
+
+def place(folder: Path, seed: int) -> Path:
+    """Where the cases of ``seed`` and their answers lie: another place when what makes them changes."""
+    digest = hashlib.sha256()
+    for name in MAKERS:
+        digest.update(Path(__file__).with_name(f"{name}.py").read_bytes())
+    return folder / "diagnosis" / f"{seed}-{digest.hexdigest()[:8]}"
 
 
 def suite(seed: int) -> list[Wish]:

@@ -1,0 +1,38 @@
+"""The benchmark in small: one null and one single through making, diagnosing, scoring and resuming."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from benchmarks.diagnosis import weak_form
+from benchmarks.diagnosis.answers import Answering, diagnosed
+from benchmarks.diagnosis.bench import bench
+from benchmarks.diagnosis.suite import place, suite
+
+SEED = 29
+"""Its suite begins with a null and a hidden restitution, both at 1 % noise."""
+
+
+def test_two_cases_from_making_to_figures(tmp_path: Path) -> None:
+    first, second = suite(SEED)[:2]
+    assert {first.kind, second.kind} == {"null", "single"} and first.noise == second.noise == 0.01
+
+    def run(said: list[str], answering: Answering) -> dict:
+        return bench(tmp_path, seed=SEED, cases=2, minutes=10.0, jobs=2, run="a", say=said.append, answering=answering)
+
+    said: list[str] = []
+    figures = run(said, diagnosed)
+    assert figures["failed"] == []
+    assert figures["by_kind"] == {"null": 1, "single": 1}
+    assert (figures["false_alarm"], figures["class_first"]) == (0.0, 1.0), "\n".join(said)
+    assert json.loads((tmp_path / "diagnosis.json").read_text())["by_model"]["housner"]["cases"] == 2
+
+    answers = sorted((place(tmp_path, SEED) / "a").glob("case_*.json"))
+    assert len(answers) == 2
+    before = [path.stat().st_mtime_ns for path in answers]
+    answers[0].unlink()
+    again: list[str] = []
+    run(again, weak_form.answer)
+    assert again[0] == "1 of 2 cases were answered before"
+    assert answers[1].stat().st_mtime_ns == before[1] and answers[0].is_file()
