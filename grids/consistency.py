@@ -51,7 +51,8 @@ def _check_mechanism(mechanism: Mechanism, names: set[str]) -> None:
             "give the one or the other."
         )
     effects = [p.name for p in mechanism.parameters if not p.shape]
-    if effects and not any(f"{mechanism.name}.{effect}" in names for effect in effects):
+    handles = {f"{mechanism.name}.{effect}{joint}" for effect in effects for joint in ("", "_base", "_top")}
+    if effects and not handles & names:
         shape = next(n for n in sorted(names) if n.startswith(f"{mechanism.name}."))
         raise InputError(
             f"'{shape}' only shapes the effect of mechanism '{mechanism.name}', which is off; "
