@@ -30,6 +30,7 @@ def held(system: Table, s1: float, s2: float) -> tuple[float, float]:
 def margin(system: Table, base: float, top: float, s1: float, s2: float) -> float:
     """How far (s1, s2) is from inadmissible, in units of x."""
     least = math.inf
+    x1, x2 = held(system, s1, s2)
     for c1 in (1.0, -1.0):
         if s1 != 0.0 and c1 != s1:
             continue
@@ -38,15 +39,6 @@ def margin(system: Table, base: float, top: float, s1: float, s2: float) -> floa
                 continue
             k = line(c1, c2)
             m11, m12, m22 = system[k, 0], system[k, 1], system[k, 2]
-            x1, x2 = 0.0, 0.0
-            if s1 != 0.0 and s2 != 0.0:
-                scale = 1.0 / (m11 * m22 - m12 * m12)
-                x1 = scale * (m22 * system[k, 3] - m12 * system[k, 4])
-                x2 = scale * (m11 * system[k, 4] - m12 * system[k, 3])
-            elif s1 != 0.0:
-                x1 = system[k, 3] / m11
-            elif s2 != 0.0:
-                x2 = system[k, 4] / m22
             if base == 0.0:
                 free = m11 - m12 * m12 / m22 if s2 != 0.0 else m11
                 pull = -c1 * (system[k, 3] - m12 * x2) / free
