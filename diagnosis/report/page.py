@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 HEADLINES = {
     "missing": "Something is missing from the model: {names}",
-    "cannot_tell_apart": "Something is missing, and these recordings cannot tell what",
+    "cannot_tell_apart": "Something is missing from the model: {names}, or a rival",
     "not_in_library": "Something is missing that is not in the library",
     "nothing_missing": "Nothing is missing from the model",
 }
