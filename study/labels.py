@@ -13,10 +13,9 @@ from numpy.typing import NDArray
 from grids.axes import Axis
 from grids.plan import Plan
 from grids.targets import MOTION, SCALES
-from models.base import Model, Parameter, Quantity
+from models.base import STATUS, Model, Parameter, Quantity
 from study.evaluate import SCALING, lane_groups
 from study.keys import motions_by_name
-from study.status import STATUS
 
 
 @dataclass(frozen=True)
