@@ -13,12 +13,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import models
+from models.base import STATUS
 from models.errors import InputError
 from study.export import export
 from study.open import open_study
 from study.provenance import attribute, sha256
 from study.run import run
-from study.status import STATUS
 from tests.study.plans import plan_text, small_plan
 
 
