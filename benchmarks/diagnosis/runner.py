@@ -63,8 +63,8 @@ def run_all(
 def _outcome(done: Future[str]) -> str:
     try:
         return done.result()
-    except RuntimeError as error:
-        return f"not made: {error}"
+    except Exception as error:  # the case that failed is told, the others go on
+        return f"not made: {type(error).__name__}: {error}"
 
 
 def answered(wishes: Sequence[Wish], cases: Path, answers: Path) -> list[tuple[Wish, Scored]]:
