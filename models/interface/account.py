@@ -37,13 +37,15 @@ class Account:
     def fallen(self) -> bool:
         return not all(math.isnan(t) for t in self.over)
 
-    def sample(self, time: float, q: Sequence[float], v: Sequence[float], a: float, gravity: float) -> None:
-        """A state at ``time`` (s) under a and G."""
+    def sample(
+        self, time: float, q: Sequence[float], v: Sequence[float], hidden: FloatArray, a: float, gravity: float
+    ) -> None:
+        """A state at ``time`` (s) under a and G, with the laws' ``hidden`` state."""
         equation = self.equation
         step = 0.0 if math.isnan(self.time) else time - self.time
-        strips = equation.strips(q, v)
+        strips = equation.strips(q, v, hidden)[:2]
         heights = watch.uplift(equation, q, v)
-        ratios = watch.friction(equation, q, v, equation.acceleration(q, v, a, gravity).tolist(), a, gravity)
+        ratios = watch.friction(equation, q, v, equation.acceleration(q, v, a, gravity, strips).tolist(), a, gravity)
         stored_now = self._stored(q)
         self.kinetic = equation.kinetic(q, v)
         for k in (0, 1):

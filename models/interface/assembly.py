@@ -11,6 +11,7 @@ from models.base import FloatArray, Values
 from models.errors import InputError
 from models.interface import modes
 from models.interface.layered import LayeredWall
+from models.rubber import LAWS
 from models.walls import bodies, lanes_shape
 
 JOINTS = ("base", "top")
@@ -108,4 +109,36 @@ def build(values: Values, options: Mapping[str, str], vertical: bool, size: int 
     for name, mechanism_ in MECHANISMS.items():
         if name in switched:
             wall = mechanism_.acts["interface"](wall, {**mechanism_.nulls, **switched[name]})
+    for joint in wall.rubber_joints:
+        option = f"{joint}_rubber_law"
+        word = options["rubber_law"] if options[option] == "same" else options[option]
+        if word == "as_given":
+            continue
+        if word != "linear" and not any(key.startswith(f"{word}.") for key in wall.laws):
+            raise InputError(f"the rubber law of the {joint} layer is {word}; give {word}.{LAWS[word].parameters[0]}")
+        wall = wall.only_law(joint, word)
+    _check_laws(wall)
     return wall
+
+
+def _check_laws(wall: LayeredWall) -> None:
+    """Refuse laws that cannot carry the wall at rest."""
+    if not wall.laws:
+        return
+    sunk = -modes.static_state(wall)[:, 2:]
+    for joint, u, thickness in zip(JOINTS, sunk.T, (wall.base_thickness, wall.top_thickness), strict=True):
+        if np.any(np.isnan(u)):
+            raise InputError(
+                f"the law of the {joint} layer cannot carry its load at rest: make it stiffer or yield later"
+            )
+        limit = wall.laws.get(f"permanent_set.strain_limit_{joint}")
+        if limit is not None and np.any(limit <= u / thickness):
+            worst = int(np.argmax(u / thickness - limit))
+            raise InputError(
+                f"permanent_set.strain_limit is {limit[worst]:.3g} at the {joint}, not above the strain at rest, "
+                f"{u[worst] / thickness[worst]:.3g}: the layer would sink for ever; give a larger limit"
+            )
+        exponent = wall.laws.get(f"bouc_wen.exponent_{joint}")
+        if exponent is not None and np.any(~np.isin(exponent, (1.0, 2.0, 3.0, 4.0))):
+            odd = exponent[~np.isin(exponent, (1.0, 2.0, 3.0, 4.0))][0]
+            raise InputError(f"bouc_wen.exponent is {odd:g}; give 1, 2, 3 or 4")

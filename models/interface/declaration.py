@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from models.base import Parameter, Quantity
+from models.rubber import LAWS
 from models.walls import ALTERNATIVES as OF_WALLS
 from models.walls import PARAMETERS as OF_WALL
 from models.walls import by_body, by_joint
@@ -60,9 +61,12 @@ OPTIONS: dict[str, tuple[str, ...]] = {
     "kinematics": ("toe_held", "midpoint_held"),
     "dashpot": ("B", "A"),
     "joints": ("both", "base", "top"),
+    "rubber_law": ("as_given", "linear", *LAWS),
+    "base_rubber_law": ("same", "linear", *LAWS),
+    "top_rubber_law": ("same", "linear", *LAWS),
 }
 """``dashpot`` A: may pull while in contact; B: total stress clipped at zero tension. ``joints``: where the
-rubber is; the other joint is bonded."""
+rubber is; the other joint is bonded. ``rubber_law`` as_given: the laws whose parameters are given act."""
 
 OVERTURNED = (
     "overturned when |theta| of a body reaches pi/2, or when at the end of the run its mass centre is past the toe "

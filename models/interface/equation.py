@@ -19,7 +19,9 @@ from typing import NamedTuple
 import numpy as np
 
 from models.base import FloatArray
+from models.interface.fibres import Fibres
 from models.interface.layered import FREE, LayeredWall
+from models.interface.modes import static_state
 from models.interface.strip import Strip, stored, strip
 
 NONE = Strip(0.0, 0.0, 1.0)
@@ -28,6 +30,7 @@ NONE = Strip(0.0, 0.0, 1.0)
 
 Pair = tuple[float, float]
 Four = tuple[float, float, float, float]
+Both = tuple[Strip, Strip]
 
 
 class Kinematics(NamedTuple):
@@ -47,6 +50,10 @@ class Equation:
     def __init__(self, wall: LayeredWall) -> None:
         self.wall = wall.one()
         self.free = FREE[wall.joints]
+        laden = [joint for joint in wall.rubber_joints if wall.laws_at(joint)]
+        self.fibres = {joint: Fibres(wall, joint) for joint in laden}
+        rest = static_state(wall)[0]
+        self.sunk = [float(-rest[2 if joint == "base" else 3]) for joint in laden]
 
     def kinematics(self, q: Sequence[float], v: Sequence[float]) -> Kinematics:
         t1, t2, z1, z2 = q
@@ -77,8 +84,8 @@ class Equation:
         centre_2 = (x1 + xr * c1 + height * s1 + h2 * s2, z1 - xr * s1 + height * c1 + h2 * c2)
         return Kinematics(centre_1, centre_2, jacobian_1, jacobian_2, bias_1, bias_2)
 
-    def strips(self, q: Sequence[float], v: Sequence[float]) -> tuple[Strip, Strip]:
-        """Base and top; a bonded joint carries no strip."""
+    def strips(self, q: Sequence[float], v: Sequence[float], hidden: FloatArray) -> tuple[Strip, Strip, FloatArray]:
+        """Base and top, and the rate of the laws' ``hidden`` state; a bonded joint carries no strip."""
         t1, t2, z1, z2 = q
         w1, w2, z1_rate, z2_rate = v
         wall, turn = self.wall, t2 - t1
@@ -93,7 +100,21 @@ class Equation:
                 wall.top_half_width, wall.top_stiffness, wall.top_damping, z2, math.sin(turn), z2_rate,
                 math.cos(turn) * (w2 - w1), wall.clip,
             )  # fmt: skip
-        return base, top
+        rates = np.zeros_like(hidden)
+        if self.fibres:
+            end = self.fibres["base"].size if "base" in self.fibres else 0
+            if "base" in self.fibres:
+                more, couple, rates[:end] = self.fibres["base"].difference(z1, t1, z1_rate, w1, hidden[:end])
+                base = base._replace(force=base.force + more, moment=base.moment + couple)
+            if "top" in self.fibres:
+                more, couple, rates[end:] = self.fibres["top"].difference(z2, turn, z2_rate, w2 - w1, hidden[end:])
+                top = top._replace(force=top.force + more, moment=top.moment + couple)
+        return base, top, rates
+
+    def relaxed(self) -> FloatArray:
+        """The laws' hidden state after a long rest under gravity."""
+        parts = [fibres.relaxed(sunk) for fibres, sunk in zip(self.fibres.values(), self.sunk, strict=True)]
+        return np.concatenate(parts) if parts else np.zeros(0)
 
     def mass(self, at: Kinematics) -> FloatArray:
         """M (4, 4)."""
@@ -108,11 +129,16 @@ class Equation:
         return np.array(rows)
 
     def balance(
-        self, q: Sequence[float], v: Sequence[float], a: float, gravity: float
+        self,
+        q: Sequence[float],
+        v: Sequence[float],
+        a: float,
+        gravity: float,
+        strips: Both | None = None,
     ) -> tuple[FloatArray, FloatArray]:
-        """M (4, 4) and Q - n (4,)."""
+        """M (4, 4) and Q - n (4,); ``strips``: as found already, else with relaxed laws."""
         at = self.kinematics(q, v)
-        base, top = self.strips(q, v)
+        base, top = strips or self.strips(q, v, self.relaxed())[:2]
         m1, m2 = self.wall.mass_1, self.wall.mass_2
         (x1, z1), (x2, z2) = at.jacobian_1, at.jacobian_2
         along_1, up_1 = m1 * (at.bias_1[0] + a), m1 * (at.bias_1[1] + gravity)
@@ -122,9 +148,16 @@ class Equation:
         left = [forces[i] - along_1 * x1[i] - up_1 * z1[i] - along_2 * x2[i] - up_2 * z2[i] for i in range(4)]
         return self.mass(at), np.array(left)
 
-    def acceleration(self, q: Sequence[float], v: Sequence[float], a: float, gravity: float) -> FloatArray:
+    def acceleration(
+        self,
+        q: Sequence[float],
+        v: Sequence[float],
+        a: float,
+        gravity: float,
+        strips: Both | None = None,
+    ) -> FloatArray:
         """q'' (4,), the bonded coordinates following the free ones."""
-        mass, force = self.balance(q, v, a, gravity)
+        mass, force = self.balance(q, v, a, gravity, strips)
         if self.wall.joints == "both":
             return np.asarray(np.linalg.solve(mass, force), dtype=np.float64)
         free = self.free

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 import numpy as np
 
-from models.base import FloatArray
+from models.base import FloatArray, Values
+from models.rubber import LAWS
+from models.rubber.base import RubberLaw
 
 FREE = {
     "both": np.eye(4),
@@ -30,6 +33,7 @@ class LayeredWall:
     The base acceleration is ``offset + scale a(t)``, the apparent gravity
     G = ``gravity + vertical_factor scale a_z(t)``.
 
+    ``laws``: parameters of rubber laws beside the linear one, by ``law.parameter_joint``.
     ``joints`` (both, base, top): where the rubber is. ``toe_held``: the toe, not the midpoint of an
     uplifted underside is held laterally. ``clip``: dashpot law B.
     """
@@ -53,6 +57,7 @@ class LayeredWall:
     gravity: FloatArray
     offset: FloatArray
     vertical_factor: FloatArray
+    laws: Mapping[str, FloatArray] = field(default_factory=dict)
     joints: str = "both"
     toe_held: bool = True
     clip: bool = True
@@ -71,7 +76,8 @@ class LayeredWall:
 
     def _map(self, function: Any) -> LayeredWall:
         chosen = {f.name: getattr(self, f.name) for f in fields(self)}
-        return self._with({k: function(v) for k, v in chosen.items() if isinstance(v, np.ndarray)})
+        changes: dict[str, Any] = {k: function(v) for k, v in chosen.items() if isinstance(v, np.ndarray)}
+        return self._with({**changes, "laws": {k: function(v) for k, v in self.laws.items()}})
 
     def take(self, index: Any) -> LayeredWall:
         """The walls selected by an index array or mask."""
@@ -80,6 +86,40 @@ class LayeredWall:
     def one(self, lane: int = 0) -> Any:
         """One wall with plain floats in its fields, for code that runs a wall at a time."""
         return self._map(lambda values: float(values[lane]))
+
+    @property
+    def rubber_joints(self) -> tuple[str, ...]:
+        """The joints that have a layer."""
+        return ("base", "top") if self.joints == "both" else (self.joints,)
+
+    def with_law(self, name: str, values: Values) -> LayeredWall:
+        """With the law's parameters at every joint that has rubber; ``parameter_joint`` goes before ``parameter``."""
+        given = {
+            f"{name}.{parameter}_{joint}": np.broadcast_to(
+                np.asarray(values.get(f"{parameter}_{joint}", values[parameter]), dtype=np.float64), self.mass_1.shape
+            ).copy()
+            for parameter in LAWS[name].parameters
+            for joint in self.rubber_joints
+        }
+        return self._with({"laws": {**self.laws, **given}})
+
+    def only_law(self, joint: str, name: str) -> LayeredWall:
+        """With no law beside the linear one at ``joint`` but ``name``."""
+        kept = {k: v for k, v in self.laws.items() if not k.endswith(f"_{joint}") or k.startswith(f"{name}.")}
+        return self._with({"laws": kept})
+
+    def laws_at(self, joint: str) -> list[tuple[RubberLaw, dict[str, FloatArray]]]:
+        """The laws at ``joint`` with their numbers, in the order of the family."""
+        shared = {
+            "stiffness": self.base_stiffness if joint == "base" else self.top_stiffness,
+            "thickness": self.base_thickness if joint == "base" else self.top_thickness,
+        }
+        found = []
+        for name, law in LAWS.items():
+            own = {p: self.laws[key] for p in law.parameters if (key := f"{name}.{p}_{joint}") in self.laws}
+            if own:
+                found.append((law, {**shared, **own}))
+        return found
 
     @property
     def mass(self) -> FloatArray:

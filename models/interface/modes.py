@@ -13,15 +13,20 @@ import numpy as np
 
 from models.base import FloatArray
 from models.interface.layered import FREE, LayeredWall
+from models.rubber.base import static_compression
 
 
 def static_state(wall: LayeredWall) -> FloatArray:
-    """q ``(n, 4)`` of the linear law at rest under gravity; a bonded joint does not sink."""
+    """q ``(n, 4)`` at rest under gravity, relaxed; nan where a law cannot carry the load, 0 at a bonded joint."""
     state = np.zeros((wall.size, 4))
-    if wall.joints != "top":
-        state[:, 2] = -wall.mass * wall.gravity / (2.0 * wall.base_stiffness * wall.base_half_width)
-    if wall.joints != "base":
-        state[:, 3] = -wall.mass_2 * wall.gravity / (2.0 * wall.top_stiffness * wall.top_half_width)
+    for joint, column, mass, half, stiffness, thickness in (
+        ("base", 2, wall.mass, wall.base_half_width, wall.base_stiffness, wall.base_thickness),
+        ("top", 3, wall.mass_2, wall.top_half_width, wall.top_stiffness, wall.top_thickness),
+    ):
+        if joint in wall.rubber_joints:
+            load, laws = mass * wall.gravity / (2.0 * half), wall.laws_at(joint)
+            most = np.maximum(thickness, 4.0 * load / stiffness)
+            state[:, column] = -static_compression(load, laws, stiffness, most) if laws else -load / stiffness
     return state
 
 

@@ -57,7 +57,7 @@ def run(
 
 
 class _Run:
-    """State of one run: y = (p, p', works of both strips), p the free coordinates."""
+    """State of one run: y = (p, p', works of both strips, hidden states), p the free coordinates."""
 
     def __init__(self, wall: LayeredWall, grid: FloatArray, rtol: float, *, may_rest: bool) -> None:
         self.equation = Equation(wall)
@@ -73,28 +73,30 @@ class _Run:
         free_sizes = np.array([float(wall.slenderness[0]), float(wall.slenderness_2[0]), *scale[2:]])[self.pick]
         fastest = math.sqrt(abs(float(modes.at_rest(wall).squares[0, 0])))
         weight = float(wall.mass[0] * wall.gravity[0] * wall.base_half_width[0] * wall.slenderness[0])
-        self.atol = rtol * np.concatenate([free_sizes, free_sizes * fastest, (weight, weight)])
+        hidden = np.full(self.equation.relaxed().size, float(np.max(scale)))
+        self.atol = rtol * np.concatenate([free_sizes, free_sizes * fastest, (weight, weight), hidden])
         self.period = 2.0 * math.pi / fastest
         self.account = Account(self.equation)
 
     def begin(self, state: FloatArray) -> None:
-        self.y = np.concatenate([state[:4][self.pick], state[4:][self.pick], (0.0, 0.0)])
+        self.y = np.concatenate([state[:4][self.pick], state[4:][self.pick], (0.0, 0.0), self.equation.relaxed()])
 
     def spread(self, y: FloatArray) -> tuple[FloatArray, FloatArray]:
         """q and q' of the free coordinates."""
-        return self.free @ y[: self.half], self.free @ y[self.half : -2]
+        return self.free @ y[: self.half], self.free @ y[self.half : 2 * self.half]
 
     def advance(self, piece: Piece, shaken: bool) -> None:
         """Through one straight piece of the ground's motion; ``shaken`` is false after the record's end."""
         self.time = piece.start
-        change = np.empty(2 * self.half + 2)
+        change, works = np.empty(self.y.size), 2 * self.half
 
         def derivative(time: float, y: FloatArray) -> FloatArray:
             q, v = (part.tolist() for part in self.spread(y))
-            second = self.equation.acceleration(q, v, *piece.at(time))
-            change[: self.half] = y[self.half : 2 * self.half]
-            change[self.half : -2] = second[self.pick]
-            change[-2:] = power(self.equation.strips(q, v), q, v)
+            base, top, rates = self.equation.strips(q, v, y[works + 2 :])
+            change[: self.half] = y[self.half : works]
+            change[self.half : works] = self.equation.acceleration(q, v, *piece.at(time), (base, top))[self.pick]
+            change[works : works + 2] = power((base, top), q, v)
+            change[works + 2 :] = rates
             return change.copy()
 
         def fall(time: float, y: FloatArray) -> float:
@@ -131,8 +133,9 @@ class _Run:
         fine = np.interp(np.arange(4 * (nodes.size - 1) + 1) / 4.0, np.arange(nodes.size), nodes)
         for time, y in zip(fine.tolist(), dense(fine).T, strict=True):
             q, v = self.spread(y)
-            self.account.work = y[-2:].tolist()
-            self.account.sample(time, q.tolist(), v.tolist(), *piece.at(time))
+            works = 2 * self.half
+            self.account.work = y[works : works + 2].tolist()
+            self.account.sample(time, q.tolist(), v.tolist(), y[works + 2 :], *piece.at(time))
             self.most = max(self.most, self.account.kinetic)
             if self.account.kinetic >= CALM * self.most:
                 self.calm_since = time
@@ -140,7 +143,7 @@ class _Run:
         if stop > self.written:
             y = dense(self.grid[self.written : stop])
             self.history[:4, self.written : stop] = self.free @ y[: self.half]
-            self.history[4:, self.written : stop] = self.free @ y[self.half : -2]
+            self.history[4:, self.written : stop] = self.free @ y[self.half : 2 * self.half]
             self.written = stop
 
     def _at_rest(self) -> bool:

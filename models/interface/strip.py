@@ -8,13 +8,12 @@ and is clipped at zero under law B.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 OPEN = (0.0, 0.0)
 
 
-@dataclass(frozen=True)
-class Strip:
+class Strip(NamedTuple):
     """Resultants of one strip: N (N, up), M (N m, restoring) and the share of the length that presses."""
 
     force: float

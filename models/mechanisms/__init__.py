@@ -5,12 +5,17 @@ from __future__ import annotations
 from models.base import Mechanism
 from models.mechanisms import (
     added_stiffness,
+    bouc_wen,
     bounce,
     coulomb_damping,
     crushing,
     degradation,
     eccentricity,
     flexible_joint,
+    hardening,
+    maxwell,
+    mullins,
+    permanent_set,
     pivot_inset,
     quadratic_damping,
     restitution,
@@ -44,6 +49,11 @@ MECHANISMS: dict[str, Mechanism] = {
         coulomb_damping,
         quadratic_damping,
         degradation,
+        hardening,
+        maxwell,
+        bouc_wen,
+        mullins,
+        permanent_set,
         wall_flexibility,
     )
 }

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from models.interface.declaration import CALM
+from models.interface.lanes.fibres import FIBRES, N_HIDDEN, fibres_all
 from models.interface.lanes.rows import (
     CLOCK,
     FLAG,
@@ -24,6 +25,7 @@ from models.interface.lanes.rows import (
     LOG_OVER_2,
     LOG_REST,
     LOG_UPLIFT_B,
+    N_LAW,
     N_WORK,
     Q_PERIOD,
     Q_STEPS,
@@ -64,17 +66,18 @@ def note_joints(log: Table, count: Table, was: Table, w: Table, lane: int, slot:
 @compiled
 def advance(
     record: Table, time_step: float, shaken: int, first: Table, last: Table, given: Table, result: Table,
-    sampled: bool, trace: Table, log: Table, count: Table, may_rest: bool, mixed: Any,
+    sampled: bool, trace: Table, log: Table, count: Table, may_rest: bool, mixed: Any, laws: Any,
 ) -> int:  # fmt: skip
     """Run every lane from sample ``first`` to ``last``; returns the number of lane-steps computed.
 
     ``record`` (2, n): a and a_z every ``time_step`` (s), linear between; the shaking ends at sample
     ``shaken``. Each lane takes its own number of steps per sample. ``trace`` (n, m, 8) takes q and q'
     at every sample if ``sampled``. ``log`` (n, k, 2) takes uplifts, closings, rest and overturning.
-    ``may_rest``: a lane ends when it has come to rest.
+    ``may_rest``: a lane ends when it has come to rest. ``mixed``, ``laws``: see `step`.
     """
     n = given.shape[0]
     w = np.zeros(N_WORK * W)
+    x, p = np.zeros((2 * FIBRES * N_HIDDEN, W)), np.zeros((2, N_LAW, W))
     was = np.zeros((2, W))
     at, bound, of = np.zeros(W, np.int64), np.zeros(W, np.int64), np.full(W, -1)
     sub, per, window = np.zeros(W, np.int64), np.ones(W, np.int64), np.zeros(W, np.int64)
@@ -96,7 +99,7 @@ def advance(
                     waiting += 1
                     at[slot], bound[slot], window[slot] = first[lane], first[lane], -1
                     per[slot] = int(given[lane, Q_STEPS])
-                    start(given, result, w, lane, slot, record, at[slot], time_step, logged, mixed)
+                    start(given, result, w, lane, slot, record, at[slot], time_step, logged, x, p, mixed, laws)
                 if at[slot] < bound[slot]:
                     break
                 i = at[slot]
@@ -104,7 +107,7 @@ def advance(
                     for k in range(8):
                         trace[lane, i - first[lane], k] = w[(T1 + k) * W + slot]
                 if i == shaken and i > first[lane]:
-                    consistent(w, slot, 0.0, 0.0, mixed)
+                    consistent(w, slot, 0.0, 0.0, mixed, laws)
                 ended = i >= last[lane]
                 if i >= shaken and i >= window[slot]:
                     if at_rest(w, slot, CALM) and window[slot] >= 0:
@@ -144,7 +147,9 @@ def advance(
             if logged:
                 for slot in range(W):
                     was[0, slot], was[1, slot] = w[LIFT_B * W + slot], w[LIFT_T * W + slot]
-            flagged = step_all(w, mixed)
+            if laws is not None:
+                fibres_all(w, x, p, laws)
+            flagged = step_all(w, mixed, laws)
             steps += active
             if flagged > 0:
                 for slot in range(W):

@@ -17,10 +17,12 @@ W = 16
     POWER_B, POWER_T, WORK_B, WORK_T, ALONG_B, ALONG_T, ACROSS_B, ACROSS_T,
     # bodies: peaks, kinetic energy (peak so far, peak of this window)
     PEAK_1, PEAK_2, KINETIC, WINDOW,
+    # strips at the predictor, and what the fibres add: force, moment, slopes times 1, x, x^2
+    FZ_B, FZ_T, FS_B, FS_T, FY_B, FY_T, FR_B, FR_T, FN_B, FN_T, FM_B, FM_T, F1_B, F1_T, F2_B, F2_T, F3_B, F3_T,
     # whether uplifts and closings are to be logged, whether the lane needs attention
     LOGGED, FLAG,
-) = range(66)  # fmt: skip
-N_WORK = 66
+) = range(84)  # fmt: skip
+N_WORK = 84
 CONSTANTS = tuple(range(SCALE, FREE_T + 1))
 """Rows copied from ``given``, in this order."""
 
@@ -29,7 +31,15 @@ N_CONSTANTS = len(CONSTANTS)
 Q_STATE = N_CONSTANTS
 Q_PERIOD = N_CONSTANTS + 8
 Q_STEPS = N_CONSTANTS + 9
-N_GIVEN = N_CONSTANTS + 10
+# compression and zeta at rest, base and top; the laws' numbers, base and top
+Q_RELAXED = N_CONSTANTS + 10
+Q_LAWS = Q_RELAXED + 4
+(
+    P_HARDENING, P_ARM, P_ARM_DECAY, P_ARM_GAIN, P_HYSTERETIC, P_YIELD, P_ORDER, P_SOFTENING, P_PER_STRAIN, P_SET,
+    P_LIMIT,
+) = range(11)  # fmt: skip
+N_LAW = 11
+N_GIVEN = Q_LAWS + 2 * N_LAW
 
 # --- result: what a lane has gathered
 (

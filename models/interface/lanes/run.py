@@ -14,6 +14,7 @@ from models.interface import modes
 from models.interface.declaration import STATES
 from models.interface.lanes import rows as r
 from models.interface.lanes.advance import advance
+from models.interface.lanes.laws import fill_laws, laws_in_use
 from models.interface.layered import LayeredWall
 from models.shaking import Shaking
 
@@ -103,6 +104,7 @@ def run(
     begun = {k: np.broadcast_to(np.asarray(v, float), (n,)) for k, v in (initial or {}).items()}
     given = given_table(wall, scale, begun)
     given[:, r.Q_STEPS] = substeps(wall, shaking.time_step) * refinement
+    fill_laws(given, wall, shaking.time_step / given[:, r.Q_STEPS])
     result, trace = np.zeros((n, r.N_RESULT)), np.zeros((n, samples, 8))
     written, count = np.zeros((n, log, 2)), np.zeros(n, np.int64)
     steps = advance(
@@ -110,6 +112,7 @@ def run(
         np.zeros(n, np.int64) if first is None else first,
         np.full(n, record.shape[1] - 2) if last is None else last,
         given, result, samples > 0, trace, written, count, may_rest, None if wall.joints == "both" else True,
+        laws_in_use(wall),
     )  # fmt: skip
     events = tuple(
         tuple((t, *EVENTS[int(kind)]) for t, kind in lane[: min(k, log)])

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from models.interface.lanes import rows as r
+from models.interface.lanes.fibres import fibres_at_start
 from models.interface.lanes.rows import (
     A1,
     ACROSS_B,
@@ -69,7 +70,7 @@ NEVER = 1e300
 
 
 @called
-def consistent(w: Table, slot: int, a: float, v: float, mixed: Any) -> None:
+def consistent(w: Table, slot: int, a: float, v: float, mixed: Any, laws: Any) -> None:
     """Give a lane the acceleration of its state under the record's values a and v, nothing else."""
     kept = np.empty(N_WORK)
     for row in range(N_WORK):
@@ -79,7 +80,7 @@ def consistent(w: Table, slot: int, a: float, v: float, mixed: Any) -> None:
         w[row * W + slot] = 0.0
     # a step of no length from no acceleration: (1 - am) M d = Q - n
     w[STEP * W + slot] = 0.0
-    step_one(w, slot, mixed)
+    step_one(w, slot, mixed, laws)
     for row in range(A1, A1 + 4):
         kept[row] = (1.0 - AM) * w[row * W + slot]
     kept[r.POWER_B], kept[r.POWER_T] = w[r.POWER_B * W + slot], w[r.POWER_T * W + slot]
@@ -114,7 +115,7 @@ def stored_top(w: Table, slot: int) -> float:
 @called
 def start(
     given: Table, result: Table, w: Table, lane: int, slot: int, record: Table, sample: int, time_step: float,
-    logged: bool, mixed: Any,
+    logged: bool, x: Table, p: Table, mixed: Any, laws: Any,
 ) -> None:  # fmt: skip
     """Put a lane in a slot, in its initial state, at ``sample`` of the record."""
     for row in range(N_WORK):
@@ -129,7 +130,9 @@ def start(
     w[ACROSS_B * W + slot], w[ACROSS_T * W + slot] = 1.0, 1.0
     n = given[lane, Q_STEPS]
     w[STEP * W + slot], w[CLOCK * W + slot] = time_step / n, sample * n
-    consistent(w, slot, record[0, sample], record[1, sample], mixed)
+    if laws is not None:
+        fibres_at_start(w, x, p, given, lane, slot, laws)
+    consistent(w, slot, record[0, sample], record[1, sample], mixed, laws)
     w[PEAK_1 * W + slot], w[PEAK_2 * W + slot] = abs(w[T1 * W + slot]), abs(w[T2 * W + slot])
     w[ONSET_B * W + slot] = sample * n if w[LIFT_B * W + slot] > 0.0 else NEVER
     w[ONSET_T * W + slot] = sample * n if w[LIFT_T * W + slot] > 0.0 else NEVER

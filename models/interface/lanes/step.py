@@ -10,7 +10,8 @@ the error left is of third order in h, like that of the rule. The stiff axial mo
 rule (am < 0) and sets no bound on h. M, n and Q are the full nonlinear ones of
 `models.interface.equation`, written in the wall's frame: x along the wall's top, z along its axis.
 
-``mixed`` is None or True (one of the joints is bonded): a compiled variant holds only what is in use.
+``mixed`` is None or True (one of the joints is bonded), ``laws`` None or a tuple of such, one for each
+rubber law: a compiled variant holds only what is in use.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ BETA = 0.25 * (1.0 - AM) ** 2
 
 
 @inlined
-def step_one(w: Table, i: int, mixed: Any) -> bool:
+def step_one(w: Table, i: int, mixed: Any, laws: Any) -> bool:
     """One step of the lane in slot i; returns whether it needs attention."""
     h = w[r.STEP * W + i]
     # --- predictor and inputs at the end of the step
@@ -93,6 +94,9 @@ def step_one(w: Table, i: int, mixed: Any) -> bool:
     nt, mt, d1t, d2t, d3t = resultants(
         w[r.BT * W + i], clip, z2, kt * z2 + ct * y2, side_t, lean_t, slope_t, steep_t, inverse * below
     )
+    if laws is not None:
+        nb, mb = nb + w[r.FN_B * W + i], mb + w[r.FM_B * W + i]
+        nt, mt = nt + w[r.FN_T * W + i], mt + w[r.FM_T * W + i]
     # --- residual Q - n - M a, and the matrix (1 - am) M + gamma h C + beta h^2 K
     couple = mt * cr
     f1 = free_b * couple - mb * c1 - i1 * o1 - px * jx - pz * jz - ux * ax - uz * az
@@ -100,7 +104,15 @@ def step_one(w: Table, i: int, mixed: Any) -> bool:
     f3 = nb - free_b * pz - ux * cx - uz * cz
     f4 = nt - free_t * uz
     eb, et = h * (GAMMA * cb + BETA * h * kb), h * (GAMMA * ct + BETA * h * kt)
-    d2b, d3b, d2t, d3t = eb * d2b * c1, eb * d3b * c1 * c1, et * d2t * cr, et * d3t * cr * cr
+    w[r.SHARE_B * W + i] = min(w[r.SHARE_B * W + i], d1b)
+    w[r.SHARE_T * W + i] = min(w[r.SHARE_T * W + i], d1t)
+    d1b, d2b, d3b, d1t, d2t, d3t = eb * d1b, eb * d2b, eb * d3b, et * d1t, et * d2t, et * d3t
+    if laws is not None:
+        near = BETA * h * h
+        d1b, d1t = d1b + near * w[r.F1_B * W + i], d1t + near * w[r.F1_T * W + i]
+        d2b, d2t = d2b + near * w[r.F2_B * W + i], d2t + near * w[r.F2_T * W + i]
+        d3b, d3t = d3b + near * w[r.F3_B * W + i], d3t + near * w[r.F3_T * W + i]
+    d2b, d3b, d2t, d3t = d2b * c1, d3b * c1 * c1, d2t * cr, d3t * cr * cr
     n1, n2 = (1.0 - AM) * m1, (1.0 - AM) * m2
     w11 = (1.0 - AM) * i1 + n1 * (jx * jx + jz * jz) + n2 * (ax * ax + az * az) + d3b + free_b * d3t
     w12 = n2 * (ax * bx + az * bz) - free_b * d3t
@@ -109,9 +121,9 @@ def step_one(w: Table, i: int, mixed: Any) -> bool:
     w22 = (1.0 - AM) * i2 + n2 * (bx * bx + bz * bz) + d3t
     w23 = n2 * (bx * cx + bz * cz)
     w24 = free_t * n2 * bz - d2t
-    w33 = n1 + n2 + eb * d1b
+    w33 = n1 + n2 + d1b
     w34 = free_t * n2 * cz
-    w44 = n2 + et * d1t
+    w44 = n2 + d1t
     if mixed is not None:
         w44 += (1.0 - free_t) * n1
     # --- z1, z2 eliminated first, all over their determinant
@@ -143,8 +155,6 @@ def step_one(w: Table, i: int, mixed: Any) -> bool:
     # --- what is read off it
     sr += cr * near * (d2 - d1)
     turn = v2 - v1
-    w[r.SHARE_B * W + i] = min(w[r.SHARE_B * W + i], d1b)
-    w[r.SHARE_T * W + i] = min(w[r.SHARE_T * W + i], d1t)
     steady = read_joints(w, i, z1, z2, s1 + c1 * near * d1, sr, y1, y2, c1 * v1, cr * turn)
     moves_x, moves_z = ax * v1 + bx * v2 + cx * y1, az * v1 + bz * v2 + cz * y1 + free_t * y2
     goes_x, goes_z = jx * v1, jz * v1 + free_b * y1
@@ -155,8 +165,8 @@ def step_one(w: Table, i: int, mixed: Any) -> bool:
     uz += m2 * grown * (az * d1 + bz * d2 + cz * d3 + free_t * d4)
     px += m1 * grown * jx * d1 + ux * c1 + uz * s1
     pz += m1 * grown * (jz * d1 + free_b * d3) + uz * c1 - ux * s1
-    power_b = (nb - eb * d1b * d3 + d2b * d1) * y1 - (mb * c1 - d2b * d3 + d3b * d1) * v1
-    power_t = (nt - et * d1t * d4 + d2t * (d2 - d1)) * y2 - (couple - d2t * d4 + d3t * (d2 - d1)) * turn
+    power_b = (nb - d1b * d3 + d2b * d1) * y1 - (mb * c1 - d2b * d3 + d3b * d1) * v1
+    power_t = (nt - d1t * d4 + d2t * (d2 - d1)) * y2 - (couple - d2t * d4 + d3t * (d2 - d1)) * turn
     account_joints(w, i, h, px, pz, ux, uz, power_b, power_t)
     attention = not (stands & steady)
     w[r.FLAG * W + i] = 1.0 if attention else 0.0
@@ -164,9 +174,9 @@ def step_one(w: Table, i: int, mixed: Any) -> bool:
 
 
 @inlined
-def step_all(w: Table, mixed: Any) -> int:
+def step_all(w: Table, mixed: Any, laws: Any) -> int:
     """One step of all lanes; returns how many need attention."""
     flagged = 0
     for i in range(W):
-        flagged += 1 if step_one(w, i, mixed) else 0
+        flagged += 1 if step_one(w, i, mixed, laws) else 0
     return flagged

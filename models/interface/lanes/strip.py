@@ -19,7 +19,8 @@ def slopes(k: float, c: float, s: float, s_rate: float) -> tuple[float, float, f
     side = 1.0 if s >= 0.0 else -1.0
     lean = abs(s) + TINY
     y1 = k * lean + c * side * s_rate
-    return side, lean, y1, y1 if y1 * y1 > TINY else TINY
+    tiny = TINY if y1 >= 0.0 else -TINY
+    return side, lean, y1, y1 if y1 * y1 > TINY else tiny
 
 
 @inlined

@@ -1,0 +1,15 @@
+"""Laws of rubber in compression: what each adds to the linear spring and dashpot, one file a law.
+
+s = k u + sum of what the laws add + c u', u the compression (m), s the stress per metre of contact (N m-1);
+the total is clipped at zero under dashpot law B. Over an open fibre u = 0 and its history goes on.
+"""
+
+from __future__ import annotations
+
+from models.rubber import bouc_wen, hardening, maxwell, mullins, permanent_set
+from models.rubber.base import RubberLaw
+
+LAWS: dict[str, RubberLaw] = {
+    module.LAW.name: module.LAW for module in (hardening, maxwell, bouc_wen, mullins, permanent_set)
+}
+"""The laws that differ from the linear one."""
