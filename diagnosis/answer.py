@@ -78,6 +78,8 @@ def _assemble(
     about = forces(chosen.fitted)
     tested = tests(about)
     flagged = flags(tested)
+    if found.outside is not None:
+        flagged = (found.outside, *(f for f in flagged if f.parameter != found.outside.parameter))
     adequate = misfit_per_sample(chosen) < INADEQUATE
     near = rivals(found)
     verdict = _verdict(found, near, bool(flagged), adequate)

@@ -20,6 +20,7 @@ from models.base import FloatArray
 FLAG = 15.0
 SCAN_FLAG = 25.0
 """The scan over time tries many intervals."""
+SPELL = "a spell of time"
 SHORTEST_SPELL = 2
 """Windows."""
 
@@ -84,7 +85,7 @@ def tests(forces: Forces) -> list[Tested]:
             sign = float(np.sign(score) * np.sign(along))
             found.append(Tested(kind, depends_on, score**2 / information / excess, sign))
         spell = _spell(forces, plain) / excess
-        found.append(Tested(kind, "a spell of time", spell * FLAG / SCAN_FLAG))
+        found.append(Tested(kind, SPELL, spell * FLAG / SCAN_FLAG))
     return sorted(found, key=lambda t: -t.statistic)
 
 

@@ -76,7 +76,7 @@ class Forces:
         if kind == "restitution":
             hats = np.zeros(self.weight.shape[:2])
             for w, sample, rate in self.jumps:
-                k = int(np.clip(round(sample), 0, self.rotation.shape[1] - 1))
+                k = int(sample)  # still on the side it comes from
                 share = self.weight[w, :, k]
                 hats[w] += rate * modulation[w, k] * share / max(share.sum(), 1e-12) / HAT
         else:

@@ -16,7 +16,9 @@ from diagnosis.candidates import Candidate
 from diagnosis.fit import fit
 from diagnosis.memory import counted
 from diagnosis.null import Null, null_distribution
+from diagnosis.outside import outside
 from diagnosis.refit import Explanation, again, best_of, extend, from_other, gain_by_window, without
+from diagnosis.result import Constancy
 from diagnosis.screen import Score, open_screen, score
 from models.base import FloatArray
 
@@ -31,11 +33,11 @@ WORTH = 4.0
 FEWEST, MOST = 5, 16
 QUICK = 6
 """Iterations of a first refit; the strongest are then taken further."""
-THOROUGH = 3
+THOROUGH = 2
 NEAR, NEAR_ADEQUATE = 0.2, 0.6
 """Share of the leader's gain from which a single is refitted from the leader's optimum too."""
-FIRST_POOL = 4
-SECOND_TRIES = 8
+FIRST_POOL = 3
+SECOND_TRIES = 6
 MOST_EFFECTS = 3
 POOL_SHARE = 0.25
 """Singles whose gain is this share of the best one's are tried as parts of a pair."""
@@ -56,6 +58,8 @@ class Search:
     singles: list[Explanation] = field(default_factory=list)
     tried: list[Explanation] = field(default_factory=list)
     best: Explanation | None = None
+    outside: Constancy | None = None
+    """A force outside the library that explains what the best single leaves."""
 
     @property
     def chosen(self) -> Explanation:
@@ -183,6 +187,11 @@ def pool(found: Search) -> list[Explanation]:
 
 
 def _pairs(found: Search, progress: Progress) -> None:
+    if found.best is not None and not adequate(found.best):
+        progress("comparing with laws outside the library", 0.48)
+        found.outside = outside(found.best, seconds(found, found.best))
+        if found.outside is not None:
+            return
     singles = pool(found)
     pairs: list[Explanation] = []
     for k, single in enumerate(singles):
@@ -197,11 +206,15 @@ def _pairs(found: Search, progress: Progress) -> None:
         found.best = again(pair)
 
 
+def seconds(found: Search, explanation: Explanation) -> list[Score]:
+    """The screen of mechanisms of other classes beside those of an explanation."""
+    others = [c for c in found.candidates if c.effect_class not in explanation.classes]
+    return score(open_screen(explanation.fitted), others)
+
+
 def _extended(found: Search, explanation: Explanation) -> list[Explanation]:
     """Refits with one more mechanism of another class."""
-    others = [c for c in found.candidates if c.effect_class not in explanation.classes]
-    scores = score(open_screen(explanation.fitted), others)
-    return _refits(explanation, scores, 2, SECOND_TRIES)
+    return _refits(explanation, seconds(found, explanation), 2, SECOND_TRIES)
 
 
 def _more(found: Search, progress: Progress) -> None:

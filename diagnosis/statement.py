@@ -75,6 +75,8 @@ _NOUNS = ("side", "amplitude of the motion", "size of the rotation", "time", "di
 def _flag(found: Constancy) -> str:
     if found.depends_on in _NOUNS:
         return f"What acts is a {KINDS[found.parameter]} that depends on the {found.depends_on}."
+    if found.depends_on == "a spell of time":
+        return f"What acts is a {KINDS[found.parameter]} that is there for a while only."
     if found.depends_on.startswith("recording"):
         return f"What acts is a {KINDS[found.parameter]} that is not the same in {found.depends_on}."
     return f"What acts is a {KINDS[found.parameter]} ({found.depends_on})."
