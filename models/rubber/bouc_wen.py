@@ -26,8 +26,17 @@ def rate(u: FloatArray, u_rate: FloatArray, h: FloatArray, p: Numbers) -> FloatA
 
 def relaxed(u: FloatArray, p: Numbers) -> FloatArray:
     """The virgin curve from zeta(0) = 0; n = 1: u_y (1 - exp(-u/u_y)), n = 2: u_y tanh(u/u_y)."""
-    limit, n = p["yield_compression"], p["exponent"]
-    x = np.asarray(u / limit)
+    limit = p["yield_compression"]
+    x, n = np.broadcast_arrays(np.asarray(u / limit), p["exponent"])
+    found = np.where(n == 1.0, -np.expm1(-x), np.tanh(x))
+    other = ~np.isin(n, (1.0, 2.0))
+    if np.any(other):
+        found[other] = _integrated(x[other], n[other])
+    return np.asarray(limit * found)
+
+
+def _integrated(x: FloatArray, n: FloatArray) -> FloatArray:
+    """zeta/u_y at u/u_y = x on the virgin curve, by the classical Runge-Kutta rule."""
     step, found = x / STEPS, np.zeros_like(x)
     for _ in range(STEPS):
         k1 = 1.0 - found**n
@@ -35,7 +44,7 @@ def relaxed(u: FloatArray, p: Numbers) -> FloatArray:
         k3 = 1.0 - (found + 0.5 * step * k2) ** n
         k4 = 1.0 - (found + step * k3) ** n
         found = np.clip(found + step / 6.0 * (k1 + 2.0 * (k2 + k3) + k4), 0.0, 1.0)
-    return np.asarray(limit * np.where(n == 1.0, -np.expm1(-x), np.where(n == 2.0, np.tanh(x), found)))
+    return found
 
 
 LAW = RubberLaw("bouc_wen", ("post_yield_ratio", "yield_compression", "exponent"), extra, rate, relaxed)

@@ -77,7 +77,7 @@ def advance(
     """
     n = given.shape[0]
     w = np.zeros(N_WORK * W)
-    x, p = np.zeros((2 * FIBRES * N_HIDDEN, W)), np.zeros((2, N_LAW, W))
+    x, p = np.zeros(2 * FIBRES * N_HIDDEN * W), np.zeros(2 * N_LAW * W)
     was = np.zeros((2, W))
     at, bound, of = np.zeros(W, np.int64), np.zeros(W, np.int64), np.full(W, -1)
     sub, per, window = np.zeros(W, np.int64), np.ones(W, np.int64), np.zeros(W, np.int64)

@@ -57,47 +57,52 @@ def fibre(w: Table, x: Table, p: Table, joint: int, f: int, i: int, node: float,
     down = place * w[(r.FS_B + joint) * W + i] - w[(r.FZ_B + joint) * W + i]
     u = max(down, 0.0)
     fast = place * w[(r.FR_B + joint) * W + i] - w[(r.FY_B + joint) * W + i]
-    own = (joint * FIBRES + f) * N_HIDDEN
-    change = u - x[own + COMPRESSION, i]
+    own = (joint * FIBRES + f) * N_HIDDEN * W
+    change = u - x[own + COMPRESSION * W + i]
     middle = u - 0.5 * change
-    x[own + COMPRESSION, i] = u
+    x[own + COMPRESSION * W + i] = u
     more, slope = 0.0, 0.0
     if hardening is not None:
-        grown = p[joint, r.P_HARDENING, i] * u * u
+        grown = p[(joint * r.N_LAW + r.P_HARDENING) * W + i] * u * u
         more += k * u * grown
         slope += 3.0 * k * grown
     if maxwell is not None:
-        gain = p[joint, r.P_ARM_GAIN, i]
-        arm = p[joint, r.P_ARM_DECAY, i] * x[own + ARM, i] + gain * change
-        x[own + ARM, i] = arm
-        more += p[joint, r.P_ARM, i] * arm
-        slope += p[joint, r.P_ARM, i] * gain
+        gain = p[(joint * r.N_LAW + r.P_ARM_GAIN) * W + i]
+        arm = p[(joint * r.N_LAW + r.P_ARM_DECAY) * W + i] * x[own + ARM * W + i] + gain * change
+        x[own + ARM * W + i] = arm
+        more += p[(joint * r.N_LAW + r.P_ARM) * W + i] * arm
+        slope += p[(joint * r.N_LAW + r.P_ARM) * W + i] * gain
     if bouc_wen is not None:
-        zeta = x[own + ZETA, i]
+        zeta = x[own + ZETA * W + i]
+        yielding = p[(joint * r.N_LAW + r.P_YIELD) * W + i]
+        order = p[(joint * r.N_LAW + r.P_ORDER) * W + i]
         way = 1.0 if change >= 0.0 else -1.0
-        loaded = min(max(way * zeta * p[joint, r.P_YIELD, i], 0.0), 1.0)
-        order = p[joint, r.P_ORDER, i]
-        lower = (
-            1.0
-            if order < 1.5
-            else (loaded if order < 2.5 else (loaded * loaded if order < 3.5 else loaded * loaded * loaded))
-        )
-        eased = max(order * lower * p[joint, r.P_YIELD, i] * way * change, 1e-8)
+        loaded = min(max(way * zeta * yielding, 0.0), 1.0)
+        # |zeta/u_y|^(n-1), n = 1, 2, 3, 4
+        second, third = loaded if order > 1.5 else 1.0, loaded if order > 2.5 else 1.0
+        lower = second * third * (loaded if order > 3.5 else 1.0)
+        eased = order * lower * yielding * abs(change) + 1e-8
         part = (1.0 - lower * loaded) * (1.0 - exponential_decay(eased)) / eased
         zeta += change * part
-        x[own + ZETA, i] = zeta
-        more += p[joint, r.P_HYSTERETIC, i] * (zeta - u)
-        slope += p[joint, r.P_HYSTERETIC, i] * (part - 1.0)
+        x[own + ZETA * W + i] = zeta
+        more += p[(joint * r.N_LAW + r.P_HYSTERETIC) * W + i] * (zeta - u)
+        slope += p[(joint * r.N_LAW + r.P_HYSTERETIC) * W + i] * (part - 1.0)
     if mullins is not None:
-        largest = max(x[own + LARGEST, i], u)
-        x[own + LARGEST, i] = largest
-        lost = k * p[joint, r.P_SOFTENING, i] * (1.0 - exponential_decay(largest * p[joint, r.P_PER_STRAIN, i]))
+        largest = max(x[own + LARGEST * W + i], u)
+        x[own + LARGEST * W + i] = largest
+        lost = (
+            k
+            * p[(joint * r.N_LAW + r.P_SOFTENING) * W + i]
+            * (1.0 - exponential_decay(largest * p[(joint * r.N_LAW + r.P_PER_STRAIN) * W + i]))
+        )
         more -= lost * u
         slope -= lost
     if permanent_set is not None:
-        kept = x[own + SET, i]
-        kept += max(middle - kept - p[joint, r.P_LIMIT, i], 0.0) * p[joint, r.P_SET, i]
-        x[own + SET, i] = kept
+        kept = x[own + SET * W + i]
+        kept += (
+            max(middle - kept - p[(joint * r.N_LAW + r.P_LIMIT) * W + i], 0.0) * p[(joint * r.N_LAW + r.P_SET) * W + i]
+        )
+        x[own + SET * W + i] = kept
         more -= k * kept
     linear = k * u + c * fast
     total = linear + more
@@ -119,11 +124,12 @@ def fibres_all(w: Table, x: Table, p: Table, laws: Any) -> None:
     """The fibres of all lanes at the predictor of the coming step."""
     for i in range(W):
         predicted_strips(w, i)
-    for joint in range(2):
-        for f in range(FIBRES):
-            node, weight = NODES[f], WEIGHTS[f]
-            for i in range(W):
-                fibre(w, x, p, joint, f, i, node, weight, laws)
+    for f in range(FIBRES):
+        for i in range(W):
+            fibre(w, x, p, 0, f, i, NODES[f], WEIGHTS[f], laws)
+    for f in range(FIBRES):
+        for i in range(W):
+            fibre(w, x, p, 1, f, i, NODES[f], WEIGHTS[f], laws)
 
 
 @inlined
@@ -131,18 +137,18 @@ def fibres_at_start(w: Table, x: Table, p: Table, given: Table, lane: int, slot:
     """Relaxed hidden states of a lane, and its fibres' forces in the state from which it starts."""
     for joint in range(2):
         for row in range(r.N_LAW):
-            p[joint, row, slot] = given[lane, r.Q_LAWS + joint * r.N_LAW + row]
+            p[(joint * r.N_LAW + row) * W + slot] = given[lane, r.Q_LAWS + joint * r.N_LAW + row]
     w[r.STEP * W + slot], kept = 0.0, w[r.STEP * W + slot]
     predicted_strips(w, slot)
     for joint in range(2):
         for f in range(FIBRES):
-            own = (joint * FIBRES + f) * N_HIDDEN
+            own = (joint * FIBRES + f) * N_HIDDEN * W
             # the state may be another than at rest: its forces first, then its history begins relaxed
             for again in range(2):
                 u = given[lane, r.Q_RELAXED + 2 * joint]
-                x[own + COMPRESSION, slot], x[own + ARM, slot], x[own + SET, slot] = u, 0.0, 0.0
-                x[own + ZETA, slot] = given[lane, r.Q_RELAXED + 2 * joint + 1]
-                x[own + LARGEST, slot] = u
+                x[own + COMPRESSION * W + slot], x[own + ARM * W + slot], x[own + SET * W + slot] = u, 0.0, 0.0
+                x[own + ZETA * W + slot] = given[lane, r.Q_RELAXED + 2 * joint + 1]
+                x[own + LARGEST * W + slot] = u
                 if again == 0:
                     fibre(w, x, p, joint, f, slot, NODES[f], WEIGHTS[f], laws)
     w[r.STEP * W + slot] = kept
