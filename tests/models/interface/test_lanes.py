@@ -129,3 +129,14 @@ def test_at_rest_ends_the_run_early_and_changes_nothing() -> None:
     short, long = (lanes.run(one, shaking, np.ones(1), tail=tail) for tail in (60.0, 90.0))
     assert short.steps == long.steps
     assert lanes.run(one, shaking, np.ones(1), tail=60.0, may_rest=False).steps > short.steps
+
+
+def test_vertical_shaking_alone_turns_nothing() -> None:
+    # rotations of the size of rounding must not upset the strips' quotients
+    time = 0.01 * np.arange(101)
+    shaking = Shaking(0.01, 1e-12 * np.sin(2 * np.pi * 3.0 * time), 4.0 * np.sin(2 * np.pi * 5.0 * time))
+    one = wall(SHORT).replace(vertical_factor=1.0)
+    fast = lanes.run(one, shaking, np.ones(1), samples=101, refinement=4).samples[0].T
+    slow = reference.run(one, shaking, duration=1.0, rtol=1e-7).state
+    assert np.max(np.abs(fast[:2])) < 1e-11
+    assert np.max(np.abs(fast[2:4] - slow[2:4])) < 1e-3 * np.max(np.abs(slow[2:4]))
