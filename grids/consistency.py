@@ -80,3 +80,24 @@ def replaced(model: Model, base: Mapping[str, ValueT], overrides: Collection[str
 def _listed(names: Iterable[str], word: str = "and") -> str:
     *head, last = (f"'{name}'" for name in names)
     return f"{', '.join(head)} {word} {last}" if head else last
+
+
+def check_laws(options: Mapping[str, str], varied: Collection[str], mechanisms: Collection[str]) -> None:
+    """Raise InputError for the parameters of a rubber law that ``options`` leave unused everywhere.
+
+    Where a law is an axis (``varied``) its parameters belong to the cells that use it.
+    """
+    from models.rubber import LAWS
+
+    words = {name: options[name] for name in ("rubber_law", "base_rubber_law", "top_rubber_law") if name in options}
+    overall = words.get("rubber_law", "as_given")
+    joints = {words.get(f"{joint}_rubber_law", "same") for joint in ("base", "top")}
+    used = {overall if word == "same" else word for word in joints}
+    if "as_given" in used or any(name.endswith("rubber_law") for name in varied):
+        return
+    for law in LAWS:
+        if law in mechanisms and law not in used:
+            raise InputError(
+                f"parameters of the rubber law {law} are given, but the law in use is {_listed(sorted(used))}; "
+                f"leave them out, or choose rubber_law = '{law}'."
+            )

@@ -33,7 +33,7 @@ from typing import Any
 from pydantic import Field
 
 from grids.axes import Axis, Request, read_axis
-from grids.consistency import check_names, replaced
+from grids.consistency import check_laws, check_names, replaced
 from grids.files import Schema, check, parse_toml, read_text
 from grids.grid import Grid
 from grids.motions import Motion
@@ -143,6 +143,7 @@ def parse_plan(text: str, folder: Path, *, sensors: Mapping[str, Mechanism] | No
     options = dict(specimen.options) if specimen else {}
     options |= {name: targets.option(name, word, f"[options] {name}") for name, word in file.options.items()}
     options = {name: word for name, word in options.items() if name not in varied}
+    check_laws(options, varied, used)
     vertical = specimen.vertical if specimen else None
     motions, axes = read_motions(file.motion, axes, folder, vertical, "vertical_acceleration" in used)
     check_scales({*fixed, *varied}, motions)
