@@ -73,9 +73,7 @@ def compare(old: Mapping[str, Any], new: Mapping[str, Any]) -> Changes:
     differences += [f"axis {name} is new" for name in new_axes if name not in old_axes]
     common = [name for name in old_axes if name in new_axes]
     if len(common) == len(old_axes) == len(new_axes) and common != list(new_axes):
-        differences.append(
-            f"the axes are in another order: {', '.join(common)} before, {', '.join(new_axes)} now"
-        )
+        differences.append(f"the axes are in another order: {', '.join(common)} before, {', '.join(new_axes)} now")
     for name in common:
         gone, changed, gained = _points(old_axes[name], new_axes[name])
         unit = old_axes[name]["unit"]

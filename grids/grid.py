@@ -158,10 +158,7 @@ class Grid:
         ]
         for number in np.ndindex(*pieces):
             yield Rectangle(
-                {
-                    axis.name: tuple(part[i].tolist())
-                    for axis, part, i in zip(self.axes, parts, number, strict=True)
-                }
+                {axis.name: tuple(part[i].tolist()) for axis, part, i in zip(self.axes, parts, number, strict=True)}
             )
 
 

@@ -37,9 +37,7 @@ def check_scales(names: Collection[str], motions: Sequence[Motion]) -> None:
     if "pga" in names:
         for motion in motions:
             if motion.pga == 0.0:
-                raise InputError(
-                    f"motion '{motion.name}' is zero throughout; pga cannot scale it, use another."
-                )
+                raise InputError(f"motion '{motion.name}' is zero throughout; pga cannot scale it, use another.")
 
 
 def check_cells(model: Model, fixed: Mapping[str, float], axes: Sequence[Axis]) -> None:

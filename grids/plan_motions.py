@@ -86,9 +86,7 @@ def _expanded(sources: Iterable[Any], folder: Path) -> list[Any]:
 def _distinct(motions: list[Motion]) -> tuple[Motion, ...]:
     for index, motion in enumerate(motions):
         if any(motion.name == other.name for other in motions[:index]):
-            raise InputError(
-                f"two motions are called '{motion.name}'; leave one out or rename its file."
-            )
+            raise InputError(f"two motions are called '{motion.name}'; leave one out or rename its file.")
     return tuple(motions)
 
 

@@ -28,9 +28,7 @@ def check_step(time_step: float, where: str) -> float:
 def uniform_step(times: FloatArray, where: str, cure: str = "resample the record to one step") -> float:
     """The step of uniform sampling times (n,), s; ``cure`` ends the sentence about other times."""
     if times.size < SHORTEST:
-        raise InputError(
-            f"{where}: has {times.size} sample(s), fewer than {SHORTEST}: is the file cut short?"
-        )
+        raise InputError(f"{where}: has {times.size} sample(s), fewer than {SHORTEST}: is the file cut short?")
     if not np.isfinite(times).all():
         first = int(np.flatnonzero(~np.isfinite(times))[0])
         raise InputError(f"{where}: time of sample {first + 1} is not finite: repair the time column")

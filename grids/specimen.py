@@ -1,21 +1,21 @@
 """Specimen files: one wall as the laboratory knows it.
 
-    title = "wall 3"
-    model = "housner"
-    [parameters]                      # nominal; numbers are SI
-    width = "0.25 m"
-    [tolerance]                       # relative, one sigma
-    width = 0.005
-    [calibrate]                       # unknown, with a range
-    restitution = [0.7, 1.0]
-    [motion]
-    vertical = false
-    [initial]                         # state at t = 0, at rest without it
-    rotation_1 = "2 deg"
-    [options]
-    formulation = "linear"
-    [mechanisms.pivot_inset]
-    inset_over_half_width = 0.1
+title = "wall 3"
+model = "housner"
+[parameters]                      # nominal; numbers are SI
+width = "0.25 m"
+[tolerance]                       # relative, one sigma
+width = 0.005
+[calibrate]                       # unknown, with a range
+restitution = [0.7, 1.0]
+[motion]
+vertical = false
+[initial]                         # state at t = 0, at rest without it
+rotation_1 = "2 deg"
+[options]
+formulation = "linear"
+[mechanisms.pivot_inset]
+inset_over_half_width = 0.1
 """
 
 from __future__ import annotations
@@ -97,14 +97,10 @@ def parse_specimen(text: str, *, sensors: Mapping[str, Mechanism] | None = None)
             raise InputError(f"{where}: this does not belong to [parameters]; put it in {table}.")
         parameters[name] = target.number(value, where)
     mechanisms = _mechanisms(file, targets)
-    calibrate = {
-        name: _range(name, entry, targets) for name, entry in targets.flatten(file.calibrate).items()
-    }
+    calibrate = {name: _range(name, entry, targets) for name, entry in targets.flatten(file.calibrate).items()}
     known = {*parameters, *(f"{m}.{p}" for m, values in mechanisms.items() for p in values)}
     if twice := sorted(known & calibrate.keys()):
-        raise InputError(
-            f"[calibrate] {twice[0]} has a fixed value too; leave that out, or the range."
-        )
+        raise InputError(f"[calibrate] {twice[0]} has a fixed value too; leave that out, or the range.")
     used = {n.split(".")[0]: targets.mechanism(n.split(".")[0], n) for n in known | {*calibrate} if "." in n}
     check_names(model, known | calibrate.keys(), used)
     fixed = {**parameters, **{f"{m}.{p}": v for m, values in mechanisms.items() for p, v in values.items()}}
@@ -175,9 +171,7 @@ def _initial(file: SpecimenFile, targets: Targets) -> dict[str, float]:
     for name, value in file.initial.items():
         where = f"[initial] {name}"
         if name not in observables:
-            raise InputError(
-                f"{where} is no state of model '{targets.model.name}'; {nearest(name, observables)}"
-            )
+            raise InputError(f"{where} is no state of model '{targets.model.name}'; {nearest(name, observables)}")
         initial[name] = to_si(value, observables[name].unit, where)
         if abs(initial[name]) == float("inf"):
             raise InputError(f"{where} = {initial[name]}: give a finite value.")

@@ -75,9 +75,7 @@ class Target:
 
 def _of(parameter: Parameter, name: str) -> Target:
     null = parameter.null if isinstance(parameter, MechanismParameter) else None
-    return Target(
-        name, parameter.unit, parameter.meaning, parameter.low, parameter.high, parameter.low_open, null
-    )
+    return Target(name, parameter.unit, parameter.meaning, parameter.low, parameter.high, parameter.low_open, null)
 
 
 @dataclass(frozen=True)
@@ -170,9 +168,7 @@ class Targets:
     def option(self, name: str, word: object, where: str) -> str:
         """A word of one of the model's options; raises InputError."""
         if name not in self.model.options:
-            raise InputError(
-                f"{where} is no option of model '{self.model.name}'; {nearest(name, self.model.options)}"
-            )
+            raise InputError(f"{where} is no option of model '{self.model.name}'; {nearest(name, self.model.options)}")
         return self.find(name, where).word(word, where)
 
     def names(self) -> set[str]:

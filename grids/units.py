@@ -68,9 +68,7 @@ def factor_to_si(unit: str, si_unit: str, where: str) -> float:
     try:
         factor = _factor(unit, si_unit)
     except ValueError:
-        raise InputError(
-            f"{where}: unit '{unit}' is not known; write for example '{_example(si_unit)}'."
-        ) from None
+        raise InputError(f"{where}: unit '{unit}' is not known; write for example '{_example(si_unit)}'.") from None
     if factor is None:
         wanted = "a pure number is needed" if si_unit in _ONE else f"'{si_unit}' is needed"
         raise InputError(f"{where}: unit '{unit}' where {wanted}; write for example '{_example(si_unit)}'.")
@@ -92,9 +90,7 @@ def to_si(value: object, si_unit: str, where: str) -> float:
     if isinstance(value, str):
         match = _NUMBER.fullmatch(value)
         if match is None:
-            raise InputError(
-                f"{where} = '{value}': give a number and its unit, for example '{_sample(si_unit)}'."
-            )
+            raise InputError(f"{where} = '{value}': give a number and its unit, for example '{_sample(si_unit)}'.")
         number, unit = float(match[1]), match[2]
         if not unit and si_unit not in _ONE:
             raise InputError(

@@ -33,7 +33,5 @@ def read_axis(request: Request) -> Axis:
     allowed = {present[0].key, *present[0].beside}
     for key in request.table:
         if key not in allowed:
-            raise InputError(
-                f"{request.where}: '{key}' is not known beside {present[0].key}; {nearest(key, allowed)}"
-            )
+            raise InputError(f"{request.where}: '{key}' is not known beside {present[0].key}; {nearest(key, allowed)}")
     return present[0].read(request)

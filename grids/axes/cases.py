@@ -30,9 +30,7 @@ def _read(request: Request) -> Axis:
     elif isinstance(entry, list) and all(isinstance(row, dict) for row in entry):
         rows = [request.targets.flatten(row) for row in entry]
     else:
-        raise InputError(
-            f"{request.where}: cases = {entry!r}; give a list of tables or the name of a CSV file."
-        )
+        raise InputError(f"{request.where}: cases = {entry!r}; give a list of tables or the name of a CSV file.")
     if not rows or not set(rows[0]) - {LABEL}:
         raise InputError(f"{request.where}: no cases are listed; give at least one with at least one value.")
     names = [name for name in rows[0] if name != LABEL]
@@ -51,9 +49,7 @@ def _read(request: Request) -> Axis:
     return Axis(request.own_name(), labels, "1", "case", points)
 
 
-def _column(
-    request: Request, name: str, rows: list[dict[str, Any]], labels: NDArray[Any]
-) -> NDArray[Any]:
+def _column(request: Request, name: str, rows: list[dict[str, Any]], labels: NDArray[Any]) -> NDArray[Any]:
     places = [f"{request.where} '{label}' {name}" for label in labels]
     if name != MOTION:
         target = request.targets.find(name, places[0])
@@ -62,8 +58,7 @@ def _column(
             return np.array([target.number(row[name], place) for row, place in pairs])
     words = np.empty(len(rows), dtype=object)
     words[:] = [
-        row[name] if name == MOTION else target.word(row[name], place)
-        for row, place in zip(rows, places, strict=True)
+        row[name] if name == MOTION else target.word(row[name], place) for row, place in zip(rows, places, strict=True)
     ]
     return words
 

@@ -12,8 +12,7 @@ def _read(request: Request) -> Axis:
     low, high, count = request.span("geomspace")
     if low <= 0.0:
         raise InputError(
-            f"{request.where}: geomspace starts at {low:.6g} {request.target().unit}; "
-            "start above zero or use linspace."
+            f"{request.where}: geomspace starts at {low:.6g} {request.target().unit}; start above zero or use linspace."
         )
     return number_axis(request, np.geomspace(low, high, count))
 

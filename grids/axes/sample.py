@@ -33,9 +33,7 @@ def read_sample(request: Request, key: str, draw: Any) -> Axis:
     table = request.table.get("parameters")
     if not isinstance(table, dict) or not table:
         raise InputError(f"{request.where}: give parameters = {{ name = [low, high], ... }} to sample.")
-    ranges = {
-        name: _scale(request, name, entry) for name, entry in request.targets.flatten(table).items()
-    }
+    ranges = {name: _scale(request, name, entry) for name, entry in request.targets.flatten(table).items()}
     unit_points = draw(len(ranges), size, seed)
     points: dict[str, NDArray[Any]] = {}
     for column, (name, (low, high, log)) in enumerate(ranges.items()):
@@ -67,8 +65,6 @@ def _scale(request: Request, name: str, entry: object) -> tuple[float, float, bo
     if not low < high:
         raise InputError(f"{where} = {ends}: low must be below high; swap or part them.")
     if spacing == "log" and low <= 0.0:
-        raise InputError(
-            f"{where}: a log spacing starts above zero, not at {low:.6g}; raise it or use linear."
-        )
+        raise InputError(f"{where}: a log spacing starts above zero, not at {low:.6g}; raise it or use linear.")
     bounded(np.array([low, high]), target, where)
     return low, high, spacing == "log"

@@ -44,9 +44,7 @@ class Motion:
                 continue
             array = np.array(values, dtype=np.float64)
             if array.ndim != 1 or array.size < 2:
-                raise InputError(
-                    f"motion {self.name}: {name} has shape {array.shape}: give at least 2 samples"
-                )
+                raise InputError(f"motion {self.name}: {name} has shape {array.shape}: give at least 2 samples")
             if not np.isfinite(array).all():
                 raise InputError(f"motion {self.name}: {name} holds values that are not finite: repair them")
             array.flags.writeable = False
@@ -109,9 +107,7 @@ class Motion:
         if not (math.isfinite(value) and value >= 0.0):
             raise InputError(f"motion {self.name}: PGA is {value!r} m s-2: give zero or a positive number")
         if self.pga == 0.0:
-            raise InputError(
-                f"motion {self.name}: horizontal is zero throughout: it cannot be scaled to a PGA"
-            )
+            raise InputError(f"motion {self.name}: horizontal is zero throughout: it cannot be scaled to a PGA")
         return self.scaled(value / self.pga)
 
     def time_scaled(self, factor: float) -> Motion:
@@ -145,9 +141,7 @@ class Motion:
 
         where = f"motion {self.name}"
         horizontal = resample(self.horizontal, self.time_step, time_step, where)
-        vertical = (
-            None if self.vertical is None else resample(self.vertical, self.time_step, time_step, where)
-        )
+        vertical = None if self.vertical is None else resample(self.vertical, self.time_step, time_step, where)
         note = f"resampled from {self.time_step:.6g} to {time_step:.6g} s (band-limited)"
         return self._noted(note, time_step=time_step, horizontal=horizontal, vertical=vertical)
 

@@ -92,9 +92,7 @@ def velocity_and_displacement(
     velocity = np.zeros_like(values)
     velocity[1:] = np.cumsum(0.5 * time_step * (values[1:] + values[:-1]))
     displacement = np.zeros_like(values)
-    displacement[1:] = np.cumsum(
-        time_step * velocity[:-1] + time_step**2 / 6 * (2 * values[:-1] + values[1:])
-    )
+    displacement[1:] = np.cumsum(time_step * velocity[:-1] + time_step**2 / 6 * (2 * values[:-1] + values[1:]))
     kept = slice(pad, values.size - pad)
     return velocity[kept], displacement[kept]
 

@@ -102,9 +102,7 @@ def make_pulse(table: Mapping[str, Any]) -> Motion:
     if shape is None:
         raise InputError(f"pulse: shape {pulse.shape!r} is not known; {nearest(pulse.shape, SHAPES)}")
     if pulse.cycles is not None and not shape.repeats:
-        raise InputError(
-            f"pulse: cycles = {pulse.cycles:g} has no meaning for shape {pulse.shape!r}: leave it out"
-        )
+        raise InputError(f"pulse: cycles = {pulse.cycles:g} has no meaning for shape {pulse.shape!r}: leave it out")
     periods = shape.periods if pulse.cycles is None else _positive(pulse.cycles, "1", "pulse: cycles")
     amplitude = to_si(pulse.amplitude, "m s-2", "pulse: amplitude")
     if amplitude == 0.0 or not math.isfinite(amplitude):

@@ -48,11 +48,7 @@ def read_motion(
         raise InputError(f"motion {name!r}: {reader.name} takes no key after a colon: leave {key!r} out")
     unknown = sorted(set(statement) - set(reader.statement_keys))
     if unknown:
-        cure = (
-            nearest(unknown[0], reader.statement_keys)
-            if reader.statement_keys
-            else "the file states it itself"
-        )
+        cure = nearest(unknown[0], reader.statement_keys) if reader.statement_keys else "the file states it itself"
         raise InputError(f"motion {name!r}: {unknown[0]!r} cannot be stated for {reader.name}; {cure}")
     return _chosen(reader.read(path, key, statement), path, component, vertical)
 

@@ -57,9 +57,7 @@ def response_spectrum(
     if not 0.0 <= damping < 1.0:
         raise InputError(f"response spectrum: damping is {damping!r}: give a ratio from 0 to below 1")
     values = np.ascontiguousarray(acceleration, dtype=np.float64)
-    peaks = np.array(
-        [_peak_displacement(values, time_step, 2 * math.pi / period, damping) for period in wanted]
-    )
+    peaks = np.array([_peak_displacement(values, time_step, 2 * math.pi / period, damping) for period in wanted])
     return ResponseSpectrum(wanted, damping, peaks)
 
 

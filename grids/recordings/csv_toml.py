@@ -1,10 +1,10 @@
 """Recordings in CSV, with a TOML beside them that maps columns to channels (see `grids.columns`).
 
-    time = { column = "t", unit = "ms" }          # or time_step = "0.005 s"
-    [columns]
-    base_acceleration_x = { column = "acc table", unit = "g" }
-    rotation_1 = { column = "inclinometer", unit = "mrad", sign = -1 }
-    level_acceleration_x_0 = { column = "slab", unit = "g" }      # levels end in _0, _1 ...
+time = { column = "t", unit = "ms" }          # or time_step = "0.005 s"
+[columns]
+base_acceleration_x = { column = "acc table", unit = "g" }
+rotation_1 = { column = "inclinometer", unit = "mrad", sign = -1 }
+level_acceleration_x_0 = { column = "slab", unit = "g" }      # levels end in _0, _1 ...
 """
 
 from __future__ import annotations

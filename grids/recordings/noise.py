@@ -72,7 +72,4 @@ def noise_of(values: FloatArray) -> Noise:
 
 def noise_levels(recording: Recording) -> Mapping[str, tuple[Noise, ...]]:
     """The noise of every channel; one entry, or one for each level."""
-    return {
-        name: tuple(noise_of(row) for row in np.atleast_2d(values))
-        for name, values in recording.channels.items()
-    }
+    return {name: tuple(noise_of(row) for row in np.atleast_2d(values)) for name, values in recording.channels.items()}

@@ -30,9 +30,7 @@ def read_recording(path: str | Path) -> Recording:
         raise InputError(f"recording {table} does not exist; {cure}")
     suffixes = [suffix for reader in READERS for suffix in reader.SUFFIXES]
     if table.suffix.lower() not in suffixes:
-        raise InputError(
-            f"recording {table.name}: ending '{table.suffix}' is not known; known: {', '.join(suffixes)}."
-        )
+        raise InputError(f"recording {table.name}: ending '{table.suffix}' is not known; known: {', '.join(suffixes)}.")
     reader = next(r for r in READERS if table.suffix.lower() in r.SUFFIXES)
     try:
         recording = _checked(table.stem, reader.read(table))
@@ -53,16 +51,12 @@ def _checked(name: str, raw: Raw) -> Recording:
         )
     if not any(CHANNELS[channel].response for channel in raw.channels):
         responses = [channel for channel, declared in CHANNELS.items() if declared.response]
-        raise InputError(
-            f"has no response (channels: {', '.join(raw.channels)}); add one of {', '.join(responses)}."
-        )
+        raise InputError(f"has no response (channels: {', '.join(raw.channels)}); add one of {', '.join(responses)}.")
     first, last = _measured_span(raw)
     notes = list(raw.notes)
     count = raw.channels[REQUIRED].shape[-1]
     if last - first + 1 < count:
-        notes.append(
-            f"{first} samples at the start and {count - 1 - last} at the end lack a value and are cut off"
-        )
+        notes.append(f"{first} samples at the start and {count - 1 - last} at the end lack a value and are cut off")
     start = raw.start + first * raw.time_step
     if start != 0.0:
         notes.append(f"time starts at {start:g} s in the file, at 0 s here")
@@ -81,9 +75,7 @@ def _measured_span(raw: Raw) -> tuple[int, int]:
     whole = ~np.any(list(lacking.values()), axis=0)
     if whole.sum() < 10:
         worst = max(lacking, key=lambda channel: int(lacking[channel].sum()))
-        raise InputError(
-            f"{worst} lacks {int(lacking[worst].sum())} of {whole.size} values; leave the channel out."
-        )
+        raise InputError(f"{worst} lacks {int(lacking[worst].sum())} of {whole.size} values; leave the channel out.")
     first, last = (int(i) for i in np.flatnonzero(whole)[[0, -1]])
     for channel, missing in lacking.items():
         inside = np.flatnonzero(missing[first : last + 1]) + first

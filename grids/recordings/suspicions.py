@@ -72,10 +72,7 @@ def _of_base(recording: Recording) -> Iterator[str]:
         )
     vertical = recording.channels.get("base_acceleration_z")
     if vertical is not None and abs(abs(float(np.median(vertical))) - GRAVITY) < 0.1 * GRAVITY:
-        yield (
-            f"base_acceleration_z rests at {float(np.median(vertical)):.3g} m s-2: "
-            "gravity is in it, subtract it"
-        )
+        yield (f"base_acceleration_z rests at {float(np.median(vertical)):.3g} m s-2: gravity is in it, subtract it")
 
 
 def _of_rotation(name: str, recording: Recording) -> Iterator[str]:
@@ -148,9 +145,7 @@ def fit_rocking(rotation: FloatArray, base: FloatArray, time_step: float) -> Roc
     return Rocking(p2, abs(float(of_base / errors[2])), alpha, explained, float(up.sum()) / width)
 
 
-def _least_squares(
-    regressors: NDArray[np.float64], wanted: FloatArray
-) -> tuple[FloatArray, FloatArray, float] | None:
+def _least_squares(regressors: NDArray[np.float64], wanted: FloatArray) -> tuple[FloatArray, FloatArray, float] | None:
     """Coefficients, their standard errors, share of the variance explained; None if not unique."""
     coefficients, _, rank, _ = np.linalg.lstsq(regressors, wanted, rcond=None)
     if rank < regressors.shape[1]:
@@ -184,7 +179,4 @@ def _of_levels(recording: Recording) -> Iterator[str]:
         times = of_base / abs(of_relative)
         yield f"{REQUIRED} is {times:.3g} times too small: is it in g, declared as m s-2?"
     elif abs(of_relative) < 0.25:
-        yield (
-            f"level_acceleration_x is {abs(1 / of_relative):.3g} times too small: is it in g, "
-            "declared as m s-2?"
-        )
+        yield (f"level_acceleration_x is {abs(1 / of_relative):.3g} times too small: is it in g, declared as m s-2?")

@@ -106,9 +106,7 @@ def products(stack: Stack, after: Vectors, before: Vectors) -> tuple[Real, Real,
     )
 
 
-def motion(
-    stack: Stack, s1: Real, s2: Real, q: Rotations, rate: Rotations, ground: Rotations, linear: bool
-) -> System:
+def motion(stack: Stack, s1: Real, s2: Real, q: Rotations, rate: Rotations, ground: Rotations, linear: bool) -> System:
     """M q'' = F about the pivots ``s1``, ``s2`` (1 or -1); ``ground`` is (a, G) in m s-2."""
     v = vectors(stack, s1, s2, q, linear)
     a, gravity = ground

@@ -44,9 +44,7 @@ class Joints:
         """What the closed joints of ``state`` do under these forces."""
         if all(state.sides):
             return state
-        chosen = choose(
-            lambda c1, c2: self.system((c1, c2), state.q, state.rate, ground), *state.sides, moving=moving
-        )
+        chosen = choose(lambda c1, c2: self.system((c1, c2), state.q, state.rate, ground), *state.sides, moving=moving)
         return state._replace(sides=chosen)
 
     def _go(self, state: State, time: float) -> None:

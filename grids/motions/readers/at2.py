@@ -40,34 +40,22 @@ def _heading(line: str) -> tuple[str, str]:
 def _read_one(path: Path) -> tuple[str, float, FloatArray]:
     lines = read_text(path)
     if len(lines) < 5:
-        raise InputError(
-            f"{path.name}: has {len(lines)} lines, an AT2 file has 4 before its samples: fetch it again"
-        )
+        raise InputError(f"{path.name}: has {len(lines)} lines, an AT2 file has 4 before its samples: fetch it again")
     quantity = lines[2].upper()
     if "ACCELERATION" not in quantity:
-        raise InputError(
-            f"{path.name}: line 3 reads {lines[2].strip()!r}, not acceleration: give the .AT2 file"
-        )
+        raise InputError(f"{path.name}: line 3 reads {lines[2].strip()!r}, not acceleration: give the .AT2 file")
     if not re.search(r"UNITS OF G\b", quantity):
-        raise InputError(
-            f"{path.name}: line 3 does not say 'UNITS OF G' ({lines[2].strip()!r}): state the unit there"
-        )
+        raise InputError(f"{path.name}: line 3 does not say 'UNITS OF G' ({lines[2].strip()!r}): state the unit there")
     count = next((m for pattern in _NPTS if (m := pattern.search(lines[3]))), None)
     step = next((m for pattern in _DT if (m := pattern.search(lines[3]))), None)
     if count is None or step is None:
-        raise InputError(
-            f"{path.name}: line 4 has no NPTS and DT ({lines[3].strip()!r}): the header is damaged"
-        )
+        raise InputError(f"{path.name}: line 4 has no NPTS and DT ({lines[3].strip()!r}): the header is damaged")
     values = parse_numbers(" ".join(lines[4:]).split(), path.name)
     if values.size != int(count[1]):
-        raise InputError(
-            f"{path.name}: NPTS says {count[1]} samples, the file has {values.size}: cut short or damaged"
-        )
+        raise InputError(f"{path.name}: NPTS says {count[1]} samples, the file has {values.size}: cut short or damaged")
     component = _heading(lines[1])[1]
     if not component:
-        raise InputError(
-            f"{path.name}: line 2 does not end with the component: write it after the last comma"
-        )
+        raise InputError(f"{path.name}: line 2 does not end with the component: write it after the last comma")
     samples = check_samples(values * STANDARD_GRAVITY, path.name)
     return component, check_step(float(step[1]), path.name), samples
 
@@ -98,9 +86,7 @@ def _siblings(path: Path) -> list[Path]:
     else:
         prefix = ""
     beside = (p for p in path.parent.iterdir() if p.suffix.lower() == ".at2")
-    found = [
-        p for p in beside if p.name.upper().startswith(prefix.upper()) and event and heading_of(p)[0] == event
-    ]
+    found = [p for p in beside if p.name.upper().startswith(prefix.upper()) and event and heading_of(p)[0] == event]
     return sorted({path, *found})
 
 

@@ -75,9 +75,7 @@ def check_samples(values: Any, where: str) -> FloatArray:
         raise InputError(f"{where}: holds {array.dtype} and not numbers: name an array of accelerations")
     array = array.astype(np.float64)
     if array.size < SHORTEST:
-        raise InputError(
-            f"{where}: has {array.size} sample(s), fewer than {SHORTEST}: is the file cut short?"
-        )
+        raise InputError(f"{where}: has {array.size} sample(s), fewer than {SHORTEST}: is the file cut short?")
     bad = np.flatnonzero(~np.isfinite(array))
     if bad.size:
         raise InputError(
@@ -88,9 +86,7 @@ def check_samples(values: Any, where: str) -> FloatArray:
     if peak == 0.0:
         raise InputError(f"{where}: every sample is zero: is it the right channel?")
     if peak > LARGEST:
-        raise InputError(
-            f"{where}: peak is {peak:.4g} m s-2, more than any ground motion: is the unit stated right?"
-        )
+        raise InputError(f"{where}: peak is {peak:.4g} m s-2, more than any ground motion: is the unit stated right?")
     return array
 
 
@@ -144,9 +140,7 @@ def read_text(path: Path) -> list[str]:
     try:
         data = path.read_bytes()
     except OSError as error:
-        raise InputError(
-            f"{path.name}: cannot be read ({error.strerror}): check the path and its rights"
-        ) from None
+        raise InputError(f"{path.name}: cannot be read ({error.strerror}): check the path and its rights") from None
     if not data.strip():
         raise InputError(f"{path.name}: is empty: fetch the file again")
     if b"\0" in data:
@@ -157,6 +151,4 @@ def read_text(path: Path) -> list[str]:
 def fixed_width(lines: Sequence[str], width: int, where: str) -> FloatArray:
     """Numbers in columns of ``width`` characters, which may touch each other."""
     rows = [line.rstrip() for line in lines]
-    return parse_numbers(
-        [row[i : i + width].strip() for row in rows for i in range(0, len(row), width)], where
-    )
+    return parse_numbers([row[i : i + width].strip() for row in rows for i in range(0, len(row), width)], where)

@@ -48,8 +48,7 @@ def _read(path: Path, key: str | None, statement: Mapping[str, Any]) -> Record:
             values = fixed_width(block[:end], width, where)
             if values.size != count:
                 raise InputError(
-                    f"{where}: header says {count} samples, the file has {values.size}: "
-                    "it is cut short or damaged"
+                    f"{where}: header says {count} samples, the file has {values.size}: it is cut short or damaged"
                 )
             rate = float(points[2])
             if rate <= 0.0:

@@ -48,9 +48,7 @@ def _read_component(lines: list[str], path: Path, number: int) -> tuple[str, flo
     integers = fixed_width(lines[_TEXT : _TEXT + 4], _WIDTH, where)
     reals = fixed_width(lines[_TEXT + 4 : _HEADER], _WIDTH, where)
     if integers.size != 40 or reals.size != 60:
-        raise InputError(
-            f"{where}: header has {integers.size} and {reals.size} numbers, not 40 and 60: damaged"
-        )
+        raise InputError(f"{where}: header has {integers.size} and {reals.size} numbers, not 40 and 60: damaged")
     counts = [int(c) for c in integers[33:36]]
     block = lines[_HEADER : _HEADER + _lines_of(counts[0])]
     values = fixed_width(block, _WIDTH, where)
@@ -63,8 +61,7 @@ def _read_component(lines: list[str], path: Path, number: int) -> tuple[str, flo
     measured, said = float(np.max(np.abs(values))), abs(float(peak[1]))
     if abs(measured - said) > 0.11 + 1e-4 * said:
         raise InputError(
-            f"{where}: header says a peak of {said:g} mm/s2, the samples reach {measured:g}: "
-            "the file is damaged"
+            f"{where}: header says a peak of {said:g} mm/s2, the samples reach {measured:g}: the file is damaged"
         )
     samples = check_samples(values * 1e-3, where)
     return name[1], check_step(float(reals[25]), where), samples, used

@@ -41,13 +41,9 @@ def _content(path: Path) -> tuple[dict[str, str], dict[str, tuple[FloatArray, st
                 for name in wanted
             }
     except (OSError, RuntimeError) as error:
-        raise InputError(
-            f"{path.name}: cannot be read as netCDF ({error}): it is cut short or damaged"
-        ) from None
+        raise InputError(f"{path.name}: cannot be read as netCDF ({error}): it is cut short or damaged") from None
     except (ValueError, TypeError):
-        raise InputError(
-            f"{path.name}: time or acceleration holds no numbers: write numbers with units"
-        ) from None
+        raise InputError(f"{path.name}: time or acceleration holds no numbers: write numbers with units") from None
 
 
 def _read(path: Path, key: str | None, statement: Mapping[str, Any]) -> Record:
@@ -64,31 +60,21 @@ def _read(path: Path, key: str | None, statement: Mapping[str, Any]) -> Record:
         if dimensions != ("time",):
             raise InputError(f"{path.name}: {name} lies over {dimensions or 'nothing'}, not over ('time',)")
         if not stated:
-            raise InputError(
-                f"{path.name}: {name} states no units: add the attribute units, for instance 'm s-2'"
-            )
+            raise InputError(f"{path.name}: {name} states no units: add the attribute units, for instance 'm s-2'")
     if not unit:
         raise InputError(f"{path.name}: time states no units: add the attribute units = 's'")
     word = unit.split(" since ")[0]
-    step = uniform_step(
-        times if word == "s" else times * factor_to_si(word, "s", f"{path.name}: time"), path.name
-    )
+    step = uniform_step(times if word == "s" else times * factor_to_si(word, "s", f"{path.name}: time"), path.name)
     components = [
         (
             component_name(name) or name,
             step,
-            check_samples(
-                values * acceleration_factor(stated, f"{path.name}: {name}"), f"{path.name}: {name}"
-            ),
+            check_samples(values * acceleration_factor(stated, f"{path.name}: {name}"), f"{path.name}: {name}"),
         )
         for name, (values, stated, _) in variables.items()
     ]
-    kept: dict[str, Any] = {
-        k: attributes[k] for k in ("title", "source", "license", "processing") if k in attributes
-    }
-    return assemble(
-        path.stem, components, {"format": NETCDF.name, "files": (path.name,), **kept}, where=path.name
-    )
+    kept: dict[str, Any] = {k: attributes[k] for k in ("title", "source", "license", "processing") if k in attributes}
+    return assemble(path.stem, components, {"format": NETCDF.name, "files": (path.name,), **kept}, where=path.name)
 
 
 NETCDF = Reader("netCDF", (".nc", ".nc4"), _read)

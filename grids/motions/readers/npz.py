@@ -81,11 +81,7 @@ def _chosen(path: Path, key: str | None, keys: list[str]) -> tuple[str, list[str
 
 def _nearest_key(key: str, keys: list[str]) -> str:
     close = nearest(key, keys)
-    return (
-        close
-        if close.startswith("did")
-        else f"it holds {len(keys)} arrays, for instance {', '.join(keys[:3])}"
-    )
+    return close if close.startswith("did") else f"it holds {len(keys)} arrays, for instance {', '.join(keys[:3])}"
 
 
 def _index_line(path: Path, record: str) -> Mapping[str, str] | None:
@@ -97,9 +93,7 @@ def _index_line(path: Path, record: str) -> Mapping[str, str] | None:
         lines = list(csv.DictReader(file))
     line = next((line for line in lines if line.get("id") == record), None)
     if line is None or not line.get("dt_s"):
-        raise InputError(
-            f"{beside.name}: has no line with id {record!r} and dt_s: add it, or a TOML with time_step"
-        )
+        raise InputError(f"{beside.name}: has no line with id {record!r} and dt_s: add it, or a TOML with time_step")
     return line
 
 
@@ -109,9 +103,7 @@ def _check_index(where: str, line: Mapping[str, str], component: str, values: Fl
     role = next((h for h in ("H1", "H2") if line.get(h) == component), "UD")
     stated = line.get(f"PGA_{role}_g")
     if not stated:
-        raise InputError(
-            f"{where}: the table has no PGA_{role}_g to tell the unit: add a TOML with time_step and unit"
-        )
+        raise InputError(f"{where}: the table has no PGA_{role}_g to tell the unit: add a TOML with time_step and unit")
     peak = float(np.max(np.abs(values))) / STANDARD_GRAVITY
     if abs(peak - float(stated)) > PGA_TOLERANCE * float(stated):
         raise InputError(

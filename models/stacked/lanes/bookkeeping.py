@@ -95,9 +95,7 @@ def visit(result: Table, lane: int) -> None:
 
 
 @called
-def configure(
-    given: Table, result: Table, w: Table, lane: int, slot: int, s1: float, s2: float, time: float
-) -> None:
+def configure(given: Table, result: Table, w: Table, lane: int, slot: int, s1: float, s2: float, time: float) -> None:
     """The lane goes over to the configuration (s1, s2) at ``time``."""
     if s1 == result[lane, R_SIDE_1] and s2 == result[lane, R_SIDE_2]:
         return

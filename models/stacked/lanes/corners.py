@@ -66,9 +66,7 @@ def vectors(
 
 
 @inlined
-def products(
-    given: Table, lane: int, p: tuple[float, ...], o: tuple[float, ...]
-) -> tuple[float, float, float, float]:
+def products(given: Table, lane: int, p: tuple[float, ...], o: tuple[float, ...]) -> tuple[float, float, float, float]:
     """C11, C12, C21, C22 of the motions with vectors ``p`` (after) and ``o`` (before)."""
     m1, m2, i2 = given[lane, P_M1], given[lane, P_M2], given[lane, P_I2]
     return (

@@ -78,9 +78,7 @@ def forces(
 
 
 @inlined
-def solve(
-    w: Table, lane: int, m11: float, m12: float, m22: float, f1: float, f2: float
-) -> tuple[float, float]:
+def solve(w: Table, lane: int, m11: float, m12: float, m22: float, f1: float, f2: float) -> tuple[float, float]:
     """q'' of the joints that are up, 0 of the closed ones."""
     free_1, free_2 = w[FREE_1 * W + lane], w[FREE_2 * W + lane]
     mixed = free_1 * free_2 * m12

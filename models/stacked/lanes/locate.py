@@ -50,9 +50,7 @@ def onset(given: Table, w: Table, lane: int, slot: int, record: Table, i: int, f
 
 
 @called
-def next_onset(
-    given: Table, w: Table, lane: int, slot: int, record: Table, i: int, last: int, chunk: Table
-) -> int:
+def next_onset(given: Table, w: Table, lane: int, slot: int, record: Table, i: int, last: int, chunk: Table) -> int:
     """First step from i on in which the resting stack is lifted, ``last`` if there is none.
 
     ``chunk`` (2, n) holds the extremes of the record over 64 steps: |a|, |a_z|.
@@ -73,9 +71,7 @@ def next_onset(
 
 
 @called
-def look(
-    w: Table, slot: int, state: State, record: Table, i: int, f: float, linear: Any
-) -> tuple[Pair, Pair, Pair]:
+def look(w: Table, slot: int, state: State, record: Table, i: int, f: float, linear: Any) -> tuple[Pair, Pair, Pair]:
     """`contact` of a state at fraction f of step i: q'', margins and friction demands of both joints."""
     a, g = inputs(w, slot, record, i, f)
     x1, x2, m1, m2, d1, d2 = contact(w, slot, state[0], state[1], state[2], state[3], a, g, linear)

@@ -81,9 +81,7 @@ def given_table(stack: Stack, scale: FloatArray, initial: Mapping[str, FloatArra
     lean = np.abs(np.arctan2(stack.offset, stack.gravity))
     own_1 = np.arctan2(stack.base_pivot - np.abs(stack.shift_1), stack.centre_1) - lean
     whole = stack.centre
-    right = np.minimum(
-        (stack.base_pivot - stack.shift) / whole, (stack.top_pivot - stack.shift_2) / stack.centre_2
-    )
+    right = np.minimum((stack.base_pivot - stack.shift) / whole, (stack.top_pivot - stack.shift_2) / stack.centre_2)
     left = np.minimum((stack.base_pivot + stack.shift) / whole, (stack.top_pivot + stack.shift_2) / stack.centre_2)
     for column, values in (
         (r.P_SCALE, scale),

@@ -39,9 +39,7 @@ class MotionFiles:
     def at2_record(self, down=False):
         first = self.at2("RSN7_SOME_STA000.AT2", NORTH, "000")
         self.at2("RSN7_SOME_STA090.AT2", EAST[:-7], "090")
-        self.at2(
-            f"RSN7_SOME_STA{'DWN' if down else '-UP'}.AT2", -UP if down else UP, "DOWN" if down else "UP"
-        )
+        self.at2(f"RSN7_SOME_STA{'DWN' if down else '-UP'}.AT2", -UP if down else UP, "DOWN" if down else "UP")
         return first
 
     def v2a(self, name="x.V2A", components=(("N10E", NORTH), ("N80W", EAST), ("Up", UP)), lie=0.0):
@@ -53,9 +51,7 @@ class MotionFiles:
             values = 9806.65 * g
             text = [f"Corrected accelerogram text {i}" for i in range(16)]
             text[12] = f"Component {component}  Accelerometer Axis"
-            text[13] = (
-                f"Acceleration:  peak {np.max(np.abs(values)) + lie:8.1f} mm/s/s at  3.00 sec  rms 1.0 mm/s/s"
-            )
+            text[13] = f"Acceleration:  peak {np.max(np.abs(values)) + lie:8.1f} mm/s/s at  3.00 sec  rms 1.0 mm/s/s"
             integers, reals = np.zeros(40, int), np.zeros(60)
             integers[33:36] = len(values)
             reals[25] = STEP
@@ -69,9 +65,7 @@ class MotionFiles:
         for number, (component, values) in enumerate(channels, 1):
             lines += ["Uncorrected Accelerogram Data", "Rcrd of some day", "", "", "", "A Station"]
             lines += [f"Chan  {number}: {component:>3} Deg", " -999 -999"]
-            lines += [
-                f" {len(values)} Accelerogram points at 100 pts/sec in units of {unit}.  Format: (8f9.6)"
-            ]
+            lines += [f" {len(values)} Accelerogram points at 100 pts/sec in units of {unit}.  Format: (8f9.6)"]
             lines += ["".join(f"{v:9.6f}" for v in values[i : i + 8]) for i in range(0, len(values), 8)]
             lines += [f"/&  ----------  End of Data for Station Channel   {number}  ----------"]
         return self.text(name, "\n".join(lines) + "\n")

@@ -138,9 +138,7 @@ def test_pulses_keep_impulse_and_peak(shape, impulse, peak, silence):
     assert motion.pga == pytest.approx(peak, rel=1e-4)
     lead = 0.3 if silence else 0.0
     length = {"rectangular": 0.25, "half_sine": 0.25, "sine": 0.5, "cosine": 0.5, "ricker": 1.5}[shape]
-    assert motion.duration == pytest.approx(
-        lead + length + (1.0 if silence else 0.0), abs=2 * motion.time_step
-    )
+    assert motion.duration == pytest.approx(lead + length + (1.0 if silence else 0.0), abs=2 * motion.time_step)
 
 
 def test_every_shape_is_tested_above():

@@ -63,9 +63,7 @@ def test_three_component_text_formats(files, kind, resolution):
     assert motion.time_step == pytest.approx(0.01)
 
 
-@pytest.mark.parametrize(
-    ("unit", "factor"), [("m s-2", 1), ("g", G), ("cm/s2", 0.01), ("gal", 0.01), ("mm/s2", 1e-3)]
-)
+@pytest.mark.parametrize(("unit", "factor"), [("m s-2", 1), ("g", G), ("cm/s2", 0.01), ("gal", 0.01), ("mm/s2", 1e-3)])
 def test_netcdf_units(files, unit, factor):
     motion = read_motion(files.netcdf(units=unit))
     np.testing.assert_allclose(motion.horizontal, factor * files.north, rtol=1e-14)
@@ -117,9 +115,7 @@ def test_csv_white_space_without_header(files):
     rows = ["a line to skip", *(f"  {t:.4f}   {v:.8e}" for t, v in enumerate(files.north))]
     toml = 'time_step = 0.01\ndelimiter = " "\nskip = 1\nheader = false\n'
     toml += '[columns]\nx = { column = 2, unit = "g" }\n'
-    np.testing.assert_allclose(
-        read_motion(files.csv(rows=rows, toml=toml)).horizontal, G * files.north, atol=1e-7
-    )
+    np.testing.assert_allclose(read_motion(files.csv(rows=rows, toml=toml)).horizontal, G * files.north, atol=1e-7)
 
 
 def test_written_motion_reads_back_bit_identical(files, tmp_path):
@@ -167,9 +163,7 @@ def test_globs_leave_vertical_components_out(files):
 def test_threads_may_read_netcdf_at_once_and_the_lock_pickles_to_itself():
     assert pickle.loads(pickle.dumps(NETCDF_LOCK)) is NETCDF_LOCK
     seen = []
-    threads = [
-        threading.Thread(target=lambda: seen.append(read_motion("ridgecrest_2019_clc"))) for _ in range(12)
-    ]
+    threads = [threading.Thread(target=lambda: seen.append(read_motion("ridgecrest_2019_clc"))) for _ in range(12)]
     for thread in threads:
         thread.start()
     for thread in threads:

@@ -83,9 +83,7 @@ def wave_packet(times, highest):
     packet = np.zeros_like(times)
     for share, centre, phase in ((0.15, 9.0, 0.3), (0.5, 11.0, 1.1), (1.0, 10.0, 2.0)):
         frequency = share * (highest - 1.0)
-        packet += np.sin(2 * np.pi * frequency * times + phase) * np.exp(
-            -((times - centre) ** 2) / 2 / 1.1**2
-        )
+        packet += np.sin(2 * np.pi * frequency * times + phase) * np.exp(-((times - centre) ** 2) / 2 / 1.1**2)
     return packet
 
 

@@ -20,9 +20,7 @@ def test_the_mechanisms_that_act() -> None:
 def test_at_its_null_a_mechanism_is_not_there(name: str) -> None:
     shaking = random_motion(np.random.default_rng(1), duration=5.0)
     nulls = {f"{name}.{p.name}": p.null for p in MODEL.mechanisms[name].parameters}
-    plain, switched = (
-        MODEL.simulate(values, shaking, scale=2.5, tail=1.0) for values in (B, {**B, **nulls})
-    )
+    plain, switched = (MODEL.simulate(values, shaking, scale=2.5, tail=1.0) for values in (B, {**B, **nulls}))
     assert plain.outputs["impacts_top"] > 2
     np.testing.assert_array_equal(plain.channels["rotation_2"], switched.channels["rotation_2"])
     assert plain.events == switched.events
