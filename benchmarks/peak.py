@@ -12,9 +12,9 @@ import sys
 
 _CHAIN = 16
 _KERNEL = (
-    f"""
+    """
 import time, numba, numpy as np
-@numba.njit(fastmath={{"contract"}}, error_model="numpy")
+@numba.njit(fastmath={"contract"}, error_model="numpy")
 def chains(n, x, k):
     for _ in range(n):
         for i in range(x.size):

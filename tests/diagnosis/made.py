@@ -36,7 +36,9 @@ def motion(seed: int, duration: float = 9.0, pga: float = 3.0) -> Shaking:
 
 
 @lru_cache(maxsize=32)
-def _made(name: str, seed: int, effect: tuple[tuple[str, tuple[tuple[str, float], ...]], ...], noise: float) -> Recording:
+def _made(
+    name: str, seed: int, effect: tuple[tuple[str, tuple[tuple[str, float], ...]], ...], noise: float
+) -> Recording:
     mechanisms = {k: dict(v) for k, v in effect}
     measured = motion(seed)
     model = models.get("housner")

@@ -65,7 +65,10 @@ def test_priors_hold_what_the_recordings_do_not_tell() -> None:
 
 def test_a_range_is_searched_globally() -> None:
     ranged = replace(
-        SPECIMEN, parameters={"width": 0.25, "mass": 540.0}, tolerance={"width": 0.002}, calibrate={"height": (0.9, 3.6)}
+        SPECIMEN,
+        parameters={"width": 0.25, "mass": 540.0},
+        tolerance={"width": 0.002},
+        calibrate={"height": (0.9, 3.6)},
     )
     found = calibrate(ranged, [recording("train_1", 1), recording("train_2", 2)], profile=False)
     assert found.parameters["height"].estimate == pytest.approx(TRUE["height"], rel=0.01)
@@ -75,7 +78,9 @@ def test_a_range_is_searched_globally() -> None:
 
 def test_nothing_to_compare_is_said() -> None:
     flat = recording("flat", 1)
-    still = replace(flat, channels={**flat.channels, "rotation_1": np.random.default_rng(0).normal(size=flat.time.size)})
+    still = replace(
+        flat, channels={**flat.channels, "rotation_1": np.random.default_rng(0).normal(size=flat.time.size)}
+    )
     with pytest.raises(InputError, match="never rises above 8 times its noise"):
         diagnose(SPECIMEN, [still])
     with pytest.raises(InputError, match="no recording"):

@@ -24,7 +24,7 @@ def problem():
 
 
 def test_eliminating_the_states_is_the_full_least_squares(problem) -> None:
-    measured, fitted = problem
+    _measured, fitted = problem
     linear = fitted.misfit.linearise(fitted.u + 0.3, fitted.states)
     reduced = reduce(linear)
     windows, samples = linear.residual.shape
@@ -80,9 +80,11 @@ def test_gradient_of_the_loss(problem) -> None:
 
 
 def test_whitening_is_the_inverse_root_of_the_covariance(problem) -> None:
-    measured, fitted = problem
+    measured, _fitted = problem
     predictor = Predictor(measured)
-    plain = Misfit(predictor, sensor_noise_only(predictor), of_specimen(SPECIMEN, measured.model), fixed_values(SPECIMEN))
+    plain = Misfit(
+        predictor, sensor_noise_only(predictor), of_specimen(SPECIMEN, measured.model), fixed_values(SPECIMEN)
+    )
     response = responses(predictor, plain.point(start_of(plain.unknowns), measured.states))
     whitening = with_base_noise(predictor, response)
     w = 0

@@ -40,8 +40,14 @@ REPEAT = {
 FORCE = {
     "unit": "m s-2",
     "terms": [
-        {"kind": "stiffness", "meaning": "couple with the rotation", "depends_on": "side", "coefficient": 0.021,
-         "standard_error": 0.004, "gain": 38.0},
+        {
+            "kind": "stiffness",
+            "meaning": "couple with the rotation",
+            "depends_on": "side",
+            "coefficient": 0.021,
+            "standard_error": 0.004,
+            "gain": 38.0,
+        },
     ],
     "curve": {"rotation": [-0.05, 0.0, 0.05], "force": [0.021, 0.0, 0.021]},
 }
@@ -86,9 +92,7 @@ def _predict(recording: Recording, starts: np.ndarray, inset: float) -> np.ndarr
     """Rotation over time, started anew at each window from the state of the true block; nan outside."""
     block: Any = models.get("housner")
     plain = {"width": WIDTH, "height": HEIGHT, "mass": MASS}
-    truth = block.simulate(
-        {**plain, "pivot_inset.inset_over_half_width": INSET}, recording.shaking(False)
-    ).channels
+    truth = block.simulate({**plain, "pivot_inset.inset_over_half_width": INSET}, recording.shaking(False)).channels
     samples = round(WINDOW / STEP)
     ran = block.trajectories(
         {**plain, "pivot_inset.inset_over_half_width": inset},
@@ -108,11 +112,7 @@ def _of_recording(recording: Recording, held_out: bool) -> tuple[Trace, Windows]
     measured = recording.channels[CHANNEL]
     samples = round(WINDOW / STEP)
     starts = np.array(
-        [
-            k
-            for k in range(0, measured.size - samples, samples)
-            if np.max(np.abs(measured[k : k + samples])) > 8 * SIGMA
-        ]
+        [k for k in range(0, measured.size - samples, samples) if np.max(np.abs(measured[k : k + samples])) > 8 * SIGMA]
     )
     before, after = (_predict(recording, starts, inset) for inset in (0.0, INSET))
     block = models.get("housner")
@@ -130,9 +130,7 @@ def _of_recording(recording: Recording, held_out: bool) -> tuple[Trace, Windows]
         np.array([np.sqrt(np.mean((measured - values)[k : k + samples] ** 2)) / SIGMA for k in starts])
         for values in (before, after)
     ]
-    windows = Windows(
-        recording.name, CHANNEL, held_out, starts * STEP, (starts + samples) * STEP, rms[0], rms[1]
-    )
+    windows = Windows(recording.name, CHANNEL, held_out, starts * STEP, (starts + samples) * STEP, rms[0], rms[1])
     return trace, windows
 
 
