@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from models.base import Mechanism, MechanismParameter, Values
 from models.housner.block import Block
+from models.interface.layered import LayeredWall
 from models.stacked.stack import Stack, at_joint
 
 
@@ -20,6 +23,11 @@ def on_stacked(stack: Stack, values: Values) -> Stack:
     )
 
 
+def on_interface(wall: LayeredWall, values: Values) -> LayeredWall:
+    """The base strip is shorter at unchanged stiffness per metre."""
+    return wall.replace(base_half_width=wall.base_half_width * (1.0 - np.asarray(values["inset_over_half_width"])))
+
+
 MECHANISM = Mechanism(
     name="pivot_inset",
     effect_class="contact_geometry",
@@ -31,7 +39,7 @@ MECHANISM = Mechanism(
     equation="b' = (1 - inset) b; alpha, R, I_O, the onset and e follow",
     signature="all rocking at constant sign of theta; the onset comes earlier",
     sentence="the block rocks on points {inset_over_half_width:.1%} of the half width inside its corners",
-    acts={"housner": on_housner, "stacked": on_stacked},
+    acts={"housner": on_housner, "stacked": on_stacked, "interface": on_interface},
     at_joints=("stacked",),
     source="Mordant, Denoel, Degee (COMPDYN 2015), section 2.1",
 )

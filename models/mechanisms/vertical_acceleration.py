@@ -7,17 +7,27 @@ import numpy as np
 from models.base import Mechanism, MechanismParameter, Values
 from models.errors import InputError
 from models.housner.block import Block
+from models.interface.layered import LayeredWall
 
 
-def on_housner(block: Block, values: Values) -> Block:
+def _acting(model: Block | LayeredWall, values: Values) -> bool:
+    """Whether it acts; an error where the base model takes the vertical motion already."""
     if np.all(np.asarray(values["kappa"]) == 0.0):
-        return block
-    if np.any(block.vertical_factor != 0.0):
+        return False
+    if np.any(model.vertical_factor != 0.0):
         raise InputError(
             "vertical_acceleration.kappa stands for a vertical motion that the base model leaves out, but it "
             "acts already; set [motion] vertical = false or leave the mechanism out"
         )
-    return block.replace(vertical_factor=values["kappa"])
+    return True
+
+
+def on_housner(block: Block, values: Values) -> Block:
+    return block.replace(vertical_factor=values["kappa"]) if _acting(block, values) else block
+
+
+def on_interface(wall: LayeredWall, values: Values) -> LayeredWall:
+    return wall.replace(vertical_factor=values["kappa"]) if _acting(wall, values) else wall
 
 
 MECHANISM = Mechanism(
@@ -29,6 +39,6 @@ MECHANISM = Mechanism(
     equation="G = g (1 + kappa a_z/g) in place of g",
     signature="between impacts at constant sign of theta, coherent with the vertical acceleration",
     sentence="{kappa:.2f} times the measured vertical acceleration acts on the block",
-    acts={"housner": on_housner},
+    acts={"housner": on_housner, "interface": on_interface},
     source="Yim, Chopra, Penzien (Earthquake Engng Struct. Dyn. 8, 1980)",
 )
