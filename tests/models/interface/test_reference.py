@@ -51,7 +51,7 @@ def test_the_midpoint_held_equations_are_the_written_out_ones() -> None:
             m2 * (-rise * w1**2 - h2 * np.cos(d) * w2**2 + big_g * np.cos(t1) + a * np.sin(t1)),
         ]
         equation = Equation(one)
-        base, top = equation.strips(q, v)
+        base, top, _ = equation.strips(q, v, np.zeros(0))
         couple = top.moment * np.cos(t2 - t1)
         forces = [-base.moment * np.cos(t1) + couple, -couple, base.force, top.force]
         found_mass, found = equation.balance(q, v, a, big_g)
