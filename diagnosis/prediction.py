@@ -76,7 +76,9 @@ class Predictor:
         out: FloatArray,
     ) -> None:
         m = self.measured
-        samples = max(m.windows[w].samples for w in windows)
+        compared = max(m.windows[w].samples for w in windows)
+        ahead = max(_ahead(sensors[p]) for p in members)
+        samples = compared + int(np.ceil(ahead / time_step))
         n, count = len(windows), len(members)
         full = [{**nulls, **{k: v for k, v in points[p].values.items() if k.partition(".")[0] not in SENSORS}}
                 for p in members]  # fmt: skip
@@ -91,16 +93,36 @@ class Predictor:
         ran = m.model.trajectories(
             values, shaking, first=first, samples=samples, initial=initial, options=self.options
         )
-        found = {c: ran[c].reshape(count, n, samples) for c in m.channels}
-        around = Surroundings(time_step, m.base[windows][:, :samples])
+        found = {c: _held(ran[c].reshape(count, n, samples), shaking, m.first[windows]) for c in m.channels}
+        base = np.pad(m.base[windows][:, :compared], ((0, 0), (0, samples - compared)))
+        around = Surroundings(time_step, base)
         for k, p in enumerate(members):
             recorded = {c: found[c][k] for c in m.channels}
             for name, sensor in SENSORS.items():
                 if name in sensors[p] and "response" in sensor.acts:
                     given = {**sensor.nulls, "reference_peak": m.reference_peak, **sensors[p][name]}
-                    recorded = sensor.acts["response"](recorded, given, around)
+                    act = sensor.acts.get("windowed", sensor.acts["response"])
+                    recorded = act(recorded, given, around)
             for c, channel in enumerate(m.channels):
-                out[p, windows, c, :samples] = recorded[channel]
+                out[p, windows, c, :compared] = recorded[channel][:, :compared]
+
+
+def _ahead(switched: Mapping[str, Mapping[str, float]]) -> float:
+    """Seconds beyond a window's end that the sensors look."""
+    return float(
+        sum(
+            sensor.acts["lag"]({**sensor.nulls, **switched[name]})
+            for name, sensor in SENSORS.items()
+            if name in switched and "lag" in sensor.acts
+        )
+    )
+
+
+def _held(channel: FloatArray, shaking: Shaking, first: NDArray[np.int64]) -> FloatArray:
+    """Channel (P, n, samples) with the last value held beyond the end of the recording."""
+    last = np.clip(shaking.horizontal.size - 1 - first, 0, channel.shape[2] - 1)
+    index = np.minimum(np.arange(channel.shape[2])[None, :], last[:, None])
+    return np.take_along_axis(channel, np.broadcast_to(index, channel.shape), axis=2)
 
 
 def _base_key(switched: Mapping[str, Mapping[str, float]]) -> tuple[object, ...]:
@@ -108,7 +130,7 @@ def _base_key(switched: Mapping[str, Mapping[str, float]]) -> tuple[object, ...]
     return tuple(
         (name, tuple(sorted(switched[name].items())))
         for name, sensor in SENSORS.items()
-        if name in switched and ("base" in sensor.acts or "clock" in sensor.acts)
+        if name in switched and not {"base", "clock", "lag"}.isdisjoint(sensor.acts)
     )
 
 
@@ -124,6 +146,8 @@ def _as_felt(shaking: Shaking, switched: Mapping[str, Mapping[str, float]]) -> S
         if "clock" in sensor.acts:
             more_rate, more_lag = sensor.acts["clock"](given)
             rate, lag = rate + more_rate, lag + more_lag
+        if "lag" in sensor.acts:
+            lag += sensor.acts["lag"](given)
     if rate == 0.0 and lag == 0.0:
         return shaking
     return read_at(shaking, rate, lag)

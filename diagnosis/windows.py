@@ -35,12 +35,23 @@ class Window:
     samples: int
 
 
+def rest_level(smoothed: FloatArray, sigma: float, time_step: float) -> float:
+    """What the sensor reads while nothing moves: not zero when its own zero is off; 0 if it always moves."""
+    from scipy.ndimage import maximum_filter1d, minimum_filter1d
+
+    reach = max(1, round(QUIET_FOR / time_step))
+    range_ = maximum_filter1d(smoothed, reach) - minimum_filter1d(smoothed, reach)
+    still = range_ < QUIET * sigma
+    return float(np.median(smoothed[still])) if still.sum() > reach else 0.0
+
+
 def cut(values: FloatArray, sigma: float, time_step: float, recording: int) -> list[Window]:
     """Windows of one recording by its leading channel (n_times,), disjoint and in order."""
     from scipy.ndimage import maximum_filter1d
     from scipy.signal import find_peaks
 
-    size = np.abs(smooth(values, time_step, SMOOTHING))
+    smoothed = smooth(values, time_step, SMOOTHING)
+    size = np.abs(smoothed - rest_level(smoothed, sigma, time_step))
     peaks = np.asarray(find_peaks(size, height=ABOVE_NOISE * sigma, prominence=QUIET * sigma)[0], np.int64)
     reach = max(1, round(QUIET_FOR / time_step))
     quiet = maximum_filter1d(size, reach) < QUIET * sigma

@@ -4,7 +4,9 @@
 
 * ``base``: (shaking, values) -> shaking; the motion the base really makes, from the measured one;
 * ``clock``: values -> (rate, lag); recorded(t) = true((1 + rate) t - lag) for every response;
-* ``response``: (channels, values, surroundings) -> channels as the instrument records them.
+* ``response``: (channels, values, surroundings) -> channels as the instrument records them;
+* ``lag`` and ``windowed``, for an instrument with a memory: values -> s by which it lags, and its
+  response advanced by this lag, as windows use it (they then need the motion for ``lag`` longer).
 """
 
 from __future__ import annotations

@@ -1,8 +1,10 @@
 """A causal Butterworth filter in the response channels.
 
 The filter acts on the signal taken as linear between samples, so that a corner above the Nyquist
-frequency of the recording keeps its meaning. What came before the first sample is taken as the
-parabola through the first samples: a window starts at a peak, where motion is just that.
+frequency of the recording keeps its meaning. In windows it is applied in two parts: its delay of slow signals,
+as a clock error, and the filter advanced by that delay. So a window that starts at a recorded peak
+starts at the peak of the motion too, and what came before its first sample is the parabola through
+the first samples.
 """
 
 from __future__ import annotations
@@ -63,11 +65,36 @@ def run(system: System, signal: FloatArray, time_step: float) -> FloatArray:
     return np.asarray(lfilter(numerator[0], denominator, whole - first, axis=-1) + steady * first)[..., count:]
 
 
+def delay(values: Values) -> float:
+    """Delay (s) of slow signals: b_1/omega_c with b_1 the linear coefficient of the Butterworth polynomial."""
+    found = 0.0
+    for corner, order, kind in stages(values):
+        if kind == "lowpass":
+            # the poles lie on the unit circle: the coefficient is the sum of -Re(poles)
+            poles = sum(np.sin(np.pi * (2 * k + 1) / (2 * order)) for k in range(order))
+            found += poles / (2.0 * np.pi * corner)
+    return float(found)
+
+
 def respond(channels: Channels, values: Values, around: Surroundings) -> Channels:
     for corner, order, kind in stages(values):
         system = discrete(corner, order, kind, around.time_step)
         channels = {name: run(system, x, around.time_step) for name, x in channels.items()}
     return channels
+
+
+def respond_in_windows(channels: Channels, values: Values, around: Surroundings) -> Channels:
+    advance = delay(values) / around.time_step
+    filtered = respond(channels, values, around)
+    return {name: shifted(x, advance) for name, x in filtered.items()} if advance else filtered
+
+
+def shifted(signal: FloatArray, advance: float) -> FloatArray:
+    """The signal read ``advance`` samples later; the last value is held."""
+    from scipy.interpolate import CubicSpline
+
+    index = np.arange(signal.shape[-1])
+    return np.asarray(CubicSpline(index, signal, axis=-1)(np.minimum(index + advance, index[-1])))
 
 
 MECHANISM = Mechanism(
@@ -86,6 +113,6 @@ MECHANISM = Mechanism(
     equation="recorded = causal Butterworth low-pass (corner_hz, order) of true, every response channel",
     signature="at impacts and above the corner; a lag of all channels",
     sentence="the response channels went through a causal low-pass of order {order:.0f} at {corner_hz:.3g} Hz",
-    acts={"response": respond},
+    acts={"response": respond, "lag": delay, "windowed": respond_in_windows},
     source="anti-alias and display filters of loggers",
 )  # fmt: skip

@@ -7,6 +7,7 @@ import pytest
 
 from diagnosis.prediction import read_at
 from diagnosis.sensors import SENSORS, moved, recorded
+from diagnosis.sensors.base import Surroundings
 from models.shaking import Shaking
 
 STEP = 0.002
@@ -29,7 +30,7 @@ def test_null_changes_nothing(name: str) -> None:
 def test_declares_what_a_fit_needs(name: str) -> None:
     sensor = SENSORS[name]
     assert sensor.name == name
-    assert sensor.acts and set(sensor.acts) <= {"base", "clock", "response"}
+    assert sensor.acts and set(sensor.acts) <= {"base", "clock", "response", "lag", "windowed"}
     first = sensor.parameters[0]
     assert first.low < first.high and (np.isinf(first.null) or first.low <= first.null <= first.high)
     assert sensor.sentence.format_map(sensor.nulls)
@@ -85,3 +86,22 @@ def test_filter_is_butterworth(order: int, corner: float) -> None:
     wave = np.sin(2 * np.pi * corner * np.arange(6000) * STEP)
     out = recorded({"rotation_1": wave}, switched, STEP, np.zeros(6000))["rotation_1"][3000:]
     assert np.sqrt(2 * np.mean(out**2)) == pytest.approx(np.sqrt(0.5), rel=5e-3)
+
+
+@pytest.mark.parametrize("order", [1, 2, 4])
+def test_a_filter_in_windows_is_the_filter_of_the_record(order: int) -> None:
+    """A smooth motion seen through a filter from a window's peak on, base and response clock apart."""
+    sensor = SENSORS["filter"]
+    values = {**sensor.nulls, "corner_hz": 8.0, "order": float(order)}
+    lag = sensor.acts["lag"](values)
+    frequency = 1.1
+    peak = 0.25 / frequency + 5.0 / frequency
+    wave = lambda t: np.sin(2 * np.pi * frequency * t)  # noqa: E731
+    long = Surroundings(STEP, np.zeros(8000))
+    whole = sensor.acts["response"]({"rotation_1": wave(np.arange(8000) * STEP)}, values, long)["rotation_1"]
+    recorded_peak = round((peak + lag) / STEP)
+    since = np.arange(400) * STEP
+    window = {"rotation_1": wave(recorded_peak * STEP - lag + since)}
+    around = Surroundings(STEP, np.zeros(400))
+    seen = sensor.acts["windowed"](window, values, around)["rotation_1"]
+    np.testing.assert_allclose(seen[:300], whole[recorded_peak : recorded_peak + 300], atol=0.01)
