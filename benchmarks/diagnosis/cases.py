@@ -43,12 +43,13 @@ WITHIN = 0.1
 """Of nominal size, in the search with fast runs."""
 EXACT_WITHIN = 0.25
 """Of nominal size, on the motion of the case itself."""
-MOST_BEYOND = 4
-"""Shares beyond nominal size in a row after which the draw is given up."""
+MOST_JUMPS = 3
+"""Steps over nominal size after which the draw is given up."""
 REFERENCE_LACKS = {"sliding", "bounce", "wall_flexibility"}
 """Mechanisms whose truth comes from the compiled lanes, at a tenth of their usual step."""
 WEAKEST = 3.0
-"""Size at the end of the range under which the draw is given up."""
+WEAKEST_OF_PEAK = 0.03
+"""Size at the end of the range, and the same over the peak, under which the draw is given up."""
 TAIL = 1.0
 VERTICAL_SHARE = 0.2
 """Of the cases in which the base also shakes vertically, and the specimen says so."""
@@ -219,16 +220,17 @@ class _Draft:
         return with_size(share), [{"name": law.name, "class": "open", "parameters": {"size": share * end}}], not reached
 
     def _nominal(self, effects_at: Callable[[float], Effects], peak: float) -> tuple[float, bool]:
-        """Share (0-1) of the way to the end of the range that has nominal size; 1 and False if none has.
+        """Share (0-1) of the way to the end of the range that has nominal size, and whether one has.
 
         Rocking from rest is chaotic: the peak, hence the noise, jumps with the parameter. So shares are
-        tried in turn, and between the last too small one and the next.
+        tried in turn, and between the last too small one and the next. False: the range ends, or the block
+        no longer rocks, before nominal size; the share is then the largest possible.
         """
-        below, beyond = 0.0, 0
+        below, size_below, jumps = 0.0, 0.0, 0
         for share in SHARES.tolist():
             found = self._size(effects_at(share), peak)
             if found < (1.0 - WITHIN) * size.NOMINAL:
-                below, beyond = share, 0
+                below, size_below, jumps = share, found, 0
                 continue
             if found <= (1.0 + WITHIN) * size.NOMINAL:
                 return share, True
@@ -239,11 +241,12 @@ class _Draft:
                 if abs(found / size.NOMINAL - 1.0) <= WITHIN:
                     return middle, True
                 low, high = (middle, high) if found < size.NOMINAL else (low, middle)
-            beyond += 1
-            if beyond == MOST_BEYOND:
+            jumps += math.isfinite(found)
+            if jumps == MOST_JUMPS:
                 raise Unsuitable
-        if below == SHARES[-1] and self._size(effects_at(1.0), peak) > WEAKEST:
-            return 1.0, False
+        # the largest share at which the block still rocks is too small
+        if size_below > min(WEAKEST, WEAKEST_OF_PEAK / self.wish.noise) and jumps == 0:
+            return below, False
         raise Unsuitable
 
     def _size(self, effects: Effects, peak: float) -> float:
