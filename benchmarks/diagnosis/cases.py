@@ -99,6 +99,14 @@ def make(wish: Wish, seed: int) -> Case:
     raise RuntimeError(f"{wish.label} ({wish.kind} {wish.names}): no suitable draw in {ATTEMPTS}")
 
 
+def _alone(row: Hidden, value: float, shapes: Mapping[str, float]) -> Effects:
+    """One effect of the catalogue."""
+    numbers = {row.parameter: value, **shapes}
+    if row.sensor:
+        return Effects({}, {row.name: numbers})
+    return Effects({f"{row.name}.{k}": v for k, v in numbers.items()}, {})
+
+
 class _Draft:
     """One attempt at a case."""
 
@@ -135,7 +143,8 @@ class _Draft:
         effects, told, weak = self._effects(peak)
         motions = [self._truth(k, effects, exact=True) for k in range(len(RECORDINGS))]
         alpha = math.atan2(self.block.true["width"], self.block.true["height"])
-        channels, notes = {}, {}
+        channels: dict[str, Mapping[str, FloatArray]] = {}
+        notes: dict[str, dict[str, Any]] = {}
         scale = self._sensor_peak(effects, peak, motions)
         for k, name in enumerate(RECORDINGS):
             rotation, rate, impacts = motions[k]
@@ -184,17 +193,11 @@ class _Draft:
                 end = max(end, self.block.true["width"] / self.block.true["height"])
             shapes = row.shapes(self.rng, peak)
 
-            def with_value(value: float, row: Hidden = row, shapes: dict[str, float] = shapes) -> Effects:
-                numbers = {row.parameter: value, **shapes}
-                if row.sensor:
-                    return Effects({}, {row.name: numbers})
-                return Effects({f"{row.name}.{k}": v for k, v in numbers.items()}, {})
-
-            share, reached = self._nominal(lambda x, row=row, end=end, w=with_value: w(row.at(x, end)), peak)
+            share, reached = self._nominal(lambda x: _alone(row, row.at(x, end), shapes), peak)  # noqa: B023
             value = row.at(share, end)
             if self.wish.relative_size == 0.5:
                 value = row.half(value)
-            alone = with_value(value)
+            alone = _alone(row, value, shapes)
             both = Effects({**both.mechanisms, **alone.mechanisms}, {**both.sensors, **alone.sensors})
             told.append(
                 {"name": name, "class": row.effect_class, "parameters": {row.parameter: value, **shapes},

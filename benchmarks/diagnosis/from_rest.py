@@ -104,12 +104,12 @@ class _Fit:
             step.append(1e-3 * (bounds[-1] - bounds[0]))
 
         def residual(x: FloatArray) -> FloatArray:
-            return self._misfit(x[None], mechanism)[0]
+            return np.asarray(self._misfit(x[None], mechanism)[0])
 
         def jacobian(x: FloatArray) -> FloatArray:
             way = np.where(x + step <= high, 1.0, -1.0) * step
             all_at_once = self._misfit(np.vstack([x, x + np.diag(way)]), mechanism)
-            return ((all_at_once[1:] - all_at_once[0]) / way[:, None]).T
+            return np.asarray(((all_at_once[1:] - all_at_once[0]) / way[:, None]).T)
 
         x = np.clip(start, np.add(low, 1e-9), np.subtract(high, 1e-9))
         found: OptimizeResult = least_squares(

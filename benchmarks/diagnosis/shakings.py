@@ -70,7 +70,7 @@ def scaled(shaking: Shaking, factor: float, vertical: bool) -> Shaking:
 
 def fine(samples: np.ndarray) -> np.ndarray:
     """Linear interpolation to ``STEP / FINE``."""
-    return np.interp(np.arange((samples.size - 1) * FINE + 1) / FINE, np.arange(samples.size), samples)
+    return np.asarray(np.interp(np.arange((samples.size - 1) * FINE + 1) / FINE, np.arange(samples.size), samples))
 
 
 def on_fine_grid(shaking: Shaking) -> Shaking:

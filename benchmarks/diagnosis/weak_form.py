@@ -99,7 +99,7 @@ def _bic(wanted: FloatArray, base: FloatArray, columns: list[FloatArray]) -> flo
     prior[0, 0] = prior[1, 1] = 1.0
     whole, aim = np.vstack([design, prior]), np.concatenate([wanted, np.zeros(2)])
     left = aim - whole @ np.linalg.lstsq(whole, aim, rcond=None)[0]
-    return count * math.log(float(left @ left) / count) + design.shape[1] * math.log(count)
+    return float(count * math.log(float(left @ left) / count) + design.shape[1] * math.log(count))
 
 
 def _rows(specimen: Specimen, recording: Recording) -> tuple[FloatArray, dict[str, FloatArray], FloatArray]:
