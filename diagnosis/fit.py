@@ -23,6 +23,7 @@ TOLERANCE = 0.02
 """Gain in 2 log likelihood under which an iteration ends the fit."""
 BADLY, SCATTERED = 3.0, 64
 """Squared misfit per sample of a stuck window, and the states tried for it."""
+SCATTERINGS = 3
 
 
 @dataclass(frozen=True)
@@ -48,17 +49,21 @@ class Fitted:
 def fit_thoroughly(misfit: Misfit, u: FloatArray, states: FloatArray) -> Fitted:
     """The minimum; windows that are stuck there start again from scattered states."""
     found = fit(misfit, u, states)
-    scattered = scatter(found)
-    return found if scattered is None else fit(misfit, found.u, scattered)
+    for seed in range(SCATTERINGS):
+        scattered = scatter(found, seed)
+        if scattered is None:
+            break
+        found = fit(misfit, found.u, scattered)
+    return found
 
 
-def scatter(found: Fitted) -> FloatArray | None:
+def scatter(found: Fitted, seed: int) -> FloatArray | None:
     """States (W, S) with better ones for windows that misfit badly; None if there are none."""
     misfit, m = found.misfit, found.misfit.predictor.measured
     bad = np.expm1(found.window_losses / (NU * m.count)) * NU > BADLY
     if not bad.any():
         return None
-    draws = qmc.MultivariateNormalQMC(np.zeros(found.states.shape[1]), seed=0).random(SCATTERED)
+    draws = qmc.MultivariateNormalQMC(np.zeros(found.states.shape[1]), seed=seed).random(SCATTERED)
     width = m.state_size * np.where(np.arange(SCATTERED) % 2 == 0, 0.05, 0.25)[:, None]
     trials = found.states[None] + (draws * width)[:, None, :]
     losses = misfit.losses(misfit.residuals([misfit.point(found.u, x) for x in trials]))

@@ -31,6 +31,12 @@ PER_SHAPE = 2.0
 WORTH = 4.0
 """Screen statistic under which a refit is not tried (the strongest FEWEST are tried all the same)."""
 FEWEST, MOST = 5, 16
+SHARE_OF_FIRST, SHARE_OF_SECOND = 0.05, 0.25
+"""Of the strongest statistic: what a first or a further mechanism must reach to be refitted."""
+HOPELESS = 8.0
+"""Statistic of the strongest further mechanism under which an adequate model is not extended."""
+TIE = 2.0
+"""Gain within which two explanations are one for the data: the earlier in the catalogue is named."""
 QUICK = 6
 """Iterations of a first refit; the strongest are then taken further."""
 THOROUGH = 2
@@ -108,14 +114,22 @@ def search(base: Explanation, candidates: Sequence[Candidate], progress: Progres
     _more(found, progress)
     yield found
     _backward(found)
+    settle_ties(found)
     yield found
+
+
+def worth_a_refit(scores: Sequence[Score], fewest: int, share: float) -> list[Score]:
+    """Those whose statistic is worth it beside the strongest one's, and the ``fewest`` first in any case."""
+    largest = max((s.statistic for s in scores), default=0.0)
+    least = max(WORTH, share * largest)
+    return [s for k, s in enumerate(scores) if s.starts and (k < fewest or s.statistic >= least)]
 
 
 def _refits(
     explanation: Explanation, scores: Sequence[Score], fewest: int, most: int
 ) -> list[Explanation]:
     """The strongest of a screen, each from its starts."""
-    wanted = [s for k, s in enumerate(scores) if s.starts and (k < fewest or s.statistic >= WORTH)][:most]
+    wanted = worth_a_refit(scores, fewest, SHARE_OF_SECOND)[:most]
     fits = [best_of([extend(explanation, s.candidate, start, QUICK) for start in s.starts]) for s in wanted]
     fits.sort(key=adjusted)
     return [again(e) if k < THOROUGH else e for k, e in enumerate(fits)]
@@ -125,7 +139,7 @@ def _singles(found: Search, progress: Progress) -> None:
     opened = open_screen(found.base.fitted)
     found.scores = score(opened, found.candidates)
     found.null = null_distribution(opened, found.scores)
-    wanted = [s for k, s in enumerate(found.scores) if s.starts and (k < FEWEST or s.statistic >= WORTH)][:MOST]
+    wanted = worth_a_refit(found.scores, FEWEST, SHARE_OF_FIRST)[:MOST]
     for k, entry in enumerate(wanted):
         progress(f"refitting {entry.candidate.name}", 0.15 + 0.3 * k / len(wanted))
         fits = [extend(found.base, entry.candidate, start, QUICK) for start in entry.starts]
@@ -160,11 +174,11 @@ def with_memory(explanation: Explanation) -> Explanation:
 
 
 def misfit_per_sample(explanation: Explanation) -> float:
-    """Squared whitened residual per sample, without the worst tenth of the windows."""
+    """Squared whitened residual per sample, without the worst tenth (at least one) of the windows."""
     misfit = explanation.fitted.misfit
     residual = misfit.residuals([misfit.point(explanation.fitted.u, explanation.fitted.states)])[0]
     each = np.sort(np.sum(residual**2, axis=1) / misfit.predictor.measured.count)
-    return float(np.mean(each[: max(1, int(np.ceil(0.9 * each.size)))]))
+    return float(np.mean(each[: max(1, int(0.9 * each.size))]))
 
 
 def adequate(explanation: Explanation) -> bool:
@@ -214,7 +228,10 @@ def seconds(found: Search, explanation: Explanation) -> list[Score]:
 
 def _extended(found: Search, explanation: Explanation) -> list[Explanation]:
     """Refits with one more mechanism of another class."""
-    return _refits(explanation, seconds(found, explanation), 2, SECOND_TRIES)
+    scores = seconds(found, explanation)
+    if adequate(explanation) and max((s.statistic for s in scores), default=0.0) < HOPELESS:
+        return []
+    return _refits(explanation, scores, 2, SECOND_TRIES)
 
 
 def _more(found: Search, progress: Progress) -> None:
@@ -252,6 +269,17 @@ def _backward(found: Search) -> None:
     better = min(same, key=adjusted)
     if adjusted(better) < adjusted(found.best):
         found.best = better
+
+
+def settle_ties(found: Search) -> None:
+    """Name the earlier in the catalogue of explanations that the data cannot tell apart at all."""
+    if found.best is None:
+        return
+    place = {c: k for k, c in enumerate(found.candidates)}
+    same = [e for e in [found.best, *found.tried] if len(e.candidates) == len(found.best.candidates)]
+    near = [e for e in same if adjusted(e) - adjusted(found.best) < TIE]
+    found.tried.append(found.best)
+    found.best = min(near, key=lambda e: (sum(place[c] for c in e.candidates), adjusted(e)))
 
 
 def rivals(found: Search) -> list[tuple[Explanation, Candidate, float]]:
