@@ -22,7 +22,7 @@ ITERATIONS = 14
 TOLERANCE = 0.02
 """Gain in 2 log likelihood under which an iteration ends the fit."""
 BADLY, SCATTERED = 3.0, 64
-"""Squared misfit per sample of a stuck window, and the states tried for it."""
+"""Squared misfit per sample of a stuck window (over that of most windows), and the states tried for it."""
 SCATTERINGS = 3
 
 
@@ -60,7 +60,8 @@ def fit_thoroughly(misfit: Misfit, u: FloatArray, states: FloatArray) -> Fitted:
 def scatter(found: Fitted, seed: int) -> FloatArray | None:
     """States (W, S) with better ones for windows that misfit badly; None if there are none."""
     misfit, m = found.misfit, found.misfit.predictor.measured
-    bad = np.expm1(found.window_losses / (NU * m.count)) * NU > BADLY
+    each = np.expm1(found.window_losses / (NU * m.count)) * NU
+    bad = each > BADLY * max(1.0, float(np.median(each)))
     if not bad.any():
         return None
     draws = qmc.MultivariateNormalQMC(np.zeros(found.states.shape[1]), seed=seed).random(SCATTERED)
@@ -86,9 +87,7 @@ def fit(misfit: Misfit, u: FloatArray, states: FloatArray, iterations: int = ITE
         reduced = reduce(linear)
         weights = misfit.weights(linear.residual)
         hessian, gradient = normal(misfit, reduced, weights, u)
-        steps = [
-            clip(misfit.unknowns, u + _step(misfit, hessian, gradient, u, damping * d)) for d in DAMPINGS
-        ]
+        steps = [clip(misfit.unknowns, u + _step(misfit, hessian, gradient, u, damping * d)) for d in DAMPINGS]
         points, moved = [], []
         for candidate in steps:
             ahead = linear.residual + linear.by_unknown @ (candidate - u)
@@ -118,9 +117,7 @@ def fit(misfit: Misfit, u: FloatArray, states: FloatArray, iterations: int = ITE
     return Fitted(misfit, u, states, window, loss)
 
 
-def normal(
-    misfit: Misfit, reduced: Reduced, weights: FloatArray, u: FloatArray
-) -> tuple[FloatArray, FloatArray]:
+def normal(misfit: Misfit, reduced: Reduced, weights: FloatArray, u: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Gauss-Newton Hessian (k, k) and gradient (k,) of half the loss, priors included."""
     j = reduced.by_unknown
     hessian = np.einsum("w,wmi,wmj->ij", weights, j, j, optimize=True)

@@ -84,9 +84,7 @@ def arrange(
     for state in states:
         needed = state.replace("_rate", "")
         if needed not in channels:
-            raise InputError(
-                f"{needed} is missing in a recording: a window cannot start without it; record or map it."
-            )
+            raise InputError(f"{needed} is missing in a recording: a window cannot start without it; record or map it.")
     lead = channels[0]
     windows: list[Window] = []
     for k, recording in enumerate(recordings):
@@ -117,9 +115,7 @@ def arrange(
     )
 
 
-def gather(
-    recordings: Sequence[Recording], windows: Sequence[Window], channels: Sequence[str]
-) -> dict[str, Any]:
+def gather(recordings: Sequence[Recording], windows: Sequence[Window], channels: Sequence[str]) -> dict[str, Any]:
     """Values, mask, noise and base motion of the windows, padded to the longest one."""
     longest = max(w.samples for w in windows)
     shape = (len(windows), len(channels), longest)

@@ -106,9 +106,7 @@ class Misfit:
                 points.append(self.point(u, moved))
             widths.append(2.0 * STATE_STEP * m.state_size[s])
         r = self.residuals(points)
-        columns = np.stack(
-            [(r[2 + 2 * i] - r[1 + 2 * i]) / width for i, width in enumerate(widths)], axis=-1
-        )
+        columns = np.stack([(r[2 + 2 * i] - r[1 + 2 * i]) / width for i, width in enumerate(widths)], axis=-1)
         k = len(self.unknowns)
         return Linear(r[0], columns[..., :k], columns[..., k:])
 

@@ -37,9 +37,7 @@ class Predictor:
     measured: Measured
     options: Mapping[str, str] = field(default_factory=dict)
 
-    def predict(
-        self, points: Sequence[Point], shakings: Sequence[Shaking] | None = None
-    ) -> FloatArray:
+    def predict(self, points: Sequence[Point], shakings: Sequence[Shaking] | None = None) -> FloatArray:
         """Channels (P, W, C, N) of P points; ``shakings`` replace the measured ones."""
         m = self.measured
         out = np.zeros((len(points), *m.values.shape))
@@ -90,9 +88,7 @@ class Predictor:
         initial = {s: states[:, :, k].ravel() for k, s in enumerate(m.model.states)}
         initial |= {k: np.tile(v[windows], count) for k, v in m.memory.items()}
         first = np.tile(m.first[windows], count)
-        ran = m.model.trajectories(
-            values, shaking, first=first, samples=samples, initial=initial, options=self.options
-        )
+        ran = m.model.trajectories(values, shaking, first=first, samples=samples, initial=initial, options=self.options)
         found = {c: _held(ran[c].reshape(count, n, samples), shaking, m.first[windows]) for c in m.channels}
         base = np.pad(m.base[windows][:, :compared], ((0, 0), (0, samples - compared)))
         around = Surroundings(time_step, base)

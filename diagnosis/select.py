@@ -125,9 +125,7 @@ def worth_a_refit(scores: Sequence[Score], fewest: int, share: float) -> list[Sc
     return [s for k, s in enumerate(scores) if s.starts and (k < fewest or s.statistic >= least)]
 
 
-def _refits(
-    explanation: Explanation, scores: Sequence[Score], fewest: int, most: int
-) -> list[Explanation]:
+def _refits(explanation: Explanation, scores: Sequence[Score], fewest: int, most: int) -> list[Explanation]:
     """The strongest of a screen, each from its starts."""
     wanted = worth_a_refit(scores, fewest, SHARE_OF_SECOND)[:most]
     fits = [best_of([extend(explanation, s.candidate, start, QUICK) for start in s.starts]) for s in wanted]
@@ -156,7 +154,7 @@ def _singles(found: Search, progress: Progress) -> None:
     near = NEAR_ADEQUATE if adequate(leader) else NEAR
     for k, single in enumerate(found.singles[1:], start=1):
         if found.gain(single) > near * found.gain(leader):
-            found.singles[k] = from_other(again(single), leader)
+            found.singles[k] = from_other(again(single) if k < THOROUGH else single, leader)
     found.singles.sort(key=adjusted)
     recounted = with_memory(found.singles[0])
     if recounted.loss < found.singles[0].loss - 1.0:

@@ -27,9 +27,7 @@ def vertical_acts(specimen: Specimen, model: Model, recordings: Sequence[Recordi
     return model.vertical_by_default and all("base_acceleration_z" in r.channels for r in recordings)
 
 
-def measure(
-    specimen: Specimen, recordings: Sequence[Recording], reference_peak: float | None = None
-) -> Measured:
+def measure(specimen: Specimen, recordings: Sequence[Recording], reference_peak: float | None = None) -> Measured:
     """The recordings cut in windows. Raises InputError when there is nothing to compare."""
     if not recordings:
         raise InputError("no recording to learn from: name at least one.")

@@ -77,9 +77,7 @@ def of_specimen(specimen: Specimen, model: Model) -> tuple[Unknown, ...]:
         nominal = specimen.parameters[name]
         sd = abs(relative * nominal)
         reach = WIDEST_PRIOR * sd
-        found.append(
-            Unknown(name, units[name], nominal - reach, nominal + reach, nominal, sd, prior=(nominal, sd))
-        )
+        found.append(Unknown(name, units[name], nominal - reach, nominal + reach, nominal, sd, prior=(nominal, sd)))
     for name, (low, high) in specimen.calibrate.items():
         unit = units[name]
         if low > 0.0 and high / low > LOG_SPAN:

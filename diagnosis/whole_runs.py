@@ -37,7 +37,10 @@ def with_runs_from_rest(
 
 
 def sensed_run(
-    explanation: Explanation, measured: Measured, recording: Recording, channels: Sequence[str],
+    explanation: Explanation,
+    measured: Measured,
+    recording: Recording,
+    channels: Sequence[str],
     initial: Mapping[str, float] | None = None,
 ) -> dict[str, FloatArray]:
     """Channels of one run under the recording's base motion, as the sensors would record them."""
@@ -51,7 +54,10 @@ def sensed_run(
     like = measured.shakings[0]
     shaking = recording.shaking(like.vertical is not None, vertical_acts=like.vertical_acts)
     history = measured.model.simulate(
-        of_wall, moved(shaking, sensors), initial=dict(initial or {}) or None, duration=shaking.duration,
+        of_wall,
+        moved(shaking, sensors),
+        initial=dict(initial or {}) or None,
+        duration=shaking.duration,
         options=misfit.predictor.options,
     )
     found = {c: np.asarray(history.channels[c]).reshape(-1) for c in channels}

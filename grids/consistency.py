@@ -26,9 +26,7 @@ def check_names(model: Model, given: Collection[str], mechanisms: Mapping[str, M
             continue
         choices = "; or ".join(" and ".join(choice) if choice else "none of them" for choice in group)
         if any(set(choice) < present for choice in group):
-            raise InputError(
-                f"{_listed(sorted(present))} are alternatives, all given; give exactly one of: {choices}."
-            )
+            raise InputError(f"{_listed(sorted(present))} are alternatives, all given; give exactly one of: {choices}.")
         held = f"only {_listed(sorted(present))} given" if present else "none is given"
         raise InputError(
             f"model '{model.name}' needs one of these alternatives, {held}; give exactly one of: {choices}."
@@ -47,8 +45,7 @@ def _check_mechanism(mechanism: Mechanism, names: set[str]) -> None:
     if mechanism.name in names:
         handle = next(n for n in sorted(names) if n.startswith(f"{mechanism.name}."))
         raise InputError(
-            f"'{mechanism.name}' and '{handle}' are two handles for the same physics; "
-            "give the one or the other."
+            f"'{mechanism.name}' and '{handle}' are two handles for the same physics; give the one or the other."
         )
     effects = [p.name for p in mechanism.parameters if not p.shape]
     handles = {f"{mechanism.name}.{effect}{joint}" for effect in effects for joint in ("", "_base", "_top")}

@@ -1,24 +1,24 @@
 """Plan files: what a study varies, by what the wall is shaken, what is kept.
 
-    [study]
-    name = "slender_walls"            # its folder under results/
-    model = "housner"                 # or: specimen = "extended.toml"
-    [motion]
-    files = ["ridgecrest_2019_clc"]   # several records make the axis `motion`, the first dimension
-    component = "north"
-    vertical = true
-    [parameters]                      # fixed values; numbers are SI
-    height = "1.8 m"
-    [options]                         # words of the model
-    formulation = "nonlinear"
-    [axes]                            # in the order of the cube's dimensions
-    pga = { linspace = [0.05, 0.77, 37], unit = "g" }
-    [outputs]
-    names = ["peak_rotation"]         # all without this table
-    [run]
-    block_seconds = 5
-    tail = "10 s"
-    integrator = "lanes"
+[study]
+name = "slender_walls"            # its folder under results/
+model = "housner"                 # or: specimen = "extended.toml"
+[motion]
+files = ["ridgecrest_2019_clc"]   # several records make the axis `motion`, the first dimension
+component = "north"
+vertical = true
+[parameters]                      # fixed values; numbers are SI
+height = "1.8 m"
+[options]                         # words of the model
+formulation = "nonlinear"
+[axes]                            # in the order of the cube's dimensions
+pga = { linspace = [0.05, 0.77, 37], unit = "g" }
+[outputs]
+names = ["peak_rotation"]         # all without this table
+[run]
+block_seconds = 5
+tail = "10 s"
+integrator = "lanes"
 """
 
 from __future__ import annotations
@@ -122,9 +122,7 @@ def parse_plan(text: str, folder: Path, *, sensors: Mapping[str, Mechanism] | No
     """The plan of a TOML text, whose relative paths start at ``folder``. Raises InputError."""
     file = check(PlanFile, parse_toml(text))
     if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]*", file.study.name):
-        raise InputError(
-            f"[study] name = '{file.study.name}' becomes a folder; use letters, digits, '_', '-' and '.'."
-        )
+        raise InputError(f"[study] name = '{file.study.name}' becomes a folder; use letters, digits, '_', '-' and '.'.")
     specimen = _specimen(file.study, folder, sensors or {})
     model = find_model(specimen.model if specimen else file.study.model, "[study] model")
     targets = Targets(model, sensors or {}, with_scales=True)
@@ -201,9 +199,7 @@ def _varied(axes: tuple[Axis, ...], fixed: Mapping[str, float], options: Mapping
     for axis in axes:
         for name in axis.sets:
             if name in places:
-                raise InputError(
-                    f"'{name}' is set by {places[name]} and by [axes] {axis.name}; leave one out."
-                )
+                raise InputError(f"'{name}' is set by {places[name]} and by [axes] {axis.name}; leave one out.")
             places[name] = f"[axes] {axis.name}"
             varied.add(name)
     return varied
@@ -232,9 +228,7 @@ def _outputs(table: OutputsTable | None, model: Model) -> tuple[str, ...]:
     names = known if table is None else table.names
     for index, name in enumerate(names):
         if name not in known:
-            raise InputError(
-                f"[outputs] names: '{name}' is no output of model '{model.name}'; {nearest(name, known)}"
-            )
+            raise InputError(f"[outputs] names: '{name}' is no output of model '{model.name}'; {nearest(name, known)}")
         if name in names[:index]:
             raise InputError(f"[outputs] names: '{name}' is given twice; leave one out.")
     return tuple(names)
@@ -244,9 +238,7 @@ def _integrator(table: RunTable, model: Model) -> str:
     if table.integrator is None:
         return model.integrators[0]
     if table.integrator not in model.integrators:
-        raise InputError(
-            f"[run] integrator = '{table.integrator}'; {nearest(table.integrator, model.integrators)}"
-        )
+        raise InputError(f"[run] integrator = '{table.integrator}'; {nearest(table.integrator, model.integrators)}")
     return table.integrator
 
 

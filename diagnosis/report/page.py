@@ -39,22 +39,26 @@ def report_page(
     """The page as text, with the pictures ``drawn``. What it says of the fit stands in ``diagnosis``."""
     model = models.get(specimen.model)
     effects = [suspect_of(effect.name) for effect in diagnosis.effects]
-    return _environment().get_template("report.html.j2").render(
-        d=diagnosis,
-        specimen=specimen,
-        model=model,
-        headline=HEADLINES[diagnosis.verdict].format(names=words.listed(words.plain(e.name) for e in effects)),
-        effects=[
-            (effect, entry, entry.says({name: value.estimate for name, value in effect.parameters.items()}))
-            for effect, entry in zip(diagnosis.effects, effects, strict=True)
-        ],
-        rivals=_rivals(diagnosis),
-        recordings=[_read_row(r, held) for held, rs in ((False, train), (True, holdout)) for r in rs],
-        horizons=_horizons(diagnosis),
-        windows=_window_counts(diagnosis.windows),
-        parameters=_parameters(diagnosis, specimen),
-        pictures={name: picture.page() for name, picture in drawn.items()},
-        held_out_names={trace.recording for trace in diagnosis.traces if trace.held_out},
+    return (
+        _environment()
+        .get_template("report.html.j2")
+        .render(
+            d=diagnosis,
+            specimen=specimen,
+            model=model,
+            headline=HEADLINES[diagnosis.verdict].format(names=words.listed(words.plain(e.name) for e in effects)),
+            effects=[
+                (effect, entry, entry.says({name: value.estimate for name, value in effect.parameters.items()}))
+                for effect, entry in zip(diagnosis.effects, effects, strict=True)
+            ],
+            rivals=_rivals(diagnosis),
+            recordings=[_read_row(r, held) for held, rs in ((False, train), (True, holdout)) for r in rs],
+            horizons=_horizons(diagnosis),
+            windows=_window_counts(diagnosis.windows),
+            parameters=_parameters(diagnosis, specimen),
+            pictures={name: picture.page() for name, picture in drawn.items()},
+            held_out_names={trace.recording for trace in diagnosis.traces if trace.held_out},
+        )
     )
 
 
@@ -117,10 +121,7 @@ def _window_counts(windows: Sequence[Windows]) -> dict[str, int]:
 
 
 def _horizons(diagnosis: Diagnosis) -> list[tuple[str, ...]]:
-    return [
-        (name, *(_horizon(seconds) for seconds in pair))
-        for name, pair in diagnosis.prediction_horizon.items()
-    ]
+    return [(name, *(_horizon(seconds) for seconds in pair)) for name, pair in diagnosis.prediction_horizon.items()]
 
 
 def _horizon(seconds: float) -> str:

@@ -32,9 +32,7 @@ def drawings(diagnosis: Diagnosis, specimen: Specimen, recordings: Sequence[Reco
         found["raster"] = partial(plot_raster, diagnosis.windows, diagnosis.located)
     rotations = [t.channel for t in diagnosis.traces if t.channel.startswith("rotation_")]
     if rotations:
-        found["phase_plane"] = partial(
-            plot_phase_plane, diagnosis.traces, diagnosis.windows, channel=rotations[0]
-        )
+        found["phase_plane"] = partial(plot_phase_plane, diagnosis.traces, diagnosis.windows, channel=rotations[0])
     if diagnosis.screen:
         named = {effect.name for effect in diagnosis.effects}
         found["suspects"] = partial(plot_suspects, diagnosis.screen, diagnosis.null_band, named=named)
@@ -44,15 +42,11 @@ def drawings(diagnosis: Diagnosis, specimen: Specimen, recordings: Sequence[Reco
     if diagnosis.missing_force and any(diagnosis.missing_force["curve"]["force"]):
         found["missing_force"] = partial(plot_missing_force, diagnosis.missing_force)
     if any(specimen.parameters.get(name) for name in diagnosis.base):
-        found["parameters"] = partial(
-            plot_parameters, diagnosis.base, specimen.parameters, specimen.tolerance
-        )
+        found["parameters"] = partial(plot_parameters, diagnosis.base, specimen.parameters, specimen.tolerance)
     return found
 
 
-def pictures(
-    diagnosis: Diagnosis, specimen: Specimen, recordings: Sequence[Recording]
-) -> dict[str, Picture]:
+def pictures(diagnosis: Diagnosis, specimen: Specimen, recordings: Sequence[Recording]) -> dict[str, Picture]:
     """Every drawing, by name."""
     return {name: picture(draw, name) for name, draw in drawings(diagnosis, specimen, recordings).items()}
 

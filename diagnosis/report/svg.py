@@ -99,4 +99,3 @@ def _relative(path: str) -> str:
 
 def _tenths(number: int) -> str:
     return f"{number / 10:.1f}".removesuffix(".0").replace("0.", ".", 1) if abs(number) < 10 else f"{number / 10:g}"
-

@@ -12,9 +12,7 @@ def clock(values: Values) -> tuple[float, float]:
 MECHANISM = Mechanism(
     name="delay",
     effect_class="delay",
-    parameters=(
-        MechanismParameter("delay", "t_d", "s", "lag of the response channels behind the base", -0.04, 0.04),
-    ),
+    parameters=(MechanismParameter("delay", "t_d", "s", "lag of the response channels behind the base", -0.04, 0.04),),
     equation="recorded(t) = true(t - delay), response channels",
     signature="with the angular velocity, everywhere",
     sentence="the response channels lag the base by {delay:.4f} s",
