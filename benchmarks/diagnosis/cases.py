@@ -2,7 +2,7 @@
 
 A case is a folder in the format of the concealed recordings (specimen.toml, train_1.nc, train_2.nc,
 test_1.nc) and, elsewhere, its key. The truth of a catalogue effect comes from the model's plain reference
-(`models.housner.reference`, DOP853; see `REFERENCE_LACKS`); that of a law outside the catalogue from
+(`models.housner.reference`, DOP853); that of a law outside the catalogue from
 `truth`, a program of its own. Sizes follow `size`. A motion is scaled so that the block without the effect
 reaches .1-.5 alpha and impacts more than 8 times without overturning; with the effect it must still rock.
 """
@@ -11,29 +11,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from benchmarks.diagnosis import instruments, shakings, size, specimens, truth
+from benchmarks.diagnosis import shakings, size, specimens, truth
 from benchmarks.diagnosis.effects import CATALOGUE, Hidden
 from benchmarks.diagnosis.open_laws import LAWS, Law
+from benchmarks.diagnosis.scene import FEWEST_IMPACTS, Effects, FloatArray, Scene, Track, Unsuitable
 from benchmarks.diagnosis.suite import Wish
-from models.housner import reference
 from models.housner.block import build
 from models.housner.lanes import run as lanes
 from models.shaking import Shaking
-
-FloatArray = NDArray[np.float64]
 
 RECORDINGS = ("train_1", "train_2", "test_1")
 LOW_PASS = {100.0: 14.0, 200.0: 22.0, 250.0: 25.0, 500.0: 30.0}
 """Motion's corner (Hz) by sampling frequency (Hz)."""
 PEAK = (0.1, 0.5)
-PEAK_WITH_EFFECT = (0.06, 0.65)
-FEWEST_IMPACTS = 8
 SCALES = np.geomspace(1.05, 6.0, 40)
 """PGA over the onset acceleration that are tried."""
 ATTEMPTS = 60
@@ -45,33 +40,12 @@ EXACT_WITHIN = 0.25
 """Of nominal size, on the motion of the case itself."""
 MOST_JUMPS = 3
 """Steps over nominal size after which the draw is given up."""
-REFERENCE_LACKS = {"sliding", "bounce", "wall_flexibility"}
-"""Mechanisms whose truth comes from the compiled lanes, at a tenth of their usual step."""
 WEAKEST = 3.0
 WEAKEST_OF_PEAK = 0.03
 """Size at the end of the range, and the same over the peak, under which the draw is given up."""
 TAIL = 1.0
 VERTICAL_SHARE = 0.2
 """Of the cases in which the base also shakes vertically, and the specimen says so."""
-
-
-@dataclass(frozen=True)
-class Track:
-    """One recording in the making: the true base motion, and the largest rotation (rad) without effects."""
-
-    motion: str
-    shaking: Shaking
-    plain_peak: float
-
-
-@dataclass(frozen=True)
-class Effects:
-    """What is hidden: the block's mechanisms, the instruments' faults, or a law outside the catalogue."""
-
-    mechanisms: Mapping[str, float]
-    sensors: Mapping[str, Mapping[str, float]]
-    law: truth.Applied | None = None
-    active: tuple[tuple[float, float], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -82,10 +56,6 @@ class Case:
     sampling_hz: float
     channels: Mapping[str, Mapping[str, FloatArray]]
     key: Mapping[str, Any]
-
-
-class Unsuitable(Exception):
-    """A draw whose block hardly rocks, or overturns: another one is drawn."""
 
 
 def make(wish: Wish, seed: int) -> Case:
@@ -117,9 +87,10 @@ class _Draft:
         left_out = "vertical_acceleration" in wish.names
         told = wish.kind != "open" and not left_out and rng.uniform() < VERTICAL_SHARE
         self.vertical_channel, self.vertical_told = left_out or told, told
-        self.tracks = [self._track() for _ in RECORDINGS]
+        tracks = [self._track() for _ in RECORDINGS]
         if "saturation" in wish.names:  # its level refers to the first training recording, the largest one
-            self.tracks[:2] = sorted(self.tracks[:2], key=lambda track: -track.plain_peak)
+            tracks[:2] = sorted(tracks[:2], key=lambda track: -track.plain_peak)
+        self.scene = Scene(self.block, tuple(tracks), told, self.sampling_hz, wish.noise)
 
     def _track(self) -> Track:
         """A motion at a scale, drawn among those at which the block without effects rocks well."""
@@ -139,22 +110,22 @@ class _Draft:
         return Track(name, shaking, float(found["peak_rotation"][chosen]))
 
     def case(self, seed: int) -> Case:
-        peak = self.tracks[0].plain_peak
+        peak = self.scene.tracks[0].plain_peak
         effects, told, weak = self._effects(peak)
-        motions = [self._truth(k, effects, exact=True) for k in range(len(RECORDINGS))]
-        alpha = math.atan2(self.block.true["width"], self.block.true["height"])
+        motions = [self.scene.truth(k, effects, exact=True) for k in range(len(RECORDINGS))]
         channels: dict[str, Mapping[str, FloatArray]] = {}
         notes: dict[str, dict[str, Any]] = {}
         scale = self._sensor_peak(effects, peak, motions)
         for k, name in enumerate(RECORDINGS):
             rotation, rate, impacts = motions[k]
-            if not self._rocks(rotation, impacts):
+            if not self.scene.rocks(rotation, impacts):
                 raise Unsuitable
-            largest = float(np.max(np.abs(rotation))) / alpha
-            strength = self._strength(k, effects, rotation[:: shakings.FINE], rate[:: shakings.FINE], scale)
-            channels[name], noise = self._recorded(k, effects, rotation, scale)
+            largest = float(np.max(np.abs(rotation))) / self.scene.alpha
+            strength = self.scene.strength(k, effects, rotation[:: shakings.FINE], rate[:: shakings.FINE], scale)
+            channels[name], noise = self.scene.recorded(k, effects, rotation, scale, self.rng)
+            track = self.scene.tracks[k]
             notes[name] = {
-                "motion": self.tracks[k].motion, "pga": self.tracks[k].shaking.pga, "peak_over_alpha": largest,
+                "motion": track.motion, "pga": track.shaking.pga, "peak_over_alpha": largest,
                 "impacts": impacts, "noise_std": noise, "strength": strength,
             }  # fmt: skip
             if effects.active:
@@ -210,7 +181,7 @@ class _Draft:
         end = law.end * (float(self.rng.choice([-1.0, 1.0])) if law.either else 1.0)
         numbers = law.draw(self.rng)
         active = []
-        for track in self.tracks:
+        for track in self.scene.tracks:
             length = track.shaking.duration
             start = self.rng.uniform(0.25, 0.5)
             active.append((start * length, (start + self.rng.uniform(0.15, 0.3)) * length))
@@ -231,7 +202,7 @@ class _Draft:
         """
         below, size_below, jumps = 0.0, 0.0, 0
         for share in SHARES.tolist():
-            found = self._size(effects_at(share), peak)
+            found = self.scene.size(effects_at(share), peak)
             if found < (1.0 - WITHIN) * size.NOMINAL:
                 below, size_below, jumps = share, found, 0
                 continue
@@ -240,7 +211,7 @@ class _Draft:
             low, high = below, share
             for _ in range(4):
                 middle = 0.5 * (low + high)
-                found = self._size(effects_at(middle), peak)
+                found = self.scene.size(effects_at(middle), peak)
                 if abs(found / size.NOMINAL - 1.0) <= WITHIN:
                     return middle, True
                 low, high = (middle, high) if found < size.NOMINAL else (low, middle)
@@ -252,81 +223,6 @@ class _Draft:
             return below, False
         raise Unsuitable
 
-    def _size(self, effects: Effects, peak: float) -> float:
-        """Of the effects over the noise, from fast runs; infinite where the block no longer rocks as asked."""
-        motions = [self._truth(k, effects, exact=False) for k in range(2)]
-        if not all(self._rocks(rotation, impacts) for rotation, _, impacts in motions):
-            return math.inf
-        return max(self._strength(k, effects, motions[k][0], motions[k][1], peak) for k in range(2))
-
-    def _rocks(self, rotation: FloatArray, impacts: int) -> bool:
-        alpha = math.atan2(self.block.true["width"], self.block.true["height"])
-        ratio = float(np.max(np.abs(rotation))) / alpha
-        return PEAK_WITH_EFFECT[0] < ratio < PEAK_WITH_EFFECT[1] and impacts > FEWEST_IMPACTS
-
-    # what moves and what is measured
-
-    def _truth(self, k: int, effects: Effects, exact: bool) -> tuple[FloatArray, FloatArray, int]:
-        """Rotation, rate and impacts: on the fine grid by the slow route, else on that of the shaking."""
-        shaking = self.tracks[k].shaking
-        true = self.block.true
-        if effects.law is not None:
-            law = replace(effects.law, active=effects.active[k])
-            fine = shakings.fine(shaking.horizontal)
-            step = shaking.time_step / shakings.FINE
-            ran = truth.run(true["width"], true["height"], specimens.GRAVITY, fine, step, law)
-            every = 1 if exact else shakings.FINE
-            return ran.rotation[::every], ran.rate[::every], ran.impacts
-        block = build({**true, **effects.mechanisms}, self.vertical_told)
-        if exact and not REFERENCE_LACKS & set(self.wish.names):
-            found = reference.run(block, shakings.on_fine_grid(shaking), tail=0.0, rtol=1e-8)
-            if found.outputs["overturned"]:
-                raise Unsuitable
-            return found.rotation, found.rate, int(found.outputs["impacts"])
-        if exact:
-            shaking = shakings.on_fine_grid(shaking)
-        ran_lanes = lanes.run(block, shaking, np.ones(1), samples=shaking.horizontal.size, refinement=2 if exact else 1)
-        assert ran_lanes.rotation is not None and ran_lanes.rate is not None
-        impacts = int(lanes.outputs(block, ran_lanes.result)["impacts"][0])
-        return ran_lanes.rotation[0], ran_lanes.rate[0], impacts
-
     def _sensor_peak(self, effects: Effects, plain: float, motions: list[tuple[FloatArray, FloatArray, int]]) -> float:
         """Largest rotation of the first recording before its sensors: without a mechanism, the plain model's."""
         return plain if not effects.mechanisms else float(np.max(np.abs(motions[0][0])))
-
-    def _strength(self, k: int, effects: Effects, rotation: FloatArray, rate: FloatArray, peak: float) -> float:
-        shaking = self.tracks[k].shaking
-        step = shaking.time_step
-        recorded = instruments.response(rotation, shaking.horizontal, step, effects.sensors, peak)
-        noise = self.wish.noise * float(np.max(np.abs(recorded)))
-        measured = Shaking(
-            step,
-            instruments.base(shaking.horizontal, effects.sensors),
-            shaking.vertical if self.vertical_told else None,
-        )
-        windows = size.windows(rotation, rate, step, noise)
-        return size.over_noise(self.block.true, specimens.TOLERANCE, measured, recorded, windows, noise)
-
-    def _recorded(
-        self, k: int, effects: Effects, rotation: FloatArray, peak: float
-    ) -> tuple[dict[str, FloatArray], dict[str, float]]:
-        """Channels as written to the file, and the standard deviation of the noise in each."""
-        shaking, rng = self.tracks[k].shaking, self.rng
-        step = shaking.time_step / shakings.FINE
-        base = shakings.fine(shaking.horizontal)
-        signals = {
-            "base_acceleration_x": instruments.base(base, effects.sensors),
-            "rotation_1": instruments.response(rotation, base, step, effects.sensors, peak),
-        }
-        if shaking.vertical is not None:
-            signals["base_acceleration_z"] = shakings.fine(shaking.vertical)
-        fraction = float(rng.uniform(0.002, 0.005))
-        channels, noise = {}, {}
-        for name, signal in signals.items():
-            sampled = instruments.logged(signal, step, self.sampling_hz, shaking.duration)
-            if name == "rotation_1":
-                sampled = instruments.clip(sampled, effects.sensors, peak)
-            share = self.wish.noise if name == "rotation_1" else fraction
-            noise[name] = share * float(np.max(np.abs(signal)))
-            channels[name] = sampled + noise[name] * rng.normal(size=sampled.size)
-        return channels, noise

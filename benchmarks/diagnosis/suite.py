@@ -57,7 +57,7 @@ GROUPS = (
 
 
 MAKERS = (
-    "cases", "effects", "instruments", "open_laws", "shakings", "size", "specimens", "suite", "truth",
+    "cases", "effects", "instruments", "open_laws", "scene", "shakings", "size", "specimens", "suite", "truth",
 )  # fmt: skip
 """Files that the cases of a seed depend on."""
 

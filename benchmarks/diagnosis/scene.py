@@ -1,0 +1,137 @@
+"""One block, its base motions and instruments: how it moves, how large an effect is, what is recorded."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmarks.diagnosis import instruments, shakings, size, specimens, truth
+from models.housner import reference
+from models.housner.block import build
+from models.housner.lanes import run as lanes
+from models.shaking import Shaking
+
+FloatArray = NDArray[np.float64]
+
+PEAK_WITH_EFFECT = (0.06, 0.65)
+"""Over alpha, and the fewest impacts: a case must rock between these."""
+FEWEST_IMPACTS = 8
+
+
+class Unsuitable(Exception):
+    """A draw whose block hardly rocks, or overturns: another one is drawn."""
+
+
+@dataclass(frozen=True)
+class Track:
+    """One recording in the making: the true base motion, and the largest rotation (rad) without effects."""
+
+    motion: str
+    shaking: Shaking
+    plain_peak: float
+
+
+@dataclass(frozen=True)
+class Effects:
+    """What is hidden: the block's mechanisms, the instruments' faults, or a law outside the catalogue."""
+
+    mechanisms: Mapping[str, float]
+    sensors: Mapping[str, Mapping[str, float]]
+    law: truth.Applied | None = None
+    active: tuple[tuple[float, float], ...] = ()
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A block under its base motions; ``vertical_told``: the vertical one acts and the specimen says so.
+
+    ``noise``: standard deviation of the rotation's noise over its peak. ``tracks`` in the order of the
+    recordings, the two for training first.
+    """
+
+    block: specimens.Block
+    tracks: Sequence[Track]
+    vertical_told: bool
+    sampling_hz: float
+    noise: float
+
+    @property
+    def alpha(self) -> float:
+        """Slenderness (rad)."""
+        return math.atan2(self.block.true["width"], self.block.true["height"])
+
+    def rocks(self, rotation: FloatArray, impacts: int) -> bool:
+        """Whether a motion is one of a case: large enough, not too large, with enough impacts."""
+        ratio = float(np.max(np.abs(rotation))) / self.alpha
+        return PEAK_WITH_EFFECT[0] < ratio < PEAK_WITH_EFFECT[1] and impacts > FEWEST_IMPACTS
+
+    def truth(self, k: int, effects: Effects, exact: bool) -> tuple[FloatArray, FloatArray, int]:
+        """Rotation, rate and impacts: on the fine grid by the slow route, else on that of the shaking."""
+        shaking = self.tracks[k].shaking
+        true = self.block.true
+        if effects.law is not None:
+            law = replace(effects.law, active=effects.active[k])
+            fine = shakings.fine(shaking.horizontal)
+            step = shaking.time_step / shakings.FINE
+            ran = truth.run(true["width"], true["height"], specimens.GRAVITY, fine, step, law)
+            every = 1 if exact else shakings.FINE
+            return ran.rotation[::every], ran.rate[::every], ran.impacts
+        block = build({**true, **effects.mechanisms}, self.vertical_told)
+        if exact:
+            found = reference.run(block, shakings.on_fine_grid(shaking), tail=0.0, rtol=1e-8)
+            if found.outputs["overturned"]:
+                raise Unsuitable
+            return found.rotation, found.rate, int(found.outputs["impacts"])
+        ran_lanes = lanes.run(block, shaking, np.ones(1), samples=shaking.horizontal.size)
+        assert ran_lanes.rotation is not None and ran_lanes.rate is not None
+        impacts = int(lanes.outputs(block, ran_lanes.result)["impacts"][0])
+        return ran_lanes.rotation[0], ran_lanes.rate[0], impacts
+
+    def strength(self, k: int, effects: Effects, rotation: FloatArray, rate: FloatArray, peak: float) -> float:
+        """Of the effects in recording ``k``, over its noise (see `size`), from the true motion."""
+        shaking = self.tracks[k].shaking
+        step = shaking.time_step
+        recorded = instruments.response(rotation, shaking.horizontal, step, effects.sensors, peak)
+        noise = self.noise * float(np.max(np.abs(recorded)))
+        measured = Shaking(
+            step,
+            instruments.base(shaking.horizontal, effects.sensors),
+            shaking.vertical if self.vertical_told else None,
+        )
+        windows = size.windows(rotation, rate, step, noise)
+        return size.over_noise(self.block.true, specimens.TOLERANCE, measured, recorded, windows, noise)
+
+    def size(self, effects: Effects, peak: float) -> float:
+        """Of the effects over the noise, from fast runs; infinite where the block no longer rocks as asked."""
+        motions = [self.truth(k, effects, exact=False) for k in range(2)]
+        if not all(self.rocks(rotation, impacts) for rotation, _, impacts in motions):
+            return math.inf
+        return max(self.strength(k, effects, motions[k][0], motions[k][1], peak) for k in range(2))
+
+    def recorded(
+        self, k: int, effects: Effects, rotation: FloatArray, peak: float, rng: np.random.Generator
+    ) -> tuple[dict[str, FloatArray], dict[str, float]]:
+        """Channels as written to the file, and the standard deviation of the noise in each."""
+        shaking = self.tracks[k].shaking
+        step = shaking.time_step / shakings.FINE
+        base = shakings.fine(shaking.horizontal)
+        signals = {
+            "base_acceleration_x": instruments.base(base, effects.sensors),
+            "rotation_1": instruments.response(rotation, base, step, effects.sensors, peak),
+        }
+        if shaking.vertical is not None:
+            signals["base_acceleration_z"] = shakings.fine(shaking.vertical)
+        fraction = float(rng.uniform(0.002, 0.005))
+        channels, noise = {}, {}
+        for name, signal in signals.items():
+            sampled = instruments.logged(signal, step, self.sampling_hz, shaking.duration)
+            if name == "rotation_1":
+                sampled = instruments.clip(sampled, effects.sensors, peak)
+            share = self.noise if name == "rotation_1" else fraction
+            noise[name] = share * float(np.max(np.abs(signal)))
+            channels[name] = sampled + noise[name] * rng.normal(size=sampled.size)
+        return channels, noise
