@@ -14,6 +14,7 @@ import xarray as xr
 
 from models.errors import InputError, nearest
 from study.status import OVERTURNED, ROCKING, UNKNOWN
+from study.wording import title, unit_shown
 
 INTENSITIES = ("pga", "motion_scale")
 """Axes along which the smallest value is sought."""
@@ -97,9 +98,9 @@ def _place(chosen: xr.Dataset, kept: tuple[str, ...]) -> str:
     for name, axis in chosen["status"].coords.items():
         is_axis = axis.attrs.get("axis_of_study") == "true"
         if is_axis and name not in (*kept, "motion") and axis.size == 1:
-            value, unit = axis.values.ravel()[0], axis.attrs["units"]
-            number = f"{value:.4g}" if axis.dtype.kind in "iuf" else str(value)
-            parts.append(f"{name} {number}".replace("_", " ") + ("" if unit == "1" else f" {unit}"))
+            value, (factor, unit) = axis.values.ravel()[0], unit_shown(axis.attrs["units"])
+            number = f"{factor * value:.4g}" if axis.dtype.kind in "iuf" else str(value)
+            parts.append(f"{title(str(name))} {number}" + ("" if unit == "1" else f" {unit}"))
     return ", ".join(parts)
 
 
@@ -149,6 +150,7 @@ def _map(
         "long_name": f"smallest {along} of the grid that {verb}",
         "comment": "nan: no value of the grid does, or the outcome at a lower one is unknown",
         "selection": _place(chosen, (x, y, along)),
+        "smallest": float(cube[along].min()),
         "largest": float(cube[along].max()),
     }
     return result.rename(f"{along}_{name}")

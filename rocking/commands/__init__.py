@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import typer
 
-from rocking.commands import calibrate, check, diagnose, export, map, motions, plan, run, simulate, status
+from rocking.commands import calibrate, check, diagnose, export, map, motions, plan, run, simulate, slices, status
 from rocking.commands.base import Commands
 
 COMMANDS = (
@@ -14,6 +14,7 @@ COMMANDS = (
     check.check,
     export.export,
     map.map_,
+    slices.slices,
     motions.motions,
     simulate.simulate,
     calibrate.calibrate,

@@ -21,9 +21,15 @@ from study.figures.style import (
     label,
     new_axes,
     positions,
-    set_words,
-    shown,
+    set_scale,
+    set_title,
 )
+from study.wording import title, unit_shown
+
+FEW_LEVELS = 12
+"""Up to so many values of a map have a colour each."""
+LINE = 0.062
+"""Height of a line of the title, as a share of the Axes."""
 
 
 def plot_map(values: xr.DataArray, *, words: tuple[str, str], ax: Axes | None = None) -> Axes:
@@ -32,6 +38,7 @@ def plot_map(values: xr.DataArray, *, words: tuple[str, str], ax: Axes | None = 
     ``words`` say what 1 and 0 mean (or: what the missing values of a smallest intensity mean).
     """
     ax = new_axes(ax)
+    set_title(ax, str(values.attrs.get("selection", "")))
     y, x = (values[str(dim)] for dim in values.dims)
     across, x_words = positions(x)
     up, y_words = positions(y)
@@ -47,37 +54,38 @@ def plot_map(values: xr.DataArray, *, words: tuple[str, str], ax: Axes | None = 
         if np.isnan(ordered).any():
             kinds.append(("unknown", UNKNOWN))
         draw_legend(ax, [Patch(facecolor=colour, edgecolor="0.4", label=text) for text, colour in kinds])
-    for which, axis, wording in (("x", x, x_words), ("y", y, y_words)):
-        set_words(ax, which, wording)
+    for which, axis, points, wording in (("x", x, across, x_words), ("y", y, up, y_words)):
+        set_scale(ax, which, points, wording)
         (ax.set_xlabel if which == "x" else ax.set_ylabel)(label(axis))
-    if values.attrs.get("selection"):
-        ax.set_title(values.attrs["selection"], fontsize="medium")
     return ax
 
 
 def _draw_smallest(
     ax: Axes, values: xr.DataArray, ordered: np.ndarray, borders: tuple[np.ndarray, np.ndarray], nothing: str
 ) -> None:
-    factor_values, unit = shown(values.copy(data=ordered))
-    known = factor_values[np.isfinite(factor_values)]
+    factor, unit = unit_shown(str(values.attrs["units"]))
     colours = colormaps[MAP_COLOURS].with_extremes(bad=NOTHING)
-    levels = np.unique(known)
-    norm = None
-    if 1 < levels.size <= 12:
-        norm = BoundaryNorm(edges(levels), colours.N)
-    drawn = ax.pcolormesh(*borders, np.ma.masked_invalid(factor_values), cmap=colours, norm=norm)
+    levels, level = np.unique(ordered[np.isfinite(ordered)], return_inverse=True)
+    few = 0 < levels.size <= FEW_LEVELS
+    painted = factor * ordered
+    if few:  # a colour a level, evenly spaced in the bar
+        painted[np.isfinite(ordered)] = level
+    norm = BoundaryNorm(np.arange(levels.size + 1) - 0.5, colours.N) if few else None
+    drawn = ax.pcolormesh(*borders, np.ma.masked_invalid(painted), cmap=colours, norm=norm)
     name = str(values.name).partition("_overturned")[0].partition("_uplift")[0]
-    text = "PGA" if name == "pga" else name.replace("_", " ")
     suffix = "" if unit == "1" else f" [{unit}]"
-    if known.size:
+    if levels.size:
         bar = ax.figure.colorbar(drawn, ax=ax)
-        bar.set_label(f"smallest {text} that {_verb(values)}{suffix}")
-        if norm is not None:
-            bar.set_ticks(levels.tolist(), labels=[f"{level:.3g}" for level in levels])
-    if np.isnan(factor_values).any():
-        largest = shown(values.copy(data=np.full(values.shape, values.attrs["largest"])))[0].flat[0]
-        at_most = f"{nothing} up to {largest:.3g}" + ("" if unit == "1" else f" {unit}")
-        draw_legend(ax, [Patch(facecolor=NOTHING, edgecolor="0.4", label=at_most)])
+        bar.set_label(f"smallest {title(name)} that {_verb(values)}{suffix}")
+        if few:
+            # at the grid's smallest value the true one may lie below
+            at_most = ["≤ " if value == values.attrs["smallest"] else "" for value in levels]
+            texts = [f"{mark}{factor * value:.3g}" for mark, value in zip(at_most, levels, strict=True)]
+            bar.set_ticks(np.arange(levels.size).tolist(), labels=texts)
+            bar.ax.tick_params(which="both", length=0)
+    if np.isnan(ordered).any():
+        text = f"{nothing} up to {factor * values.attrs['largest']:.3g}" + ("" if unit == "1" else f" {unit}")
+        draw_legend(ax, [Patch(facecolor=NOTHING, edgecolor="0.4", label=text)])
 
 
 def _verb(values: xr.DataArray) -> str:
@@ -86,4 +94,5 @@ def _verb(values: xr.DataArray) -> str:
 
 def draw_legend(ax: Axes, handles: Sequence[Artist]) -> None:
     """The legend above the title, where it hides nothing."""
-    ax.legend(handles=handles, loc="lower center", bbox_to_anchor=(0.5, 1.06), ncols=3, frameon=False)
+    above = 1.01 + LINE * (1.0 + ax.get_title().count("\n") if ax.get_title() else 0.0)
+    ax.legend(handles=handles, loc="lower center", bbox_to_anchor=(0.5, above), ncols=3, frameon=False)

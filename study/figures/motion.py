@@ -8,7 +8,8 @@ from matplotlib.axes import Axes
 
 from grids.motions import Motion
 from grids.motions.spectrum import default_periods, response_spectrum
-from study.figures.style import COLOURS, GRAVITY
+from study.figures.style import COLOURS
+from study.wording import GRAVITY
 
 DAMPING = 0.05
 

@@ -10,9 +10,20 @@ import xarray as xr
 from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
+from matplotlib.colors import LogNorm, Normalize
 
-from study.figures.style import COLOURS, MAP_COLOURS, label, new_axes, positions, set_words, shown
+from study.figures.style import (
+    COLOURS,
+    MAP_COLOURS,
+    geometric,
+    label,
+    new_axes,
+    positions,
+    set_log_ticks,
+    set_scale,
+    set_title,
+    shown,
+)
 from study.maps import slices
 from study.status import OVERTURNED
 
@@ -42,32 +53,34 @@ def plot_slices(
         values[fallen] = np.nan
     rows, flags = np.atleast_2d(values)[:, order], np.atleast_2d(fallen)[:, order]
     names, few = _names(curves), len(rows) <= FEW
+    others = positions(curves[str(curves.dims[0])])[0]
+    scale = (LogNorm if geometric(np.sort(others)) else Normalize)(others.min(), others.max())
     for k, (row, gone) in enumerate(zip(rows, flags, strict=True)):
-        colour = COLOURS[k] if few else colormaps[MAP_COLOURS](k / (len(rows) - 1))
+        colour = COLOURS[k] if few else colormaps[MAP_COLOURS](scale(others[k]))
         ax.plot(across[order], row, f"{MARKERS[k] if few else ''}-", color=colour, markersize=3, label=names[k])
         if output not in ALWAYS and gone.any():
             border = np.ones(int(gone.sum()))
-            crosses = ax.plot(across[order][gone], border, "x", color=colour, clip_on=False)
-            crosses[0].set_transform(ax.get_xaxis_transform())
+            place = ax.get_xaxis_transform()
+            ax.plot(across[order][gone], border, "x", color=colour, clip_on=False, transform=place)
     if output not in ALWAYS and fallen.any():
         ax.plot([], [], "x", color="0.3", label="overturned")
     handles, texts = ax.get_legend_handles_labels()
     if not few:
-        other = curves[str(curves.dims[0])]
-        scale = Normalize(*np.array(positions(other)[0])[[0, -1]])
         bar = ax.figure.colorbar(ScalarMappable(scale, colormaps[MAP_COLOURS]), ax=ax)
-        bar.set_label(label(other))
+        bar.set_label(label(curves[str(curves.dims[0])]))
+        if isinstance(scale, LogNorm):
+            set_log_ticks(bar.ax.yaxis)
         handles, texts = handles[len(rows) :], texts[len(rows) :]
     if texts and (curves.ndim > 1 or len(texts) > 1):
         title = label(curves[str(curves.dims[0])]) if few and curves.ndim > 1 else None
         corner = (1.01, 1.0) if few else (0.0, 1.0)
         ax.legend(handles, texts, title=title, fontsize="small", loc="upper left", bbox_to_anchor=corner)
-    set_words(ax, "x", words)
+    set_scale(ax, "x", across, words)
     ax.set_xlabel(label(curves[x]))
     ax.set_ylabel(label(curves))
     ax.grid(alpha=0.3)
     if curves.attrs.get("selection"):
-        ax.set_title(curves.attrs["selection"], fontsize="medium", pad=10)
+        set_title(ax, curves.attrs["selection"])
     return ax
 
 

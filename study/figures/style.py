@@ -1,23 +1,27 @@
-"""What all figures share: colours that colour-blind readers tell apart, labels with units."""
+"""What all figures share: colours that colour-blind readers tell apart, labels with units, axes."""
 
 from __future__ import annotations
 
+import textwrap
 from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 from numpy.typing import NDArray
+
+from study.wording import title, unit_shown
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442")
 """Okabe and Ito's palette."""
 MAP_COLOURS = "cividis"
 NOTHING = "#e6e6e6"
 UNKNOWN = "#ffffff"
-GRAVITY = 9.80665
-
-_TEXT = {"s-1": "s⁻¹", "m s-1": "m s⁻¹", "rad s-1": "rad s⁻¹", "kg m-3": "kg m⁻³", "N m-2": "N m⁻²"}
+TITLE_WIDTH = 68
+"""Characters in a line of a title."""
 
 
 def new_axes(ax: Axes | None, width: float = 6.4, height: float = 4.4) -> Axes:
@@ -28,19 +32,21 @@ def new_axes(ax: Axes | None, width: float = 6.4, height: float = 4.4) -> Axes:
 
 
 def shown(values: xr.DataArray) -> tuple[NDArray[Any], str]:
-    """Values and unit as engineers read them: accelerations in g, rotations and lengths in SI."""
-    unit = str(values.attrs.get("units", "1"))
-    if unit == "m s-2":
-        return values.values / GRAVITY, "g"
-    return values.values, _TEXT.get(unit, unit)
+    """Values and unit as engineers read them."""
+    factor, unit = unit_shown(str(values.attrs.get("units", "1")))
+    return (values.values if factor == 1.0 else factor * values.values), unit
 
 
 def label(values: xr.DataArray, name: str | None = None) -> str:
     """Name and unit of a quantity for an axis or a colour bar."""
-    words = (name or str(values.name)).replace("_", " ").replace(".", ": ")
-    words = " ".join(word.upper() if word == "pga" else word for word in words.split(" "))
-    unit = shown(values)[1]
+    words, unit = title(name or str(values.name)), shown(values)[1]
     return words if unit == "1" else f"{words} [{unit}]"
+
+
+def set_title(ax: Axes, text: str) -> None:
+    """Write a title in as many lines as it needs, broken at commas only."""
+    parts = text.replace(" ", "\u00a0").replace(",\u00a0", ", ")
+    ax.set_title("\n".join(textwrap.wrap(parts, TITLE_WIDTH)), fontsize="medium", pad=8)
 
 
 def positions(values: xr.DataArray) -> tuple[NDArray[np.float64], list[str] | None]:
@@ -50,20 +56,40 @@ def positions(values: xr.DataArray) -> tuple[NDArray[np.float64], list[str] | No
     return np.arange(values.size, dtype=float), [str(v) for v in values.values]
 
 
-def set_words(ax: Axes, which: str, words: list[str] | None) -> None:
-    """Print the words of an axis that holds no numbers."""
+def geometric(points: NDArray[np.float64]) -> bool:
+    """Whether ascending points grow by equal factors, as those of ``geomspace``."""
+    if points.size < 3 or points[0] <= 0.0:
+        return False
+    ratios = points[1:] / points[:-1]
+    return bool(np.allclose(ratios, ratios[0], rtol=1e-6) and ratios[0] > 1.0)
+
+
+def set_scale(ax: Axes, which: str, points: NDArray[np.float64], words: list[str] | None) -> None:
+    """Print the words of an axis that holds no numbers; a logarithmic scale for points by equal factors."""
+    axis = ax.xaxis if which == "x" else ax.yaxis
     if words is not None:
-        ticks = np.arange(len(words))
+        axis.set_ticks(np.arange(len(words)), words)
         if which == "x":
-            ax.set_xticks(ticks, words, rotation=30, ha="right")
-        else:
-            ax.set_yticks(ticks, words)
+            plt.setp(axis.get_majorticklabels(), rotation=30, ha="right")
+    elif geometric(np.sort(points)):
+        (ax.set_xscale if which == "x" else ax.set_yscale)("log")
+        set_log_ticks(axis)
+
+
+def set_log_ticks(axis: Axis) -> None:
+    """Plain numbers at 1, 2, 5, 10, ... on a logarithmic axis."""
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_locator(NullLocator())
 
 
 def edges(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Borders half way between neighbouring points, the outer ones as far out as the next lies in."""
+    """Borders half way between neighbouring ascending points (half the factor where they grow by equal
+    factors), the outer ones as far out as the next lies in."""
     if points.size == 1:
         half = 0.5 * (abs(points[0]) or 1.0)
         return np.array([points[0] - half, points[0] + half])
+    if geometric(points):
+        return np.asarray(np.exp(edges(np.log(points))))
     middle = 0.5 * (points[1:] + points[:-1])
     return np.concatenate([[2 * points[0] - middle[0]], middle, [2 * points[-1] - middle[-1]]])

@@ -71,6 +71,11 @@ def test_status_check_export_and_map(finished: Path) -> None:
     assert result.exit_code == 0, result.output
     for name in ("overturning_map", "onset_map"):
         assert (Path("maps") / f"{name}.png").stat().st_size > 5000
+    result = rocking("slices", finished, "peak_rotation", "--x", "pga", "--select", "top_mass=1 t", "--out", "peak.png")
+    assert result.exit_code == 0, result.output
+    assert Path("peak.png").stat().st_size > 5000
+    wrong = rocking("slices", finished, "peak_rotaton", "--x", "pga")
+    assert wrong.exit_code == 2 and "did you mean 'peak_rotation'" in wrong.stderr
 
 
 def test_check_says_when_a_cube_is_wrong(finished: Path) -> None:

@@ -93,6 +93,27 @@ def test_default_axes_leave_the_intensity_to_be_searched(cube: xr.Dataset) -> No
     assert middle(cube, ("aspect_ratio", "pga")) == {"top_mass": 2000.0}
 
 
+def test_axes_by_equal_factors_are_logarithmic_and_in_engineers_units(tmp_path: Path) -> None:
+    modulus = np.geomspace(1e6, 2e7, 13)
+    pga = np.linspace(0.5, 5.0, 4)
+    status = np.where(modulus[:, None, None] * pga > 6e6, ROCKING, 1) * np.ones((13, 3, 4), int)
+    cube = xr.Dataset(
+        {"status": (("layer_modulus", "case", "pga"), status)},
+        {"layer_modulus": modulus, "case": np.arange(3.0), "pga": pga},
+    )
+    for name, unit in (("layer_modulus", "Pa"), ("case", "1"), ("pga", "m s-2")):
+        cube[name].attrs.update(units=unit, axis_of_study="true")
+    seen = []
+    save_figure(lambda: seen.append(plot_onset_map(cube, "case", "layer_modulus")) or seen[0], tmp_path / "onset.png")
+    ax = seen[0]
+    assert ax.get_yscale() == "log" and ax.get_xscale() == "linear"
+    assert ax.get_ylabel() == "layer modulus [MPa]"
+    low, high = ax.get_ylim()
+    factor = 20 ** (1 / 24)
+    np.testing.assert_allclose([low, high], [1 / factor, 20 * factor], rtol=1e-12)
+    assert ax.figure.axes[1].get_yticklabels()[0].get_text() == "≤ 0.051"
+
+
 def test_figures_are_written_with_units_on_their_axes(cube: xr.Dataset, tmp_path: Path) -> None:
     seen = []
 
@@ -112,6 +133,9 @@ def test_figures_are_written_with_units_on_their_axes(cube: xr.Dataset, tmp_path
         assert path.stat().st_size > 5000
     assert seen[0].get_ylabel() == "top mass [kg]"
     assert seen[1].get_ylabel() == seen[2].get_xlabel() == "PGA [g]"
+    assert "top mass 0 kg" in seen[1].get_title().replace("\u00a0", " ")
+    # an overturned cell has a gap in the curve and a cross on the border, never a point of pi/2
+    assert seen[2].get_ylim()[1] < 1.0
     with pytest.raises(InputError, match="end the name in"):
         save_figure(lambda: plot_onset_map(cube, "aspect_ratio", "top_mass"), tmp_path / "map.xyz")
     assert not matplotlib.pyplot.get_fignums()
