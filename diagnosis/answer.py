@@ -9,7 +9,7 @@ import numpy as np
 
 from diagnosis import bootstrap as bootstrapping
 from diagnosis.candidates import candidates
-from diagnosis.constancy import FLAG, Tested, flags, tests
+from diagnosis.constancy import Tested, flags, tests
 from diagnosis.experiment import next_experiment
 from diagnosis.forces import forces
 from diagnosis.heldout import Shown, compare, fit_figures, horizons, windows_of
@@ -19,7 +19,7 @@ from diagnosis.missing_force import missing_force
 from diagnosis.refit import Explanation
 from diagnosis.rescale import to_true_peak
 from diagnosis.result import Diagnosis, Effect, Estimate, Rival, Screened, Verdict
-from diagnosis.select import Progress, Search, adjusted, evidence, misfit_per_sample, rivals, search
+from diagnosis.select import Progress, Search, adjusted, evidence, misfit_per_sample, rivals, search, take_best_single
 from diagnosis.sensors import SENSORS
 from diagnosis.setup import base_fit, measure
 from diagnosis.statement import statement
@@ -60,6 +60,8 @@ def diagnose(
             found = stage
     except KeyboardInterrupt:
         finished = False
+        if found.best is None:
+            take_best_single(found)
     if found.scores:
         progress("testing constancy", 0.85)
     return _assemble(specimen, found, holdout, bootstrap, progress, seed, finished)
@@ -77,12 +79,12 @@ def _assemble(
     chosen, measured = found.chosen, found.base.fitted.misfit.predictor.measured
     about = forces(chosen.fitted)
     tested = tests(about)
-    flagged = flags(tested)
+    flagged = flags(tested, found.more)
     if found.outside is not None:
         flagged = (found.outside, *(f for f in flagged if f.parameter != found.outside.parameter))
     adequate = misfit_per_sample(chosen) < INADEQUATE
     near = rivals(found)
-    verdict = _verdict(found, near, bool(flagged), adequate)
+    verdict = _verdict(found, near, bool(flagged), adequate, finished)
     progress("intervals", 0.9)
     gain = found.base.loss - (found.best or min(found.singles, key=adjusted, default=found.base)).loss
     p_value = found.null.p_value(gain) if found.null else 1.0
@@ -130,7 +132,9 @@ def _assemble(
     )
 
 
-def _verdict(found: Search, near: Sequence[Any], flagged: bool, adequate: bool) -> Verdict:
+def _verdict(found: Search, near: Sequence[Any], flagged: bool, adequate: bool, finished: bool) -> Verdict:
+    if not finished:  # what was not tried may explain it as well
+        return "cannot_tell_apart"
     if flagged or not adequate:
         return "not_in_library"
     if found.best is None:
@@ -193,7 +197,7 @@ def _provenance(specimen: Specimen, found: Search, tested: Sequence[Tested], see
         "channels": list(measured.channels),
         "noise": {c: [float(s) for s in np.unique(measured.sigma[:, k])] for k, c in enumerate(measured.channels)},
         "misfit_per_sample": misfit_per_sample(found.chosen),
-        "constancy_threshold": FLAG,
+        "constancy_threshold": found.more,
         "largest_constancy": tested[0].statistic if tested else 0.0,
         "largest_constancy_of": f"{tested[0].kind} / {tested[0].depends_on}" if tested else "",
         "seed": seed,

@@ -16,6 +16,8 @@ from models.base import FloatArray, Mechanism
 
 GRID = (0.03, 0.1, 0.3, 0.6, 0.95)
 """Shares of the way from the null to a bound."""
+FINE_GRID = tuple(np.geomspace(0.01, 0.95, 32).tolist())
+"""The same where the effect sets in at a threshold somewhere on the way."""
 SHAPE_GRID = 3
 REFERENCE = "reference_peak"
 ORDERS = (1.0, 2.0, 4.0)
@@ -51,15 +53,15 @@ class Candidate:
         low, high = self.unknowns[0].bounds
         return bool(self.null[0] <= low or self.null[0] >= high)
 
-    def grid(self) -> Iterator[FloatArray]:
-        """Coordinates (d,) spread over the range, on both sides of the null."""
+    def grid(self, by_threshold: bool = False) -> Iterator[FloatArray]:
+        """Coordinates (d,) spread over the range, on both sides of the null; finely for a ``by_threshold`` effect."""
         null = self.null
         shapes = [_spread(u) for u in self.unknowns[1:]]
         for bound in self.unknowns[0].bounds:
             reach = bound - null[0]
             if reach == 0.0:
                 continue
-            for share in GRID:
+            for share in FINE_GRID if by_threshold else GRID:
                 for rest in product(*shapes):
                     yield np.array([null[0] + share * reach, *rest])
 

@@ -110,11 +110,11 @@ def _spell(forces: Forces, column: FloatArray) -> float:
     return float(best)
 
 
-def flags(tested: list[Tested]) -> tuple[Constancy, ...]:
+def flags(tested: list[Tested], threshold: float = FLAG) -> tuple[Constancy, ...]:
     """Tests beyond the threshold: one a kind of force, the strongest dependence first."""
     found: dict[str, Constancy] = {}
     for test in tested:
-        if test.statistic >= FLAG and test.kind not in found:
+        if test.statistic >= threshold and test.kind not in found:
             depends_on = test.depends_on or "acts though no mechanism explains it"
             found[test.kind] = Constancy(test.kind, depends_on, test.statistic)
     return tuple(found.values())

@@ -19,6 +19,8 @@ from models.base import FloatArray
 
 SHUFFLES = 400
 LEVEL = 0.05
+FEWEST = 4
+"""Windows from which on a run of them can stand out."""
 SHARE_OF_PLAIN = 0.3
 """A dependence is told when its statistic is this share of that of the plain force."""
 HIGH_HZ = 10.0
@@ -61,8 +63,11 @@ def _excess(shown: Shown) -> FloatArray:
 def _intervals(excess: FloatArray, rng: np.random.Generator) -> Iterator[tuple[int, int]]:
     """The run of windows that holds more than its part, else all of them."""
     size = np.sqrt(np.maximum(excess, 0.0))
+    if size.size < FEWEST:
+        yield 0, excess.size - 1
+        return
     best, low, high = _largest_run(size)
-    shuffled = [_largest_run(rng.permutation(size))[0] for _ in range(SHUFFLES)] if size.size > 3 else [np.inf]
+    shuffled = [_largest_run(rng.permutation(size))[0] for _ in range(SHUFFLES)]
     if best > np.quantile(shuffled, 1.0 - LEVEL):
         yield low, high
     else:

@@ -99,11 +99,11 @@ def _score_one(screen: Screen, base: Point, candidate: Candidate) -> Score:
     low, high = candidate.unknowns[0].bounds
     near = [null.copy(), null.copy()]
     near[0][0], near[1][0] = max(null[0] - STEP, low), min(null[0] + STEP, high)
-    trials = [*near, *candidate.grid()]
-    residuals = misfit.residuals([at(base, candidate, u) for u in trials])
-    off, _ = screen.reduced(residuals)
+    off, _ = screen.reduced(misfit.residuals([at(base, candidate, u) for u in near]))
     derivative = (off[1] - off[0]) / (near[1][0] - near[0][0])
     information = screen.product(derivative, derivative)
+    trials = list(candidate.grid(by_threshold=information <= 1e-12))
+    off, _ = screen.reduced(misfit.residuals([at(base, candidate, u) for u in trials]))
     best, start = 0.0, null
     if information > 1e-12:
         step = -screen.scores_with_residual(derivative) / information
@@ -111,13 +111,13 @@ def _score_one(screen: Screen, base: Point, candidate: Candidate) -> Score:
             best = step**2 * information
             start = null.copy()
             start[0] = np.clip(null[0] + step, low, high)
-    gains = np.array([_gain(screen, column) for column in off[2:]])
+    gains = np.array([_gain(screen, column) for column in off])
     order = np.argsort(-gains)[:2]
-    starts = [trials[2 + int(i)] for i in order if gains[i] > 0.0]
+    starts = [trials[int(i)] for i in order if gains[i] > 0.0]
     if best > 0.0:
         starts.insert(0 if not gains.size or best * 0.8 > gains[order[0]] else 1, start)
     statistic = max(best if np.isfinite(best) else 0.0, float(gains.max(initial=0.0)))
-    column = derivative if information > 1e-12 or not order.size else off[2 + int(order[0])] - screen.residual
+    column = derivative if information > 1e-12 or not order.size else off[int(order[0])] - screen.residual
     return Score(candidate, statistic, tuple(starts[:2]), column)
 
 

@@ -24,6 +24,8 @@ from models.base import FloatArray
 
 MISSING = 15.0
 """Gain in 2 log likelihood that one more mechanism must bring."""
+DETAIL = 0.0025
+"""Share of the evidence that the details of a named effect's law may leave: 5 % of its amplitude."""
 GAP = 10.0
 """Rivals: all within this gain of the best."""
 PER_SHAPE = 2.0
@@ -40,6 +42,7 @@ TIE = 2.0
 QUICK = 6
 """Iterations of a first refit; the strongest are then taken further."""
 THOROUGH = 2
+RECOUNTS = 4
 NEAR, NEAR_ADEQUATE = 0.2, 0.6
 """Share of the leader's gain from which a single is refitted from the leader's optimum too."""
 FIRST_POOL = 3
@@ -71,6 +74,11 @@ class Search:
     def chosen(self) -> Explanation:
         return self.base if self.best is None else self.best
 
+    @property
+    def more(self) -> float:
+        """What a further effect, or a departure from constancy, must bring."""
+        return MISSING + DETAIL * max(self.gain(self.chosen), 0.0)
+
     def gain(self, explanation: Explanation) -> float:
         """Gain over the base, less what shape parameters cost."""
         return self.base.loss - adjusted(explanation)
@@ -86,7 +94,7 @@ def survives(before: Explanation, after: Explanation, threshold: float = MISSING
     gains = gain_by_window(before, after)
     total = before.loss - adjusted(after) + (adjusted(before) - before.loss)
     loudest = float(gains.max(initial=0.0))
-    if total - loudest < 0.5 * threshold:
+    if total - loudest < threshold:
         return False
     measured = after.fitted.misfit.predictor.measured
     if len(measured.recordings) > 2:
@@ -104,10 +112,9 @@ def search(base: Explanation, candidates: Sequence[Candidate], progress: Progres
     yield found
     if not found.singles:
         return
-    best = min(found.singles, key=adjusted)
-    if found.gain(best) < MISSING or not survives(found.base, best):
+    take_best_single(found)
+    if found.best is None:
         return
-    found.best = best
     yield found
     _pairs(found, progress)
     yield found
@@ -115,7 +122,15 @@ def search(base: Explanation, candidates: Sequence[Candidate], progress: Progres
     yield found
     _backward(found)
     settle_ties(found)
+    found.best = None if found.best is None else with_memory(again(found.best))
     yield found
+
+
+def take_best_single(found: Search) -> None:
+    """The strongest single so far, if it counts."""
+    best = min(found.singles, key=adjusted, default=None)
+    if best is not None and found.gain(best) >= MISSING and survives(found.base, best):
+        found.best = best
 
 
 def worth_a_refit(scores: Sequence[Score], fewest: int, share: float) -> list[Score]:
@@ -156,19 +171,25 @@ def _singles(found: Search, progress: Progress) -> None:
         if found.gain(single) > near * found.gain(leader):
             found.singles[k] = from_other(again(single) if k < THOROUGH else single, leader)
     found.singles.sort(key=adjusted)
-    recounted = with_memory(found.singles[0])
-    if recounted.loss < found.singles[0].loss - 1.0:
-        found.singles[0] = recounted
+    found.singles[0] = with_memory(found.singles[0])
     found.tried += found.singles
 
 
 def with_memory(explanation: Explanation) -> Explanation:
-    """The same model refitted with the impacts before each window counted along its own motion."""
+    """The same model refitted with the impacts before each window counted along its own motion, if that is better.
+
+    Counts and parameters depend on each other: repeated until the loss stays.
+    """
     fitted = explanation.fitted
-    point = fitted.misfit.point(fitted.u, fitted.states)
-    measured = counted(fitted.misfit.predictor, point)
-    misfit = replace(fitted.misfit, predictor=replace(fitted.misfit.predictor, measured=measured))
-    return replace(explanation, fitted=fit(misfit, fitted.u, fitted.states))
+    for _ in range(RECOUNTS):
+        before = fitted.loss
+        point = fitted.misfit.point(fitted.u, fitted.states)
+        measured = counted(fitted.misfit.predictor, point)
+        misfit = replace(fitted.misfit, predictor=replace(fitted.misfit.predictor, measured=measured))
+        fitted = fit(misfit, fitted.u, fitted.states)
+        if abs(before - fitted.loss) < 0.5:
+            break
+    return replace(explanation, fitted=fitted) if fitted.loss < explanation.loss else explanation
 
 
 def misfit_per_sample(explanation: Explanation) -> float:
@@ -199,22 +220,26 @@ def pool(found: Search) -> list[Explanation]:
 
 
 def _pairs(found: Search, progress: Progress) -> None:
-    if found.best is not None and not adequate(found.best):
+    if found.best is None:
+        return
+    if not adequate(found.best):
         progress("comparing with laws outside the library", 0.48)
         found.outside = outside(found.best, seconds(found, found.best))
-        if found.outside is not None:
-            return
-    singles = pool(found)
+    singles = pool(found) if found.outside is None else [found.best]
     pairs: list[Explanation] = []
     for k, single in enumerate(singles):
         progress(f"looking for a second effect beside {single.names[0]}", 0.5 + 0.25 * k / len(singles))
         pairs += _extended(found, single)
-    if not pairs or found.best is None:
+    if not pairs:
         return
+    if found.outside is not None:
+        if not any(adequate(e) for e in pairs):
+            return
+        found.outside = None
     found.tried += pairs
     pair = min(pairs, key=adjusted)
     alone = best_of([e for e in found.singles if e.names[0] in pair.names] or [found.best])
-    if adjusted(found.best) - adjusted(pair) >= MISSING and survives(alone, pair):
+    if adjusted(found.best) - adjusted(pair) >= found.more and survives(alone, pair, found.more):
         found.best = again(pair)
 
 
@@ -241,7 +266,7 @@ def _more(found: Search, progress: Progress) -> None:
             return
         found.tried += further
         best = min(further, key=adjusted)
-        if adjusted(found.best) - adjusted(best) < MISSING or not survives(found.best, best):
+        if adjusted(found.best) - adjusted(best) < found.more or not survives(found.best, best, found.more):
             return
         found.best = best
 
@@ -255,7 +280,7 @@ def _backward(found: Search) -> None:
         dropping = False
         for candidate in found.best.candidates:
             rest = without(found.best, candidate)
-            if adjusted(rest) - adjusted(found.best) < MISSING:
+            if adjusted(rest) - adjusted(found.best) < found.more:
                 found.best, dropping = rest, True
                 break
     if len(found.best.candidates) < 2:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from string import Formatter
 
 from diagnosis.forces import KINDS
 from diagnosis.result import Constancy, Effect, Fit, Located, Rival, Verdict
@@ -43,8 +44,9 @@ def statement(
             f"(the strongest suspect is no stronger than chance, p = {p_value:.2g})."
         )
     else:
-        chance = "p < 1e-12" if p_value < 1e-12 else f"p = {p_value:.1g}"
-        parts.append(f"The model leaves something out ({chance}).")
+        if effects or finished:
+            chance = "far beyond chance" if p_value < 1e-6 else f"p = {p_value:.1g}"
+            parts.append(f"The model leaves something out ({chance}).")
         if located:
             parts.append(_where(located))
     if effects:
@@ -54,7 +56,7 @@ def statement(
     if verdict == "not_in_library":
         parts.append("That does not settle it: what is missing is not in the library of mechanisms.")
         parts += [_flag(found) for found in constancy[:2]]
-    if verdict == "cannot_tell_apart":
+    if verdict == "cannot_tell_apart" and rivals:
         names = ", ".join(f"{r.name.replace('_', ' ')} ({r.evidence_gap:.1f} less)" for r in rivals)
         parts.append(f"These recordings cannot tell it apart from: {names}.")
     elif rivals:
@@ -65,7 +67,10 @@ def statement(
     if next_experiment and next_experiment.get("static_test"):
         parts.append(f"To settle it: {next_experiment['static_test']}.")
     if not finished:
-        parts.append("The search was stopped before its end: this is what stood by then.")
+        parts.append(
+            "The search was stopped before its end: this is what stood by then, and what was not tried may explain "
+            "the recordings as well."
+        )
     return " ".join(parts)
 
 
@@ -95,13 +100,18 @@ def _effect(effect: Effect, mechanism: Mechanism) -> str:
     values = {name: e.estimate for name, e in effect.parameters.items()}
     sentence = mechanism.sentence.format_map({**mechanism.nulls, **values})
     main = effect.parameters[next(iter(effect.parameters))]
-    unit = "" if main.unit == "1" else f" {main.unit}"
+    form = _form(mechanism, next(iter(effect.parameters)))
+    low, high = (format(end, form or ".4g") for end in (main.low95, main.high95))
+    unit = "" if main.unit == "1" or form else f" {main.unit}"
     name = effect.name.replace("_", " ")
     bound = ", at the end of its range" if main.at_bound else ""
-    return (
-        f"{name}: {sentence} (95 % interval {main.low95:.4g} to {main.high95:.4g}{unit}{bound}; "
-        f"evidence {effect.evidence:.0f})"
-    )
+    return f"{name}: {sentence} (95 % interval {low} to {high}{unit}{bound}; evidence {effect.evidence:.0f})"
+
+
+def _form(mechanism: Mechanism, parameter: str) -> str:
+    """How the sentence writes the parameter where it writes it in percent, else empty."""
+    forms = (form or "" for _, name, form, _ in Formatter().parse(mechanism.sentence) if name == parameter)
+    return next((form for form in forms if form.endswith("%")), "")
 
 
 def _fit(train: Fit, holdout: Fit | None) -> str:
