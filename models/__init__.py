@@ -7,7 +7,7 @@ from importlib import import_module
 from models.base import Model
 from models.errors import InputError, nearest
 
-MODELS = ("housner", "stacked", "interface")
+MODELS = ("housner", "stacked", "interface", "interface_linear", "isolated")
 """The models, from the simplest to the richest; each is a folder with a `model.MODEL`."""
 
 

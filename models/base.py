@@ -88,6 +88,12 @@ class Mechanism:
     source: str = ""
     at_joints: tuple[str, ...] = ()
     """Models on which ``parameter_base`` and ``parameter_top`` address one joint alone."""
+    forms: tuple[Mechanism, ...] = ()
+    """The same mechanism on models where its equation has other parameters."""
+
+    def on(self, model: str) -> Mechanism | None:
+        """The form that acts on ``model``; None where none does."""
+        return next((form for form in (self, *self.forms) if model in form.acts), None)
 
     def parameter(self, name: str) -> MechanismParameter:
         for parameter in (*self.parameters, *self._of_joints()):

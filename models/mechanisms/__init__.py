@@ -15,6 +15,7 @@ from models.mechanisms import (
     hardening,
     maxwell,
     mullins,
+    payne,
     permanent_set,
     pivot_inset,
     quadratic_damping,
@@ -54,7 +55,14 @@ MECHANISMS: dict[str, Mechanism] = {
         bouc_wen,
         mullins,
         permanent_set,
+        payne,
         wall_flexibility,
     )
 }
 """In the order in which they act on a model's coefficients."""
+
+
+def acting_on(model: str) -> dict[str, Mechanism]:
+    """The mechanisms that act on ``model``, in the form that they have there."""
+    found = {name: mechanism.on(model) for name, mechanism in MECHANISMS.items()}
+    return {name: form for name, form in found.items() if form is not None}

@@ -4,10 +4,15 @@ from __future__ import annotations
 
 from models.base import Mechanism, MechanismParameter, Values
 from models.interface.layered import LayeredWall
+from models.isolated.chain import Chain
 
 
 def on_interface(wall: LayeredWall, values: Values) -> LayeredWall:
     return wall.with_law("bouc_wen", values)
+
+
+def on_isolated(chain: Chain, values: Values) -> Chain:
+    return chain.with_law("bouc_wen", values)
 
 
 MECHANISM = Mechanism(
@@ -27,7 +32,7 @@ MECHANISM = Mechanism(
     signature="with the amplitude; loops at any frequency",
     sentence="the rubber yields at {yield_compression:.2e} m to {post_yield_ratio:.2f} of its stiffness "
     "(its parameters are not unique: look at the loop)",
-    acts={"interface": on_interface},
+    acts={"interface": on_interface, "isolated": on_isolated},
     at_joints=("interface",),
     source="Wen (J. Eng. Mech. Div. 102, 1976): models/rubber/bouc_wen.py",
 )

@@ -1,13 +1,33 @@
-"""The contact wears: restitution falls from impact to impact."""
+"""Wear: restitution falls from impact to impact, the rubber softens from cycle to cycle."""
 
 from __future__ import annotations
 
 from models.base import Mechanism, MechanismParameter, Values
 from models.housner.block import Block
+from models.isolated.chain import Chain
 
 
 def on_housner(block: Block, values: Values) -> Block:
     return block.replace(loss_per_impact=values["loss_of_restitution_per_impact"], restitution_floor=values["floor"])
+
+
+def on_isolated(chain: Chain, values: Values) -> Chain:
+    return chain.with_law("degradation", values)
+
+
+OF_RUBBER = Mechanism(
+    name="degradation",
+    effect_class="degradation",
+    parameters=(
+        MechanismParameter("final_loss", "l_k", "1", "share of the stiffness lost at last", 0.0, 0.7),
+        MechanismParameter("cycles", "n_k", "1", "cycles over which it is lost", 2.0, 50.0, null=10.0, shape=True),
+    ),
+    equation="k [1 - final_loss (1 - exp(-n/cycles))] after n full cycles",
+    signature="grows with time and record",
+    sentence="the rubber loses {final_loss:.1%} of its stiffness, over {cycles:.0f} cycles",
+    acts={"isolated": on_isolated},
+    source="form of this project: models/isolated/bearing.py",
+)
 
 
 MECHANISM = Mechanism(
@@ -22,4 +42,5 @@ MECHANISM = Mechanism(
     sentence="each impact takes {loss_of_restitution_per_impact:.2%} of the restitution, down to {floor:.2f} of it",
     acts={"housner": on_housner},
     source="form of this project",
+    forms=(OF_RUBBER,),
 )

@@ -4,10 +4,15 @@ from __future__ import annotations
 
 from models.base import Mechanism, MechanismParameter, Values
 from models.interface.layered import LayeredWall
+from models.isolated.chain import Chain
 
 
 def on_interface(wall: LayeredWall, values: Values) -> LayeredWall:
     return wall.with_law("hardening", values)
+
+
+def on_isolated(chain: Chain, values: Values) -> Chain:
+    return chain.with_law("hardening", values)
 
 
 MECHANISM = Mechanism(
@@ -17,7 +22,7 @@ MECHANISM = Mechanism(
     equation="s = k u (1 + beta2 (u/e)^2) + c u'",
     signature="at large rotations, while a joint presses on a short length",
     sentence="the rubber stiffens with the squared strain, coefficient {beta2:.1f}",
-    acts={"interface": on_interface},
+    acts={"interface": on_interface, "isolated": on_isolated},
     at_joints=("interface",),
     source="models/rubber/hardening.py",
 )

@@ -1,0 +1,1 @@
+"""A rigid body, or a chain of storeys, on rubber bearings in shear."""

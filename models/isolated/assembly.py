@@ -1,0 +1,88 @@
+"""From the parameters a user gives to the coefficients of buildings on bearings."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from models.base import FloatArray, Values
+from models.errors import InputError
+from models.isolated.chain import Chain
+from models.isolated.declaration import MOST_LEVELS
+
+OF_THE_STRAIN = ("hardening", "mullins", "payne")
+
+
+def complaints(values: Values) -> list[str]:
+    """Sentences about values that describe no building."""
+    found = []
+    levels = np.asarray(values.get("levels", 1.0), dtype=np.float64)
+    odd = (levels != np.round(levels)) | ~(levels >= 1.0) | (levels > MOST_LEVELS)
+    if np.any(odd):
+        return [f"levels is {float(levels[odd].flat[0]):g}: give a whole number from 1 to {MOST_LEVELS}"]
+    most = int(levels.max())
+    given = [j for j in range(1, MOST_LEVELS + 1) if f"level_mass_{j}" in values]
+    if "total_mass" in values and given:
+        found.append(f"level_mass_{given[0]} and total_mass are both given: give total_mass or the mass of every level")
+    elif "total_mass" not in values:
+        missing = [j for j in range(1, most + 1) if j not in given]
+        if missing:
+            found.append(f"levels is {most} and level_mass_{missing[0]} is missing: give it, or total_mass instead")
+        elif given[-1] > most:
+            found.append(f"level_mass_{given[-1]} is given but levels is {most}: leave it out, or raise levels")
+    for name in ("storey_stiffness", "storey_damping"):
+        if most > 1 and name not in values:
+            found.append(f"levels is {most} and {name} is missing: give it, or 1 level for a rigid body")
+    mechanisms = {name.partition(".")[0] for name in values if "." in name}
+    strained = [name for name in OF_THE_STRAIN if name in mechanisms]
+    if strained and "rubber_thickness" not in values:
+        found.append(f"{strained[0]} is a law of the strain and needs rubber_thickness (m): give it")
+    exponent = np.asarray(values.get("bouc_wen.exponent", 1.0), dtype=np.float64)
+    whole = np.isin(exponent, (1.0, 2.0, 3.0, 4.0))
+    if not np.all(whole):
+        found.append(f"bouc_wen.exponent is {float(exponent[~whole].flat[0]):g}; give 1, 2, 3 or 4")
+    return found
+
+
+def build(values: Values, options: Mapping[str, str], size: int | None = None) -> Chain:
+    """The buildings with the mechanisms that ``values`` switch on; raises InputError."""
+    from models.mechanisms import acting_on
+
+    for sentence in complaints(values):
+        raise InputError(sentence)
+    shape = (int(np.prod(np.broadcast_shapes(*(np.shape(v) for v in values.values()), (size or 1,)))),)
+
+    def value(name: str, default: float = np.nan) -> FloatArray:
+        return np.broadcast_to(np.asarray(values.get(name, default), dtype=np.float64), shape).copy()
+
+    levels = value("levels", 1.0).astype(np.int64)
+    there = np.arange(1, MOST_LEVELS + 1) <= levels[:, None]
+    if "total_mass" in values:
+        masses = np.broadcast_to((value("total_mass") / levels)[:, None], there.shape)
+    else:
+        masses = np.stack([value(f"level_mass_{j}") for j in range(1, MOST_LEVELS + 1)], axis=1)
+    chain = Chain(
+        levels=levels,
+        masses=np.where(there, masses, 0.0),
+        storey_stiffness=value("storey_stiffness", 0.0),
+        storey_damping=value("storey_damping", 0.0),
+        stiffness=value("bearing_stiffness"),
+        damping=value("bearing_damping"),
+        thickness=value("rubber_thickness"),
+    )
+    switched: dict[str, dict[str, Any]] = {}
+    for key, given in values.items():
+        mechanism, dot, parameter = key.partition(".")
+        if dot:
+            switched.setdefault(mechanism, {})[parameter] = given
+    for name, acting in acting_on("isolated").items():
+        if name in switched:
+            chain = acting.acts["isolated"](chain, {**acting.nulls, **switched[name]})
+    law = options["rubber_law"]
+    if law == "as_given":
+        return chain
+    if law != "linear" and chain.numbers(law) is None:
+        raise InputError(f"the rubber law of the bearings is {law}; give its parameters, or rubber_law = 'linear'")
+    return chain.without_laws(but=law)

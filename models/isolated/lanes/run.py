@@ -1,0 +1,211 @@
+"""From chains and a shaking to the tables of the lane kernel, and back to results."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.base import FloatArray
+from models.isolated import bearing
+from models.isolated.account import energy, status
+from models.isolated.chain import Chain
+from models.isolated.declaration import MOST_LEVELS, STATES
+from models.isolated.lanes import rows as r
+from models.isolated.lanes.advance import advance
+from models.isolated.modes import exact_step, modes
+from models.shaking import Shaking
+
+LARGEST_PHASE = (0.1, 0.4)
+"""Largest omega h of a step (rad): of the first mode, for the laws; of the second, to find the peaks."""
+MOST_STEPS = 8
+"""Steps a sample at most: modes far above what the record can hold follow it without a motion of their own."""
+
+
+@dataclass(frozen=True)
+class Lanes:
+    """What the kernel returns for n lanes: results by name, samples (n, m, 2 most levels + 1), steps computed.
+
+    A sample holds x, then x', of the most levels (0 where there is none), and the bearings' force.
+    """
+
+    result: Mapping[str, FloatArray]
+    samples: FloatArray
+    steps: int
+
+
+def substeps(omega: FloatArray, time_step: float) -> NDArray[np.int64]:
+    """Steps per sample of the record from the frequencies (n, levels), lane by lane."""
+    second = omega[:, min(1, omega.shape[1] - 1)]
+    needed = np.minimum(second * time_step / LARGEST_PHASE[1], MOST_STEPS)
+    needed = np.maximum(needed, omega[:, 0] * time_step / LARGEST_PHASE[0])
+    return np.asarray(np.maximum(1, np.ceil(needed - 1e-9)), np.int64)
+
+
+def law_numbers(chain: Chain, h: FloatArray) -> FloatArray:
+    """The laws' numbers (n, rows) for steps of ``h`` (n,) seconds; zero where a law is absent."""
+    table = np.zeros((chain.size, r.N_LAW))
+    table[:, r.K], table[:, r.P_ORDER] = chain.stiffness, 1.0
+    if p := chain.numbers("hardening"):
+        table[:, r.P_HARDENING] = p["beta2"] / p["thickness"] ** 2
+    if p := chain.numbers("maxwell"):
+        tau = p["relaxation_time"]
+        table[:, r.P_ARM] = p["arm_stiffness_ratio"] * p["stiffness"]
+        table[:, r.P_ARM_DECAY], table[:, r.P_ARM_GAIN] = np.exp(-h / tau), -np.expm1(-h / tau) * tau / h
+    if p := chain.numbers("bouc_wen"):
+        table[:, r.P_HYSTERETIC] = (1.0 - p["post_yield_ratio"]) * p["stiffness"]
+        table[:, r.P_YIELD], table[:, r.P_ORDER] = 1.0 / p["yield_compression"], p["exponent"]
+    if p := chain.numbers("mullins"):
+        table[:, r.P_SOFTENING], table[:, r.P_PER_STRAIN] = p["softening"], 1.0 / (p["strain"] * p["thickness"])
+    if p := chain.numbers("payne"):
+        table[:, r.P_PAYNE], table[:, r.P_PER_AMPLITUDE] = p["softening"], 1.0 / (p["strain"] * p["thickness"])
+    if p := chain.numbers("degradation"):
+        table[:, r.P_LOSS], table[:, r.P_PER_CROSSING] = p["final_loss"], 1.0 / p["cycles"]
+    return table
+
+
+def memory_table(chain: Chain, u: FloatArray, rate: FloatArray, memory: bearing.Memory) -> FloatArray:
+    """The memory's rows (n, rows) of bearings at u, u'."""
+    table = np.zeros((chain.size, r.N_MEMORY))
+    table[:, r.U], table[:, r.RATE] = u, rate
+    for (law, _), hidden in zip(chain.rubber_laws, memory.hidden, strict=True):
+        if law.name in HIDDEN:
+            table[:, HIDDEN[law.name]] = hidden
+    table[:, r.AMPLITUDE], table[:, r.CROSSINGS] = memory.amplitude, memory.crossings
+    table[:, r.WEAR] = bearing.wear(chain, memory.crossings)
+    return table
+
+
+HIDDEN = {"maxwell": r.ARM, "bouc_wen": r.ZETA, "mullins": r.LARGEST}
+
+
+def memory_of(chain: Chain, table: FloatArray) -> bearing.Memory:
+    """The memory from the rows that `memory_table` writes."""
+    empty = np.zeros(chain.size)
+    hidden = tuple(table[:, HIDDEN[law.name]] if law.name in HIDDEN else empty for law, _ in chain.rubber_laws)
+    return bearing.Memory(hidden, table[:, r.AMPLITUDE], table[:, r.CROSSINGS])
+
+
+def run(
+    chain: Chain,
+    shaking: Shaking,
+    scale: FloatArray,
+    *,
+    tail: float = 0.0,
+    initial: Mapping[str, FloatArray] | None = None,
+    first: NDArray[np.int64] | None = None,
+    last: NDArray[np.int64] | None = None,
+    samples: int = 0,
+    may_rest: bool = True,
+    refinement: int = 1,
+) -> Lanes:
+    """Run n lanes of ``chain`` under ``scale`` (n,) times the shaking.
+
+    ``first`` and ``last`` (n,) are samples of the shaking between which each lane runs (default: all, and
+    the tail); ``samples`` > 0 returns the states at the samples from ``first`` on. ``refinement`` divides
+    every step. Lanes of one length and step run together; none depends on the others.
+    """
+    n = chain.size
+    shaken = shaking.horizontal.size - 1
+    quiet = int(np.ceil(tail / shaking.time_step - 1e-9))
+    given = {k: np.broadcast_to(np.asarray(v, float), (n,)) for k, v in (initial or {}).items()}
+    displaced, moving = (given.get(name, np.zeros(n)) for name in STATES)
+    first = np.zeros(n, np.int64) if first is None else first
+    last = np.full(n, shaken + quiet) if last is None else last
+    found: dict[str, FloatArray] = {}
+    trace, steps = np.zeros((n, samples, 2 * MOST_LEVELS + 1)), 0
+    for levels in np.unique(chain.levels).tolist():
+        of_length = np.flatnonzero(chain.levels == levels)
+        omega = modes(chain.take(of_length), levels)[0]
+        each = substeps(omega, shaking.time_step) * refinement
+        for per in np.unique(each).tolist():
+            lanes = of_length[each == per]
+            period = np.asarray(2.0 * np.pi / omega[each == per, 0] / shaking.time_step, np.int64)
+            group = _Group(chain.take(lanes), levels, shaking, per, displaced[lanes], moving[lanes], samples)
+            told = group.run(scale[lanes], first[lanes], last[lanes], period, may_rest)
+            steps += group.steps
+            for name, values in told.items():
+                found.setdefault(name, np.zeros(n))[lanes] = values
+            size = group.size
+            trace[lanes, :, :levels] = group.trace[:, :, :levels]
+            trace[lanes, :, MOST_LEVELS : MOST_LEVELS + levels] = group.trace[:, :, size : size + levels]
+            trace[lanes, :, -1] = group.trace[:, :, -1]
+    return Lanes(found, trace, steps)
+
+
+class _Group:
+    """Lanes of one length and step: their tables and one call of the kernel."""
+
+    def __init__(
+        self, chain: Chain, levels: int, shaking: Shaking, per: int, u: FloatArray, rate: FloatArray, samples: int
+    ) -> None:
+        self.chain, self.levels, self.shaking, self.per = chain, levels, shaking, per
+        self.size = next(size for size in r.SIZES if size >= levels)
+        self.h = np.full(chain.size, shaking.time_step / per)
+        self.steps = 0
+        self.trace = np.zeros((chain.size, samples, 2 * self.size + 1))
+        self.y = np.repeat(np.stack([u, rate], axis=1), levels, axis=1)
+        self.memory = bearing.relaxed(chain, u)
+        self.force = bearing.spring_force(chain, u, self.memory) - chain.stiffness * u
+
+    def padded(self, table: FloatArray, *axes: int) -> FloatArray:
+        """``table`` with x and x' of ``levels`` spread over the padded size along ``axes``."""
+        rows = np.concatenate([np.arange(self.levels), self.size + np.arange(self.levels)])
+        for axis in axes:
+            shape = list(table.shape)
+            shape[axis] = 2 * self.size
+            wide = np.zeros(shape)
+            np.moveaxis(wide, axis, 0)[rows] = np.moveaxis(table, axis, 0)
+            table = wide
+        return table
+
+    def _links(self) -> tuple[FloatArray, FloatArray]:
+        """Spring, dashpot and mark of every level's lower link (n, 3, size); masses and inverses (n, 2, size)."""
+        chain, levels = self.chain, self.levels
+        links, masses = np.zeros((chain.size, 3, self.size)), np.zeros((chain.size, 2, self.size))
+        links[:, 0, 1:levels], links[:, 1, 1:levels] = chain.storey_stiffness[:, None], chain.storey_damping[:, None]
+        links[:, 0, 0], links[:, 1, 0], links[:, 2, 1:levels] = chain.stiffness, chain.damping, 1.0
+        masses[:, 0, :levels] = chain.masses[:, :levels]
+        masses[:, 1, :levels] = 1.0 / chain.masses[:, :levels]
+        return links, masses
+
+    def run(
+        self, scale: FloatArray, first: NDArray[np.int64], last: NDArray[np.int64], period: NDArray[np.int64],
+        may_rest: bool,
+    ) -> dict[str, FloatArray]:  # fmt: skip
+        """Results by name (n,)."""
+        chain, levels = self.chain, self.levels
+        u, rate = self.y[:, 0], self.y[:, levels]
+        links, masses = self._links()
+        scalars = np.zeros((chain.size, r.N_SCALAR))
+        scalars[:, r.SCALE], scalars[:, r.STEP], scalars[:, r.FORCE] = scale, self.h, self.force
+        # all levels start alike: only the slab is accelerated
+        start = chain.stiffness * u + chain.damping * rate + self.force
+        scalars[:, r.PEAK_U], scalars[:, r.PEAK_ACCELERATION] = np.abs(u), np.abs(start / chain.masses[:, 0])
+        scalars[:, r.KINETIC] = chain.mass * rate**2
+        transition, gains = exact_step(chain, levels, self.h)
+        rows = 2 * self.size
+        result = np.zeros((chain.size, r.N_RESULT + rows + r.N_MEMORY))
+        self.steps = advance(
+            self.shaking.horizontal, self.shaking.time_step, self.shaking.horizontal.size - 1, self.per, first, last,
+            period, scalars, memory_table(chain, u, rate, self.memory), law_numbers(chain, self.h),
+            self.padded(self.y, 1), self.padded(transition, 1, 2), self.padded(gains, 1), links, masses, result,
+            self.trace, may_rest, (None,) * self.size, True if chain.laws else None,
+        )  # fmt: skip
+        at_end = result[:, r.N_RESULT : r.N_RESULT + rows]
+        at_end = np.concatenate([at_end[:, :levels], at_end[:, self.size : self.size + levels]], axis=1)
+        memory = memory_of(chain, result[:, r.N_RESULT + rows :])
+        work = result[:, r.R_WORK]
+        with np.errstate(invalid="ignore", over="ignore"):
+            lost = energy(chain, levels, self.y, self.memory) + work - energy(chain, levels, at_end, memory)
+        return {
+            "peak_bearing_displacement": result[:, r.R_PEAK_U],
+            "peak_level_acceleration": result[:, r.R_PEAK_ACCELERATION],
+            "peak_drift": result[:, r.R_PEAK_DRIFT],
+            "residual_displacement": at_end[:, 0],
+            "dissipated_energy": lost,
+            "status": status(result[:, r.R_FAILED] != 0.0, result[:, r.R_PEAK_U] > 0.0),
+            "rest_time": result[:, r.R_REST],
+        }
