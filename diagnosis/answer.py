@@ -12,6 +12,7 @@ from diagnosis.candidates import candidates
 from diagnosis.constancy import Tested, flags, tests
 from diagnosis.experiment import next_experiment
 from diagnosis.forces import forces
+from diagnosis.found import Search, adjusted, evidence, misfit_per_sample, rivals
 from diagnosis.heldout import Shown, compare, fit_figures, horizons, windows_of
 from diagnosis.intervals import estimates
 from diagnosis.locate import locate
@@ -19,7 +20,7 @@ from diagnosis.missing_force import missing_force
 from diagnosis.refit import Explanation
 from diagnosis.rescale import to_true_peak
 from diagnosis.result import Diagnosis, Effect, Estimate, Rival, Screened, Verdict
-from diagnosis.select import Progress, Search, adjusted, evidence, misfit_per_sample, rivals, search, take_best_single
+from diagnosis.select import Progress, search, take_best_single
 from diagnosis.sensors import SENSORS
 from diagnosis.setup import base_fit, measure
 from diagnosis.statement import statement

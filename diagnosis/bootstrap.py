@@ -8,9 +8,10 @@ import numpy as np
 
 from diagnosis.candidates import candidates
 from diagnosis.fit import fit
+from diagnosis.found import Search
 from diagnosis.refit import Explanation, best_of, extend
 from diagnosis.screen import open_screen, score
-from diagnosis.select import FEWEST, Progress, Search
+from diagnosis.select import FEWEST, Progress
 from diagnosis.starts import start_of
 from grids.specimen import Specimen
 

@@ -15,12 +15,12 @@ from typing import Any
 import numpy as np
 
 from diagnosis.candidates import Candidate
+from diagnosis.found import Search
 from diagnosis.intervals import covariances
 from diagnosis.measured import arrange
 from diagnosis.misfit import Misfit, reduce
 from diagnosis.prediction import Predictor
 from diagnosis.refit import Explanation
-from diagnosis.select import Search
 from diagnosis.whitening import sensor_noise_only
 from diagnosis.whole_runs import sensed_run
 from grids.recordings.base import REQUIRED, Recording

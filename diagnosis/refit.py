@@ -9,7 +9,10 @@ import numpy as np
 
 from diagnosis.candidates import Candidate
 from diagnosis.fit import ITERATIONS, Fitted, fit, fit_thoroughly
+from diagnosis.memory import counted
 from models.base import FloatArray
+
+RECOUNTS = 4
 
 
 @dataclass(frozen=True)
@@ -89,6 +92,23 @@ def from_other(explanation: Explanation, other: Explanation, iterations: int = I
     )
     tried = Explanation(explanation.candidates, fit(mine.misfit, u, other.fitted.states, iterations))
     return min((explanation, tried), key=lambda e: e.loss)
+
+
+def with_memory(explanation: Explanation) -> Explanation:
+    """The same model refitted with the impacts before each window counted along its own motion, if that is better.
+
+    Counts and parameters depend on each other: repeated until the loss stays.
+    """
+    fitted = explanation.fitted
+    for _ in range(RECOUNTS):
+        before = fitted.loss
+        point = fitted.misfit.point(fitted.u, fitted.states)
+        measured = counted(fitted.misfit.predictor, point)
+        misfit = replace(fitted.misfit, predictor=replace(fitted.misfit.predictor, measured=measured))
+        fitted = fit(misfit, fitted.u, fitted.states)
+        if abs(before - fitted.loss) < 0.5:
+            break
+    return replace(explanation, fitted=fitted) if fitted.loss < explanation.loss else explanation
 
 
 def gain_by_window(before: Explanation, after: Explanation) -> FloatArray:

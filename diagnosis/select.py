@@ -1,35 +1,20 @@
 """Which mechanisms are missing: refits of the strongest, forward selection, backward check, rivals.
 
 The fit of the base may be stuck; a rival's optimum then shows it, and the base is refitted from
-there. An effect counts when its gain in 2 log likelihood passes the threshold and still does without
-the window that speaks loudest for it (and, with more than two recordings, without any one of them).
+there. What counts is in `diagnosis.found`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
-
-import numpy as np
 
 from diagnosis.candidates import Candidate
-from diagnosis.fit import fit
-from diagnosis.memory import counted
-from diagnosis.null import Null, null_distribution
+from diagnosis.found import MISSING, Search, adequate, adjusted, survives
+from diagnosis.null import null_distribution
 from diagnosis.outside import outside
-from diagnosis.refit import Explanation, again, best_of, extend, from_other, gain_by_window, without
-from diagnosis.result import Constancy
+from diagnosis.refit import Explanation, again, best_of, extend, from_other, with_memory, without
 from diagnosis.screen import Score, open_screen, score
-from models.base import FloatArray
 
-MISSING = 15.0
-"""Gain in 2 log likelihood that one more mechanism must bring."""
-DETAIL = 0.0025
-"""Share of the evidence that the details of a named effect's law may leave: 5 % of its amplitude."""
-GAP = 10.0
-"""Rivals: all within this gain of the best."""
-PER_SHAPE = 2.0
-"""What every unknown beyond the first costs a mechanism."""
 WORTH = 4.0
 """Screen statistic under which a refit is not tried (the strongest FEWEST are tried all the same)."""
 FEWEST, MOST = 5, 16
@@ -42,7 +27,6 @@ TIE = 2.0
 QUICK = 6
 """Iterations of a first refit; the strongest are then taken further."""
 THOROUGH = 2
-RECOUNTS = 4
 NEAR, NEAR_ADEQUATE = 0.2, 0.6
 """Share of the leader's gain from which a single is refitted from the leader's optimum too."""
 FIRST_POOL = 3
@@ -50,57 +34,7 @@ SECOND_TRIES = 6
 MOST_EFFECTS = 3
 POOL_SHARE = 0.25
 """Singles whose gain is this share of the best one's are tried as parts of a pair."""
-ADEQUATE = 1.08
-"""Misfit per sample under which one effect is enough to start a pair from."""
-
 Progress = Callable[[str, float], None]
-
-
-@dataclass
-class Search:
-    """What has been found so far; it grows, so that a stopped search leaves its state."""
-
-    base: Explanation
-    candidates: tuple[Candidate, ...]
-    scores: list[Score] = field(default_factory=list)
-    null: Null | None = None
-    singles: list[Explanation] = field(default_factory=list)
-    tried: list[Explanation] = field(default_factory=list)
-    best: Explanation | None = None
-    outside: Constancy | None = None
-    """A force outside the library that explains what the best single leaves."""
-
-    @property
-    def chosen(self) -> Explanation:
-        return self.base if self.best is None else self.best
-
-    @property
-    def more(self) -> float:
-        """What a further effect, or a departure from constancy, must bring."""
-        return MISSING + DETAIL * max(self.gain(self.chosen), 0.0)
-
-    def gain(self, explanation: Explanation) -> float:
-        """Gain over the base, less what shape parameters cost."""
-        return self.base.loss - adjusted(explanation)
-
-
-def adjusted(explanation: Explanation) -> float:
-    """Loss plus the price of parameters beyond the first of each mechanism."""
-    return explanation.loss + PER_SHAPE * (explanation.size - len(explanation.candidates))
-
-
-def survives(before: Explanation, after: Explanation, threshold: float = MISSING) -> bool:
-    """Whether the gain passes without its loudest window and, of more than two, any one recording."""
-    gains = gain_by_window(before, after)
-    total = before.loss - adjusted(after) + (adjusted(before) - before.loss)
-    loudest = float(gains.max(initial=0.0))
-    if total - loudest < threshold:
-        return False
-    measured = after.fitted.misfit.predictor.measured
-    if len(measured.recordings) > 2:
-        each = [float(gains[measured.recording_of == r].sum()) for r in range(len(measured.recordings))]
-        return total - max(each) >= 0.3 * threshold
-    return True
 
 
 def search(base: Explanation, candidates: Sequence[Candidate], progress: Progress) -> Iterator[Search]:
@@ -173,36 +107,6 @@ def _singles(found: Search, progress: Progress) -> None:
     found.singles.sort(key=adjusted)
     found.singles[0] = with_memory(found.singles[0])
     found.tried += found.singles
-
-
-def with_memory(explanation: Explanation) -> Explanation:
-    """The same model refitted with the impacts before each window counted along its own motion, if that is better.
-
-    Counts and parameters depend on each other: repeated until the loss stays.
-    """
-    fitted = explanation.fitted
-    for _ in range(RECOUNTS):
-        before = fitted.loss
-        point = fitted.misfit.point(fitted.u, fitted.states)
-        measured = counted(fitted.misfit.predictor, point)
-        misfit = replace(fitted.misfit, predictor=replace(fitted.misfit.predictor, measured=measured))
-        fitted = fit(misfit, fitted.u, fitted.states)
-        if abs(before - fitted.loss) < 0.5:
-            break
-    return replace(explanation, fitted=fitted) if fitted.loss < explanation.loss else explanation
-
-
-def misfit_per_sample(explanation: Explanation) -> float:
-    """Squared whitened residual per sample, without the worst tenth (at least one) of the windows."""
-    misfit = explanation.fitted.misfit
-    residual = misfit.residuals([misfit.point(explanation.fitted.u, explanation.fitted.states)])[0]
-    each = np.sort(np.sum(residual**2, axis=1) / misfit.predictor.measured.count)
-    return float(np.mean(each[: max(1, int(0.9 * each.size))]))
-
-
-def adequate(explanation: Explanation) -> bool:
-    """Whether the misfit is that of the noise."""
-    return misfit_per_sample(explanation) < ADEQUATE
 
 
 def pool(found: Search) -> list[Explanation]:
@@ -303,30 +207,3 @@ def settle_ties(found: Search) -> None:
     near = [e for e in same if adjusted(e) - adjusted(found.best) < TIE]
     found.tried.append(found.best)
     found.best = min(near, key=lambda e: (sum(place[c] for c in e.candidates), adjusted(e)))
-
-
-def rivals(found: Search) -> list[tuple[Explanation, Candidate, float]]:
-    """Explanations with one effect exchanged, within the gap: (explanation, the other effect, gap)."""
-    if found.best is None:
-        return []
-    best, near = found.best, []
-    seen = set(best.names)
-    for other in sorted(found.tried, key=adjusted):
-        if len(other.candidates) != len(best.candidates):
-            continue
-        gap = adjusted(other) - adjusted(best)
-        new = [c for c in other.candidates if c.name not in best.names]
-        if gap > GAP or len(new) != 1 or new[0].name in seen:
-            continue
-        seen.add(new[0].name)
-        near.append((other, new[0], max(gap, 0.0)))
-    return near
-
-
-def evidence(found: Search) -> FloatArray:
-    """Gain of each effect over the best model without it (n_effects,)."""
-    if found.best is None:
-        return np.zeros(0)
-    if len(found.best.candidates) == 1:
-        return np.array([found.base.loss - found.best.loss])
-    return np.array([without(found.best, c).loss - found.best.loss for c in found.best.candidates])

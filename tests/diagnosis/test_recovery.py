@@ -10,9 +10,8 @@ import pytest
 import models
 from diagnosis.candidates import candidates, of_name
 from diagnosis.intervals import covariances
-from diagnosis.refit import Explanation, again, best_of, extend
+from diagnosis.refit import Explanation, again, best_of, extend, with_memory
 from diagnosis.screen import open_screen, score
-from diagnosis.select import with_memory
 from diagnosis.sensors import SENSORS
 from diagnosis.setup import base_fit, measure
 from tests.diagnosis.made import SPECIMEN, recording

@@ -1,0 +1,116 @@
+"""What a search has found, and what counts in it: gains, thresholds, adequacy, rivals.
+
+An effect counts when its gain in 2 log likelihood passes the threshold and still does without
+the window that speaks loudest for it (and, with more than two recordings, without any one of them).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from diagnosis.candidates import Candidate
+from diagnosis.null import Null
+from diagnosis.refit import Explanation, gain_by_window, without
+from diagnosis.result import Constancy
+from diagnosis.screen import Score
+from models.base import FloatArray
+
+MISSING = 15.0
+"""Gain in 2 log likelihood that one more mechanism must bring."""
+DETAIL = 0.0025
+"""Share of the evidence that the details of a named effect's law may leave: 5 % of its amplitude."""
+GAP = 10.0
+"""Rivals: all within this gain of the best."""
+PER_SHAPE = 2.0
+"""What every unknown beyond the first costs a mechanism."""
+ADEQUATE = 1.08
+"""Misfit per sample under which an explanation is adequate."""
+
+
+@dataclass
+class Search:
+    """What has been found so far; it grows, so that a stopped search leaves its state."""
+
+    base: Explanation
+    candidates: tuple[Candidate, ...]
+    scores: list[Score] = field(default_factory=list)
+    null: Null | None = None
+    singles: list[Explanation] = field(default_factory=list)
+    tried: list[Explanation] = field(default_factory=list)
+    best: Explanation | None = None
+    outside: Constancy | None = None
+    """A force outside the library that explains what the best single leaves."""
+
+    @property
+    def chosen(self) -> Explanation:
+        return self.base if self.best is None else self.best
+
+    @property
+    def more(self) -> float:
+        """What a further effect, or a departure from constancy, must bring."""
+        return MISSING + DETAIL * max(self.gain(self.chosen), 0.0)
+
+    def gain(self, explanation: Explanation) -> float:
+        """Gain over the base, less what shape parameters cost."""
+        return self.base.loss - adjusted(explanation)
+
+
+def adjusted(explanation: Explanation) -> float:
+    """Loss plus the price of parameters beyond the first of each mechanism."""
+    return explanation.loss + PER_SHAPE * (explanation.size - len(explanation.candidates))
+
+
+def survives(before: Explanation, after: Explanation, threshold: float = MISSING) -> bool:
+    """Whether the gain passes without its loudest window and, of more than two, any one recording."""
+    gains = gain_by_window(before, after)
+    total = before.loss - adjusted(after) + (adjusted(before) - before.loss)
+    loudest = float(gains.max(initial=0.0))
+    if total - loudest < threshold:
+        return False
+    measured = after.fitted.misfit.predictor.measured
+    if len(measured.recordings) > 2:
+        each = [float(gains[measured.recording_of == r].sum()) for r in range(len(measured.recordings))]
+        return total - max(each) >= 0.3 * threshold
+    return True
+
+
+def misfit_per_sample(explanation: Explanation) -> float:
+    """Squared whitened residual per sample, without the worst tenth (at least one) of the windows."""
+    misfit = explanation.fitted.misfit
+    residual = misfit.residuals([misfit.point(explanation.fitted.u, explanation.fitted.states)])[0]
+    each = np.sort(np.sum(residual**2, axis=1) / misfit.predictor.measured.count)
+    return float(np.mean(each[: max(1, int(0.9 * each.size))]))
+
+
+def adequate(explanation: Explanation) -> bool:
+    """Whether the misfit is that of the noise."""
+    return misfit_per_sample(explanation) < ADEQUATE
+
+
+def rivals(found: Search) -> list[tuple[Explanation, Candidate, float]]:
+    """Explanations with one effect exchanged, within the gap: (explanation, the other effect, gap)."""
+    if found.best is None:
+        return []
+    best, near = found.best, []
+    seen = set(best.names)
+    for other in sorted(found.tried, key=adjusted):
+        if len(other.candidates) != len(best.candidates):
+            continue
+        gap = adjusted(other) - adjusted(best)
+        new = [c for c in other.candidates if c.name not in best.names]
+        if gap > GAP or len(new) != 1 or new[0].name in seen:
+            continue
+        seen.add(new[0].name)
+        near.append((other, new[0], max(gap, 0.0)))
+    return near
+
+
+def evidence(found: Search) -> FloatArray:
+    """Gain of each effect over the best model without it (n_effects,)."""
+    if found.best is None:
+        return np.zeros(0)
+    if len(found.best.candidates) == 1:
+        return np.array([found.base.loss - found.best.loss])
+    return np.array([without(found.best, c).loss - found.best.loss for c in found.best.candidates])
