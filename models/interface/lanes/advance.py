@@ -166,9 +166,9 @@ def advance(
                         of[slot] = -1
                         empty(w, slot)
                         settle = True
-            if settle:
-                break
-            # --- lanes that have come to a sample take up its growth
+            # --- lanes that have come to a sample take up its growth, whatever becomes of the others
             for slot in range(W):
                 if sub[slot] == 0 and of[slot] >= 0 and at[slot] < bound[slot]:
                     load(w, slot, record, at[slot], shaken, float(per[slot]))
+            if settle:
+                break

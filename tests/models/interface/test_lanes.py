@@ -107,6 +107,20 @@ def test_a_lane_does_not_depend_on_the_others() -> None:
             np.testing.assert_array_equal(alone[name][0], together[name][k], err_msg=name)
 
 
+def test_a_neighbour_that_overturns_changes_nothing() -> None:
+    """Even when it falls in the very step in which this lane comes to a sample of the record."""
+    time = 0.01 * np.arange(201)
+    shaking = Shaking(0.01, np.sin(2 * np.pi * time / 1.5) + 0.2 * np.sin(2 * np.pi * 7.0 * time))
+    one = wall(SHORT)
+    scale = np.linspace(1.5, 3.5, 48)
+    many = one.take(np.zeros(48, int))
+    together = lanes.run(many, shaking, scale, tail=4.0).result
+    fell = np.isfinite(lanes.outputs(many, together)["overturning_time"])
+    assert 8 < fell.sum() < 40
+    for k in range(48):
+        np.testing.assert_array_equal(lanes.run(one, shaking, scale[[k]], tail=4.0).result[0], together[k])
+
+
 def test_an_overturned_wall_and_one_that_comes_to_rest() -> None:
     time = 0.01 * np.arange(301)
     shaking = Shaking(0.01, np.sin(2 * np.pi * time / 3.0))
