@@ -1,6 +1,6 @@
 """Kill runs with signal 9 at random moments and look for damage: ``make kill-test``.
 
-For every scheduler: runs of one study are killed until the wanted number of kills hit while blocks
+For every model and scheduler: runs of one study are killed until the wanted number of kills hit while blocks
 were being computed. After each kill every block's file must be readable and whole, no finished
 block may be gone or changed; at the end the cube must equal, bit for bit, that of a run that nobody disturbed.
 """
@@ -20,6 +20,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from itertools import product
 from pathlib import Path
 
 from study.open import open_study
@@ -29,20 +30,32 @@ SCHEDULERS = ("synchronous", "threads", "processes", "cluster")
 PLAN = """
 [study]
 name = "killed"
-model = "housner"
+model = "{model}"
 [motion]
 files = ["ridgecrest_2019_clc"]
 vertical = true
 [parameters]
-height = "1.8 m"
-mass = "800 kg"
+{parameters}
 [axes]
-aspect_ratio = {{ linspace = [0.1, 0.4, 30] }}
-top_mass = {{ linspace = [0, 4000, {n}] }}
-pga = {{ linspace = [0.05, 0.77, 37], unit = "g" }}
+aspect_ratio = {{ linspace = [{aspects}] }}
+top_mass = {{ linspace = [500, 4000, {masses}] }}
+pga = {{ linspace = [0.05, 0.77, {levels}], unit = "g" }}
 [run]
 block_seconds = 0.1
 """
+BLOCK = 'height = "1.8 m"\nmass = "800 kg"'
+WALL = """wall_height = "1.8 m"
+wall_thickness = "0.138 m"
+wall_density = "900 kg/m^3"
+top_length = "2 m"
+top_height = "0.6 m\""""
+RUBBER = 'layer_thickness = "10 mm"\nlayer_modulus = "4.5 MPa"\ndamping_ratio = 0.0544'
+MODELS = {
+    "housner": (BLOCK, "0.1, 0.4, 30", 37),
+    "stacked": (WALL, "0.2, 0.6, 10", 10),
+    "interface": (f"{WALL}\n{RUBBER}", "0.4, 1.2, 5", 9),
+}
+"""Parameters, points of the aspect ratio and number of PGA: cells of like cost in all, a second or two."""
 CLUSTER = """
 import sys
 from distributed import LocalCluster
@@ -51,6 +64,12 @@ if __name__ == "__main__":
         print(cluster.scheduler_address, flush=True)
         sys.stdin.read()
 """
+
+
+def plan_text(model: str, masses: int) -> str:
+    """A study of one model, the longer the more ``masses``."""
+    parameters, aspects, levels = MODELS[model]
+    return PLAN.format(model=model, parameters=parameters, aspects=aspects, masses=masses, levels=levels)
 
 
 @dataclass
@@ -174,11 +193,13 @@ def same_cube(one: Path, two: Path) -> list[str]:
     return differing
 
 
-def kill_scheduler(scheduler: str, kills: int, work: Path, size: int = 20, seed: int = 0) -> Finding:
-    """Kill runs on one scheduler ``kills`` times; compare the cube with an undisturbed one."""
+def kill_scheduler(scheduler: str, model: str, kills: int, work: Path, size: int = 20, seed: int = 0) -> Finding:
+    """Kill runs of one model on one scheduler ``kills`` times; compare the cube with an undisturbed one."""
     finding, draw = Finding(scheduler), random.Random(seed)
+    work = work / model
+    work.mkdir(exist_ok=True)
     plan = work / "killed.toml"
-    plan.write_text(PLAN.format(n=size))
+    plan.write_text(plan_text(model, size))
     if not (work / "undisturbed" / "killed" / "cube.nc").exists():
         finish(plan, work / "undisturbed", "threads")
     while finding.kills < kills:
@@ -197,17 +218,18 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--kills", type=int, default=20)
     parser.add_argument("--scheduler", choices=SCHEDULERS, action="append")
+    parser.add_argument("--model", choices=tuple(MODELS), action="append")
     parser.add_argument("--seed", type=int, default=int(time.time()))
     chosen = parser.parse_args()
-    print(f"seed {chosen.seed}\n{'scheduler':<12} {'kills':>5} {'studies':>7} {'blocks':>6}  damage")
+    print(f"seed {chosen.seed}\n{'model':<10} {'scheduler':<12} {'kills':>5} {'studies':>7} {'blocks':>6}  damage")
     bad = 0
     with tempfile.TemporaryDirectory() as work:
-        for scheduler in chosen.scheduler or SCHEDULERS:
-            found = kill_scheduler(scheduler, chosen.kills, Path(work), seed=chosen.seed)
+        for model, scheduler in product(chosen.model or MODELS, chosen.scheduler or SCHEDULERS):
+            found = kill_scheduler(scheduler, model, chosen.kills, Path(work), seed=chosen.seed)
             bad += len(found.damage)
             damage = "; ".join(found.damage) or "none"
             print(
-                f"{scheduler:<12} {found.kills:>5} {found.studies:>7} {found.blocks_seen:>6}  {damage}",
+                f"{model:<10} {scheduler:<12} {found.kills:>5} {found.studies:>7} {found.blocks_seen:>6}  {damage}",
                 flush=True,
             )
     return 1 if bad else 0

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 import xarray as xr
 
-from benchmarks.kill_test import PLAN, Finding, finish, kill_study, local_cluster, same_cube, start_run
+from benchmarks.kill_test import Finding, finish, kill_study, local_cluster, plan_text, same_cube, start_run
 from models.errors import InputError
 from study.open import open_study
 from study.run import run
@@ -34,7 +34,7 @@ def cluster() -> Iterator[str]:
 def plan(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A study of one or two seconds in blocks of a tenth."""
     path = tmp_path_factory.mktemp("plan") / "killed.toml"
-    path.write_text(PLAN.format(n=10))
+    path.write_text(plan_text("housner", 10))
     return path
 
 
@@ -63,6 +63,19 @@ def test_killed_runs_lose_no_finished_block(
     kill_study(plan, tmp_path, address, 1, random.Random(scheduler), finding)
     assert not finding.damage
     assert not same_cube(undisturbed, tmp_path / "killed")
+
+
+@pytest.mark.parametrize("model", ["stacked", "interface"])
+def test_models_of_two_bodies_lose_nothing_either(model: str, tmp_path: Path) -> None:
+    """Killed once on threads and finished: the bits of blocks of another size, one after the other."""
+    plan, finding = tmp_path / "killed.toml", Finding("threads")
+    plan.write_text(plan_text(model, 6))
+    kill_study(plan, tmp_path / "threads", "threads", 1, random.Random(model), finding)
+    assert not finding.damage
+    plan.write_text(plan_text(model, 6).replace("block_seconds = 0.1", "block_seconds = 30"))
+    whole = run(plan, results=tmp_path / "whole", scheduler="synchronous")
+    assert whole.blocks < finding.blocks_seen
+    assert not same_cube(whole.folder, tmp_path / "threads" / "killed")
 
 
 def test_ctrl_c_stops_cleanly(plan: Path, undisturbed: Path, tmp_path: Path) -> None:
