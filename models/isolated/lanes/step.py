@@ -45,13 +45,17 @@ def read_one(s: Table, y: Table, new: Table, link: Table, mass: Table, size: Any
         momentum += m * v
         moment_was += m * y[j, i]
         momentum_was += m * y[levels + j, i]
-    s[r.PEAK_U, i] = max(s[r.PEAK_U, i], abs(new[0, i]))
+    # u between the ends of the step too: where u', taken as linear, is zero
+    h, rate_was, rate = s[r.STEP, i], y[levels, i], new[levels, i]
+    turned = rate_was * rate < 0.0
+    reached = y[0, i] + (0.5 * h * rate_was * rate_was / (rate_was - rate) if turned else 0.0)
+    s[r.PEAK_U, i] = max(s[r.PEAK_U, i], max(abs(new[0, i]), abs(reached)))
     s[r.PEAK_ACCELERATION, i] = max(s[r.PEAK_ACCELERATION, i], acceleration)
     s[r.PEAK_DRIFT, i] = max(s[r.PEAK_DRIFT, i], drift)
     s[r.KINETIC, i] = max(s[r.KINETIC, i], kinetic)
     s[r.WINDOW, i] = max(s[r.WINDOW, i], kinetic)
     # -integral of a sum(m x') by parts, with the cubic through both ends of the step
-    h, a0, a1 = s[r.STEP, i], s[r.AT, i], s[r.NEXT, i]
+    a0, a1 = s[r.AT, i], s[r.NEXT, i]
     mean = 0.5 * (moment + moment_was) + h / 12.0 * (momentum_was - momentum)
     s[r.WORK, i] -= a1 * moment - a0 * moment_was - (a1 - a0) * mean
 
