@@ -28,6 +28,10 @@ class RockingAccessor:
         """See `study.maps.onset_map`."""
         return maps.onset_map(self._cube, x, y, at)
 
+    def output_map(self, output: str, x: str, y: str, **at: Any) -> xr.DataArray:
+        """See `study.maps.output_map`."""
+        return maps.output_map(self._cube, output, x, y, at)
+
     def slices(self, output: str, x: str, **at: Any) -> xr.DataArray:
         """See `study.maps.slices`."""
         return maps.slices(self._cube, output, x, at)

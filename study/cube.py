@@ -176,6 +176,7 @@ def _attributes(plan: Plan, setting: Setting, path: Path, started: str, schedule
         "Conventions": "CF-1.11",
         "title": f"{plan.name}: {model.title}",
         "source": f"rocking-study {versions()['rocking-study']}, model {setting.model} {setting.version}",
+        "model": setting.model,
         "history": "\n".join([*_old_history(path), f"{now()} rocking run {plan.name}"]),
         "provenance": as_json(provenance),
     }

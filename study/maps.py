@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+import models
 from models.errors import InputError, nearest
 from study.status import OVERTURNED, ROCKING, UNKNOWN
 from study.wording import title, unit_shown
@@ -57,6 +58,24 @@ def slices(cube: xr.Dataset, output: str, x: str, at: Mapping[str, Any] | None =
     return curves.assign_attrs(selection=place)
 
 
+def output_map(cube: xr.Dataset, output: str, x: str, y: str, at: Mapping[str, Any] | None = None) -> xr.DataArray:
+    """The values of one output over ``x`` and ``y``, dimensions ``(y, x)``; nan where unknown.
+
+    ``at`` selects all other axes, as in `overturning_map`. Raises InputError for unknown names and for axes
+    left open.
+    """
+    if output not in cube.data_vars:
+        raise InputError(f"'{output}' is no output of this cube: {nearest(output, map(str, cube.data_vars))}")
+    _check_axes(cube, x, y, at)
+    chosen = select(cube, at)
+    known = chosen[output].where(~chosen["status"].isin(UNKNOWN))
+    left = [str(dim) for dim in known.dims if dim not in (x, y) and known.sizes[dim] > 1]
+    if left:
+        raise InputError(f"{', '.join(left)} must be selected for a map, for instance {_example(cube, left)}")
+    result = known.squeeze([dim for dim in known.dims if dim not in (x, y)]).transpose(y, x)
+    return result.assign_attrs(cube[output].attrs, selection=_place(chosen, (x, y)))
+
+
 def select(cube: xr.Dataset, at: Mapping[str, Any] | None) -> xr.Dataset:
     """The cube at the nearest value of each number axis, at the word or record of the others."""
     for name, value in (at or {}).items():
@@ -83,13 +102,10 @@ def default_axes(cube: xr.Dataset, x: str | None, y: str | None) -> tuple[str, s
     return x, y
 
 
-def middle(cube: xr.Dataset, keep: tuple[str, ...]) -> dict[str, Any]:
-    """The middle value of every axis longer than one that is neither in ``keep`` nor the intensity."""
-    return {
-        str(dim): cube[dim].values[size // 2]
-        for dim, size in cube.sizes.items()
-        if dim not in (*keep, *_searched(cube, keep)) and size > 1
-    }
+def middle(cube: xr.Dataset, keep: tuple[str, ...], *, intensity: bool = False) -> dict[str, Any]:
+    """The middle value of every axis longer than one that is not in ``keep``; of the intensity only if asked for."""
+    kept = keep if intensity else (*keep, *_searched(cube, keep))
+    return {str(dim): cube[dim].values[size // 2] for dim, size in cube.sizes.items() if dim not in kept and size > 1}
 
 
 def _place(chosen: xr.Dataset, kept: tuple[str, ...]) -> str:
@@ -109,6 +125,26 @@ def _check_axis(cube: xr.Dataset, name: str) -> None:
         raise InputError(f"'{name}' is no axis of this cube: {nearest(name, map(str, cube.dims))}")
 
 
+def _check_axes(cube: xr.Dataset, x: str, y: str, at: Mapping[str, Any] | None) -> None:
+    for axis in (x, y):
+        _check_axis(cube, axis)
+        if axis in (at or {}):
+            raise InputError(f"'{axis}' is an axis of the map: leave it out of the selection")
+    if x == y:
+        raise InputError(f"x and y are both '{x}': choose two axes")
+
+
+def _check_overturns(cube: xr.Dataset) -> None:
+    """Refuse the cube of a model in which nothing rocks or overturns."""
+    name = cube.attrs.get("model")
+    if name in models.MODELS and all(q.name != "overturned" for q in models.get(name).outputs):
+        known = [str(output) for output in cube.data_vars if output != "status"]
+        raise InputError(
+            f"model '{name}' neither rocks nor overturns, so its cube has no such map; draw an output instead: "
+            f"output_map, or 'rocking map --output {known[0] if known else 'NAME'}'"
+        )
+
+
 def _example(cube: xr.Dataset, names: list[str]) -> str:
     value = cube[names[0]].values[0]
     return f"{names[0]}={value:.6g}" if isinstance(value, float) else f"{names[0]}={value}"
@@ -123,12 +159,8 @@ def _map(
     name: str,
     verb: str,
 ) -> xr.DataArray:
-    for axis in (x, y):
-        _check_axis(cube, axis)
-        if axis in (at or {}):
-            raise InputError(f"'{axis}' is an axis of the map: leave it out of the selection")
-    if x == y:
-        raise InputError(f"x and y are both '{x}': choose two axes")
+    _check_overturns(cube)
+    _check_axes(cube, x, y, at)
     chosen = select(cube, at)
     status = chosen["status"]
     # a single intensity is no grid to search: then the map says yes or no

@@ -18,14 +18,16 @@ EVENTS = (
 )
 
 
-def plot_history(history: xr.Dataset, channel: str = "rotation_1", *, ax: Axes | None = None) -> Axes:
+def plot_history(history: xr.Dataset, channel: str | None = None, *, ax: Axes | None = None) -> Axes:
     """Draw ``channel`` of a history over time; impacts, onsets, rest and overturning are marked.
+
+    Without a ``channel``: the rotation of the first body, or the displacements of the levels.
 
     ``history`` is what `rocking simulate` writes: channels over ``time``, ``event_time`` and
     ``event_kind`` (CF flags) over ``event``. A channel over ``level`` gives one curve a level.
     """
     ax = new_axes(ax, 8.0, 3.6)
-    values = history[channel]
+    values = history[channel or ("rotation_1" if "rotation_1" in history else "level_displacement_x")]
     time = history["time"].values
     if values.ndim == 1:
         ax.plot(time, values.values, color=COLOURS[0], linewidth=1.0)

@@ -37,14 +37,7 @@ def plot_map(values: xr.DataArray, *, words: tuple[str, str], ax: Axes | None = 
 
     ``words`` say what 1 and 0 mean (or: what the missing values of a smallest intensity mean).
     """
-    ax = new_axes(ax)
-    set_title(ax, str(values.attrs.get("selection", "")))
-    y, x = (values[str(dim)] for dim in values.dims)
-    across, x_words = positions(x)
-    up, y_words = positions(y)
-    # a map needs ascending borders; the axes of a cube may come in any order
-    ordered = values.values[np.argsort(up)][:, np.argsort(across)]
-    borders = edges(np.sort(across)), edges(np.sort(up))
+    ax, ordered, borders = frame(values, ax)
     if str(values.name).startswith(("pga_", "motion_scale_")):
         _draw_smallest(ax, values, ordered, borders, words[1])
     else:
@@ -54,10 +47,23 @@ def plot_map(values: xr.DataArray, *, words: tuple[str, str], ax: Axes | None = 
         if np.isnan(ordered).any():
             kinds.append(("unknown", UNKNOWN))
         draw_legend(ax, [Patch(facecolor=colour, edgecolor="0.4", label=text) for text, colour in kinds])
+    return ax
+
+
+def frame(values: xr.DataArray, ax: Axes | None) -> tuple[Axes, np.ndarray, tuple[np.ndarray, np.ndarray]]:
+    """Axes with title, labels and scales for a map; its values and borders in ascending order."""
+    ax = new_axes(ax)
+    set_title(ax, str(values.attrs.get("selection", "")))
+    y, x = (values[str(dim)] for dim in values.dims)
+    across, x_words = positions(x)
+    up, y_words = positions(y)
+    # a map needs ascending borders; the axes of a cube may come in any order
+    ordered = values.values[np.argsort(up)][:, np.argsort(across)]
+    borders = edges(np.sort(across)), edges(np.sort(up))
     for which, axis, points, wording in (("x", x, across, x_words), ("y", y, up, y_words)):
         set_scale(ax, which, points, wording)
         (ax.set_xlabel if which == "x" else ax.set_ylabel)(label(axis))
-    return ax
+    return ax, ordered, borders
 
 
 def _draw_smallest(
