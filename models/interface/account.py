@@ -4,25 +4,38 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from models.base import STATUS, Event, FloatArray
-from models.interface import watch
-from models.interface.equation import Equation
-from models.interface.strip import stored
 
 JOINTS = ("base", "top")
+Pair = tuple[float, float]
+
+
+class Reading(NamedTuple):
+    """What the account takes from a state; pairs are of the bodies, or of base and top."""
+
+    rotations: Pair
+    heights: Pair
+    """By which each joint's freer end is from pressing; negative: full contact."""
+    friction: Pair
+    shares: Pair
+    stored: Pair
+    """Elastic energy (J) of each layer."""
+    kinetic: float
 
 
 class Account:
     """Peaks, times, energies of one run; `sample` in the order of time, then `close` or `fall`.
 
-    ``work``: of each joint's strip on the bodies so far, in J; whoever integrates the motion sets it.
+    ``wall``: the run's, with plain floats. ``work``: of each joint's strip on the bodies so far, in J;
+    whoever integrates the motion sets it.
     """
 
-    def __init__(self, equation: Equation) -> None:
-        self.equation, self.wall = equation, equation.wall
+    def __init__(self, wall: Any) -> None:
+        self.wall = wall
         self.time = math.nan
         self.kinetic = 0.0
         self.peak, self.friction, self.contact = [0.0, 0.0], [0.0, 0.0], [1.0, 1.0]
@@ -37,27 +50,20 @@ class Account:
     def fallen(self) -> bool:
         return not all(math.isnan(t) for t in self.over)
 
-    def sample(
-        self, time: float, q: Sequence[float], v: Sequence[float], hidden: FloatArray, a: float, gravity: float
-    ) -> None:
-        """A state at ``time`` (s) under a and G, with the laws' ``hidden`` state."""
-        equation = self.equation
+    def sample(self, time: float, reading: Reading) -> None:
+        """A state at ``time`` (s)."""
         step = 0.0 if math.isnan(self.time) else time - self.time
-        strips = equation.strips(q, v, hidden)[:2]
-        heights = watch.uplift(equation, q, v)
-        ratios = watch.friction(equation, q, v, equation.acceleration(q, v, a, gravity, strips).tolist(), a, gravity)
-        stored_now = self._stored(q)
-        self.kinetic = equation.kinetic(q, v)
+        self.kinetic = reading.kinetic
         for k in (0, 1):
-            self.peak[k] = max(self.peak[k], abs(q[k]))
-            self.friction[k] = max(self.friction[k], ratios[k])
-            self.contact[k] = min(self.contact[k], strips[k].share)
+            self.peak[k] = max(self.peak[k], abs(reading.rotations[k]))
+            self.friction[k] = max(self.friction[k], reading.friction[k])
+            self.contact[k] = min(self.contact[k], reading.shares[k])
             if math.isnan(self.time):
-                self.first[k], self.height[k] = stored_now[k], heights[k]
-                if heights[k] > 0.0:
+                self.first[k], self.height[k] = reading.stored[k], reading.heights[k]
+                if reading.heights[k] > 0.0:
                     self.onset[k] = time
-            self._lift(k, time, step, heights[k])
-            self.last[k] = stored_now[k]
+            self._lift(k, time, step, reading.heights[k])
+            self.last[k] = reading.stored[k]
         self.time = time
 
     def _lift(self, k: int, time: float, step: float, height: float) -> None:
@@ -80,15 +86,6 @@ class Account:
         else:
             self.up[k] += step
 
-    def _stored(self, q: Sequence[float]) -> tuple[float, float]:
-        wall = self.wall
-        return (
-            stored(wall.base_half_width, wall.base_stiffness, q[2], math.sin(q[0])) if wall.joints != "top" else 0.0,
-            stored(wall.top_half_width, wall.top_stiffness, q[3], math.sin(q[1] - q[0]))
-            if wall.joints != "base"
-            else 0.0,
-        )
-
     def fall(self, time: float, q: FloatArray) -> None:
         """A body has reached pi/2; with the wall goes what stands on it."""
         wall_down = abs(q[0]) >= math.pi / 2.0 - 1e-9
@@ -99,9 +96,9 @@ class Account:
         if not self.events or self.events[-1].kind != "rest":
             self.events.append(Event(time, "rest"))
 
-    def close(self, time: float, q: Sequence[float], v: Sequence[float]) -> None:
-        """The end of the run: a body past its toe and moving outwards counts as overturned."""
-        base, top = watch.toppled(self.equation, q, v)
+    def close(self, time: float, toppled: tuple[bool, bool]) -> None:
+        """The end of the run: a body past its toe and moving outwards (base, top) counts as overturned."""
+        base, top = toppled
         if base or top:
             self.over = [time if base else math.nan, time]
             self.events.append(Event(time, "overturned", 1 if base else 2))

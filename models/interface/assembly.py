@@ -95,8 +95,10 @@ def _needed(found: FloatArray | None, joint: str, name: str) -> FloatArray:
     return found
 
 
-def build(values: Values, options: Mapping[str, str], vertical: bool, size: int | None = None) -> LayeredWall:
-    """The walls with the mechanisms that ``values`` switch on, in the order of the catalogue."""
+def build(
+    values: Values, options: Mapping[str, str], vertical: bool, size: int | None = None, model: str = "interface"
+) -> LayeredWall:
+    """The walls with the mechanisms of ``model`` that ``values`` switch on, in the order of the catalogue."""
     from models.mechanisms import MECHANISMS
 
     plain = {k: v for k, v in values.items() if "." not in k}
@@ -108,7 +110,7 @@ def build(values: Values, options: Mapping[str, str], vertical: bool, size: int 
     wall = assemble(plain, options, vertical, int(np.prod(lanes_shape(values, size))))
     for name, mechanism_ in MECHANISMS.items():
         if name in switched:
-            wall = mechanism_.acts["interface"](wall, {**mechanism_.nulls, **switched[name]})
+            wall = mechanism_.acts[model](wall, {**mechanism_.nulls, **switched[name]})
     for joint in wall.rubber_joints:
         option = f"{joint}_rubber_law"
         word = options["rubber_law"] if options[option] == "same" else options[option]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,6 @@ from models.errors import InputError, nearest
 from models.interface import declaration, modes
 from models.interface.assembly import build
 from models.interface.layered import LayeredWall
-from models.interface.observe import observe
 from models.shaking import Shaking
 
 BOTH = {"layer_thickness", "layer_modulus", "damping_ratio"}
@@ -55,14 +55,18 @@ class Interface:
 
     def words(self, options: Mapping[str, str] | None) -> dict[str, str]:
         """Every option with its word, the default where none is given."""
-        chosen = {name: known[0] for name, known in declaration.OPTIONS.items()}
+        chosen = {name: known[0] for name, known in self.options.items()}
         for name, word in (options or {}).items():
             if name not in chosen:
-                raise InputError(f"interface has no option '{name}'; {nearest(name, chosen)}")
-            if word not in declaration.OPTIONS[name]:
-                raise InputError(f"{name} is '{word}'; {nearest(word, declaration.OPTIONS[name])}")
+                raise InputError(f"{self.name} has no option '{name}'; {nearest(name, chosen)}")
+            if word not in self.options[name]:
+                raise InputError(f"{name} is '{word}'; {nearest(word, self.options[name])}")
             chosen[name] = word
         return chosen
+
+    def _part(self, name: str) -> Any:
+        """A module of this model's folder: ``lanes.run``, ``reference``, ``observe``."""
+        return import_module(f"models.{self.name}.{name}")
 
     def check(self, values: Values) -> list[str]:
         """Walls that cannot stand between their layers under their own weight."""
@@ -94,14 +98,20 @@ class Interface:
             prefix for prefix in ("base", "top") if any(name.startswith(f"{prefix}_") for name in LAYER & set(values))
         }
         joints = told.pop() if len(told) == 1 and not BOTH & set(values) else "both"
-        return build(values, self.words({"joints": joints}), False)
+        return build(values, self.words({"joints": joints}), False, model=self.name)
 
     def derive(self, values: Values) -> dict[str, FloatArray]:
         """Static state, natural frequencies, mode shapes and modal damping at rest, arrays ``(n,)``."""
-        return modes.derived(self._as_described(values))
+        wall = self._as_described(values)
+        return modes.derived(wall, self.natural_modes(wall))
+
+    def natural_modes(self, wall: LayeredWall) -> modes.Modes:
+        """Undamped modes in full contact."""
+        return modes.at_rest(wall)
 
     def _wall(self, values: Values, options: Mapping[str, str] | None, shaking: Shaking, size: int) -> LayeredWall:
-        wall = build(values, self.words(options), shaking.vertical is not None and shaking.vertical_acts, size)
+        vertical = shaking.vertical is not None and shaking.vertical_acts
+        wall = build(values, self.words(options), vertical, size, self.name)
         if wall.size != size:
             raise ValueError(f"values broadcast to {wall.size} lanes, {size} are asked for")
         return wall
@@ -126,12 +136,10 @@ class Interface:
         wall = self._wall(values, options, shaking, scale.size)
         self._integrator(integrator)
         if integrator == "lanes":
-            from models.interface.lanes import run as lanes
-
+            lanes = self._part("lanes.run")
             found = lanes.outputs(wall, lanes.run(wall, shaking, scale, tail=tail).result)
         else:
-            from models.interface import reference
-
+            reference = self._part("reference")
             each = [
                 reference.run(wall.take(slice(k, k + 1)), shaking, float(scale[k]), tail=tail).outputs
                 for k in range(scale.size)
@@ -155,16 +163,18 @@ class Interface:
 
         ``initial`` holds arrays ``(n,)`` by the names of `states`; what it leaves out is as at rest.
         """
-        from models.interface.lanes import run as lanes
-
         n = first.size
         wall = self._wall(values, options, shaking, n)
         last = np.minimum(first + samples - 1, shaking.horizontal.size - 1)
-        ran = lanes.run(
+        ran = self._part("lanes.run").run(
             wall, shaking, np.broadcast_to(np.asarray(scale, float), (n,)), initial=initial, first=first, last=last,
             samples=samples, may_rest=False,
         )  # fmt: skip
-        return observe(wall, ran.samples)
+        return self._observe(wall, ran.samples)
+
+    def _observe(self, wall: LayeredWall, state: FloatArray) -> dict[str, FloatArray]:
+        found: dict[str, FloatArray] = self._part("observe").observe(wall, state)
+        return found
 
     def simulate(
         self,
@@ -192,8 +202,7 @@ class Interface:
             if name not in self.states:
                 raise InputError(f"[initial] has no state '{name}'; {nearest(name, self.states)}")
         if integrator == "lanes":
-            from models.interface.lanes import run as lanes
-
+            lanes = self._part("lanes.run")
             ran = lanes.run(
                 wall, shaking, np.array([scale]), tail=max(0.0, end - shaking.duration),
                 initial={k: np.array([v]) for k, v in (initial or {}).items()},
@@ -203,9 +212,7 @@ class Interface:
             events = tuple(Event(*event) for event in ran.events[0])
             outputs = {k: float(v[0]) for k, v in lanes.outputs(wall, ran.result).items()}
         else:
-            from models.interface import reference
-
-            told = reference.run(wall, shaking, scale, initial=initial, duration=end)
+            told = self._part("reference").run(wall, shaking, scale, initial=initial, duration=end)
             state = told.state.T[None, :count]
             events, outputs = told.events, dict(told.outputs)
         over = outputs["overturning_time"]
@@ -216,7 +223,7 @@ class Interface:
                 if outputs[f"overturned_{body}"]:
                     state[:, fallen:, body - 1] = outputs[f"residual_rotation_{body}"]
             state[:, fallen:, 4:] = 0.0
-        channels = {name: one[0] for name, one in observe(wall, state).items()}
+        channels = {name: one[0] for name, one in self._observe(wall, state).items()}
         return History(time, channels, _with_onset(events), outputs)
 
 

@@ -42,15 +42,23 @@ def mass_matrix(wall: LayeredWall, lever: FloatArray) -> FloatArray:
     return m
 
 
-def layer_matrix(wall: LayeredWall, base: FloatArray, top: FloatArray) -> FloatArray:
-    """B ``(n, 4, 4)`` in full contact for values ``base``, ``top`` (n,) per metre of contact."""
+def layer_matrix(wall: LayeredWall, base: FloatArray, top: FloatArray, sides: tuple[int, int] = (0, 0)) -> FloatArray:
+    """B ``(n, 4, 4)`` for values ``base``, ``top`` (n,) per metre of contact.
+
+    ``sides`` of base and top: 0 for full contact, +1 or -1 for the half of the joint at x > 0 or x < 0.
+    """
     b = np.zeros((wall.size, 4, 4))
-    turn = 2.0 * top * wall.top_half_width**3 / 3.0
-    b[:, 0, 0] = 2.0 * base * wall.base_half_width**3 / 3.0 + turn
+    base_share, top_share = (2.0 if side == 0 else 1.0 for side in sides)
+    turn = top_share * top * wall.top_half_width**3 / 3.0
+    b[:, 0, 0] = base_share * base * wall.base_half_width**3 / 3.0 + turn
     b[:, 0, 1] = b[:, 1, 0] = -turn
     b[:, 1, 1] = turn
-    b[:, 2, 2] = 2.0 * base * wall.base_half_width
-    b[:, 3, 3] = 2.0 * top * wall.top_half_width
+    b[:, 2, 2] = base_share * base * wall.base_half_width
+    b[:, 3, 3] = top_share * top * wall.top_half_width
+    couple = sides[1] * top * wall.top_half_width**2 / 2.0
+    b[:, 0, 2] = b[:, 2, 0] = -sides[0] * base * wall.base_half_width**2 / 2.0
+    b[:, 0, 3] = b[:, 3, 0] = couple
+    b[:, 1, 3] = b[:, 3, 1] = -couple
     return b
 
 
@@ -105,9 +113,9 @@ def modes(wall: LayeredWall, mass: FloatArray, stiffness: FloatArray) -> Modes:
     return Modes(squares, shapes / largest, ratios)
 
 
-def derived(wall: LayeredWall) -> dict[str, FloatArray]:
+def derived(wall: LayeredWall, found: Modes) -> dict[str, FloatArray]:
     """The declared derived quantities, arrays ``(n,)``; nan for modes that a bonded joint takes away."""
-    rest, found = static_state(wall), at_rest(wall)
+    rest = static_state(wall)
     missing = np.full((wall.size, 4), np.nan)
     frequencies, damping, shapes = missing.copy(), missing.copy(), np.full((wall.size, 4, 4), np.nan)
     count = found.squares.shape[1]

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from models.base import Event, FloatArray
-from models.interface import modes
+from models.interface import modes, watch
 from models.interface.account import Account
 from models.interface.declaration import CALM, STATES
 from models.interface.equation import Equation, power
@@ -76,7 +76,7 @@ class _Run:
         hidden = np.full(self.equation.relaxed().size, float(np.max(scale)))
         self.atol = rtol * np.concatenate([free_sizes, free_sizes * fastest, (weight, weight), hidden])
         self.period = 2.0 * math.pi / fastest
-        self.account = Account(self.equation)
+        self.account = Account(self.equation.wall)
 
     def begin(self, state: FloatArray) -> None:
         self.y = np.concatenate([state[:4][self.pick], state[4:][self.pick], (0.0, 0.0), self.equation.relaxed()])
@@ -135,7 +135,8 @@ class _Run:
             q, v = self.spread(y)
             works = 2 * self.half
             self.account.work = y[works : works + 2].tolist()
-            self.account.sample(time, q.tolist(), v.tolist(), y[works + 2 :], *piece.at(time))
+            reading = watch.read(self.equation, q.tolist(), v.tolist(), y[works + 2 :], *piece.at(time))
+            self.account.sample(time, reading)
             self.most = max(self.most, self.account.kinetic)
             if self.account.kinetic >= CALM * self.most:
                 self.calm_since = time
@@ -156,5 +157,5 @@ class _Run:
             self.history[:4, self.written :] = np.clip(q, -math.pi / 2.0, math.pi / 2.0)[:, None]
             self.history[4:, self.written :] = 0.0
         elif not self.account.failed:
-            self.account.close(self.time, q.tolist(), v.tolist())
+            self.account.close(self.time, watch.toppled(self.equation, q.tolist(), v.tolist()))
         return ReferenceResult(self.account.outputs(q), self.grid, self.history, tuple(self.account.events))

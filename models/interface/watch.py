@@ -6,7 +6,37 @@ import math
 import operator
 from collections.abc import Sequence
 
+from models.base import FloatArray
+from models.interface.account import Pair, Reading
 from models.interface.equation import Equation
+from models.interface.strip import stored
+
+
+def read(
+    equation: Equation, q: Sequence[float], v: Sequence[float], hidden: FloatArray, a: float, gravity: float
+) -> Reading:
+    """What the account of a run takes from a state under a and G, with the laws' ``hidden`` state."""
+    base, top, _ = equation.strips(q, v, hidden)
+    second = equation.acceleration(q, v, a, gravity, (base, top)).tolist()
+    return Reading(
+        rotations=(q[0], q[1]),
+        heights=uplift(equation, q, v),
+        friction=friction(equation, q, v, second, a, gravity),
+        shares=(base.share, top.share),
+        stored=elastic(equation, q),
+        kinetic=equation.kinetic(q, v),
+    )
+
+
+def elastic(equation: Equation, q: Sequence[float]) -> Pair:
+    """Energy (J) of the linear springs of each layer; 0 where bonded."""
+    wall = equation.wall
+    base = top = 0.0
+    if wall.joints != "top":
+        base = stored(wall.base_half_width, wall.base_stiffness, q[2], math.sin(q[0]))
+    if wall.joints != "base":
+        top = stored(wall.top_half_width, wall.top_stiffness, q[3], math.sin(q[1] - q[0]))
+    return base, top
 
 
 def uplift(equation: Equation, q: Sequence[float], v: Sequence[float]) -> tuple[float, float]:

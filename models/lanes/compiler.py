@@ -13,12 +13,14 @@ import numba
 
 F = TypeVar("F", bound=Callable[..., object])
 _MODELS = Path(__file__).resolve().parent.parent
+BUILT_ON = {"interface_linear": ("interface",)}
+"""Models whose kernels take names from another model's."""
 
 
 def _source_hash(model: str) -> str:
     """Of everything a kernel of this model can be made of: the model, the shared pieces, the compiler."""
     digest = hashlib.sha256(numba.__version__.encode())
-    folders = {model, "lanes"}
+    folders = {model, "lanes", *BUILT_ON.get(model, ())}
     for path in sorted(p for folder in folders for p in (_MODELS / folder).rglob("*.py")):
         digest.update(path.relative_to(_MODELS).as_posix().encode())
         digest.update(path.read_bytes())

@@ -39,7 +39,7 @@ MECHANISM = Mechanism(
     equation="b' = (1 - inset) b; alpha, R, I_O, the onset and e follow",
     signature="all rocking at constant sign of theta; the onset comes earlier",
     sentence="the block rocks on points {inset_over_half_width:.1%} of the half width inside its corners",
-    acts={"housner": on_housner, "stacked": on_stacked, "interface": on_interface},
+    acts={"housner": on_housner, "stacked": on_stacked, "interface": on_interface, "interface_linear": on_interface},
     at_joints=("stacked",),
     source="Mordant, Denoel, Degee (COMPDYN 2015), section 2.1",
 )

@@ -39,6 +39,6 @@ MECHANISM = Mechanism(
     equation="G = g (1 + kappa a_z/g) in place of g",
     signature="between impacts at constant sign of theta, coherent with the vertical acceleration",
     sentence="{kappa:.2f} times the measured vertical acceleration acts on the block",
-    acts={"housner": on_housner, "interface": on_interface},
+    acts={"housner": on_housner, "interface": on_interface, "interface_linear": on_interface},
     source="Yim, Chopra, Penzien (Earthquake Engng Struct. Dyn. 8, 1980)",
 )

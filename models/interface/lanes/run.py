@@ -114,11 +114,15 @@ def run(
         given, result, samples > 0, trace, written, count, may_rest, None if wall.joints == "both" else True,
         laws_in_use(wall),
     )  # fmt: skip
-    events = tuple(
-        tuple((t, *EVENTS[int(kind)]) for t, kind in lane[: min(k, log)])
-        for lane, k in zip(written, count, strict=True)
+    return Lanes(result, trace, decoded(written, count), steps)
+
+
+def decoded(log: NDArray[np.float64], count: NDArray[np.int64]) -> tuple[tuple[tuple[float, str, int], ...], ...]:
+    """Events (time, kind, body) of every lane from a kernel's ``log`` (n, k, 2) and how many it meant to write."""
+    return tuple(
+        tuple((t, *EVENTS[int(kind)]) for t, kind in lane[: min(k, log.shape[1])])
+        for lane, k in zip(log, count, strict=True)
     )
-    return Lanes(result, trace, events, steps)
 
 
 def outputs(wall: LayeredWall, table: NDArray[np.float64]) -> dict[str, NDArray[Any]]:

@@ -1,0 +1,276 @@
+"""The lane kernel: one wall after the other, in exact steps of its configurations from switch to switch."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from models.interface.declaration import CALM
+from models.interface.lanes import rows as kept
+from models.interface_linear.equation import FULL, HALF_LEFT, HALF_RIGHT, STATES
+from models.interface_linear.lanes import rows as r
+from models.interface_linear.lanes.gather import gather, look, stored
+from models.interface_linear.lanes.locate import first_crossing, may_cross
+from models.interface_linear.lanes.propagate import COLUMNS, ORDER, along, build, read, series, step
+from models.interface_linear.lanes.switch import successor
+from models.lanes.compiler import called, compiled, inlined
+
+Table = Any
+HALF_TURN = 0.5 * math.pi
+NEVER = 1e300
+ROUNDING = 1e-20
+"""Share of the weight times the static sinking below which kinetic energy is rounding."""
+MOST_SWITCHES = 10_000
+"""Switches within one sample of the record beyond which a lane is given up."""
+GOES_ON, FALLEN, LOST = range(3)
+
+
+@called
+def note(log: Table, count: Table, lane: int, time: float, kind: int) -> None:
+    """Write an event in the log of this lane, as long as there is room."""
+    if count[lane] < log.shape[1]:
+        log[lane, count[lane], 0] = time
+        log[lane, count[lane], 1] = kind
+    count[lane] += 1
+
+
+@called
+def enter(system: Table, table: Table, built: Table, c: int, levels: int, unit: float, now: Table, then: Table) -> None:
+    """Have the propagators of a configuration at hand."""
+    if not built[c]:
+        build(table, system, c, levels, unit, now, then)
+        built[c] = True
+
+
+@called
+def switch(
+    given: Table, lane: int, system: Table, place: Table, event: int, x: Table, gathered: Table, time: float,
+    log: Table, count: Table,
+) -> None:  # fmt: skip
+    """The joint of watched value ``event`` changes its state: energies, uplift, closing."""
+    joint = event // 2
+    old = place[0]
+    was = old // STATES if joint == 0 else old % STATES
+    before = stored(given, lane, joint, was, x)
+    place[0] = successor(given, lane, system, old, event, x)
+    state = place[0] // STATES if joint == 0 else place[0] % STATES
+    gathered[r.LOST_B + joint] += before - stored(given, lane, joint, state, x)
+    if was == FULL:
+        gathered[r.ONSET_B + joint] = min(gathered[r.ONSET_B + joint], time)
+        note(log, count, lane, time, kept.LOG_UPLIFT_B + joint)
+    elif state == FULL:
+        gathered[r.CLOSED_B + joint] += 1.0
+        note(log, count, lane, time, kept.LOG_CLOSING_B + joint)
+
+
+@called
+def cross(
+    given: Table, lane: int, system: Table, table: Table, built: Table, time: float, levels: int, unit: float,
+    place: Table, gathered: Table, x: Table, to: Table, before: Table, after: Table, motion: Table, watched: Table,
+    now: Table, then: Table, log: Table, count: Table,
+) -> int:  # fmt: skip
+    """One of the equal steps into which a sample of the record is divided, switches included.
+
+    A step in which a watched value may become positive is taken as two halves, down to the smallest, where
+    the Taylor series tells when. ``place``: the configuration, the level of the next step (0: the whole),
+    switches since the sample.
+    """
+    whole = 1 << levels
+    position, within = 0, 0.0
+    while position < whole:
+        c = place[0]
+        event = -1
+        if within == 0.0:
+            level = place[1]
+            while position & ((1 << (levels - level)) - 1) != 0:
+                level += 1
+            units = 1 << (levels - level)
+            length = unit * units
+            step(table, c, level, x, length, to)
+            read(system, c, to, after)
+            if may_cross(before, after, length):
+                if level < levels:
+                    place[1] = level + 1
+                    continue
+                units = 0
+            else:
+                place[1] = max(level - 1, 0)
+        else:
+            units = 0
+        if units == 0:
+            series(system, c, x, unit, motion, watched)
+            share, event = first_crossing(watched, 1.0 - within)
+            length = share * unit
+            along(motion, share, x, length, to)
+            read(system, c, to, after)
+            within += share
+            units = 1 if event < 0 or within >= 1.0 else 0
+        gather(gathered, given, lane, c, x, before, to, after, length)
+        t1, t2 = abs(x[0]), abs(x[1])
+        for row in range(r.N_STATE):
+            x[row] = to[row]
+        for row in range(r.N_READING):
+            before[row] = after[row]
+        if not (abs(x[0]) < HALF_TURN and abs(x[1]) < HALF_TURN):
+            if x[0] != x[0] or x[1] != x[1]:
+                return LOST
+            body = 0 if abs(x[0]) >= HALF_TURN else 1
+            old = t1 if body == 0 else t2
+            place[3] = body
+            gathered[r.WINDOW] = time + position * unit + length * (HALF_TURN - old) / (abs(x[body]) - old)
+            return FALLEN
+        if event >= 0:
+            switch(given, lane, system, place, event, x, gathered, time + (position + within) * unit, log, count)
+            enter(system, table, built, place[0], levels, unit, now, then)
+            read(system, place[0], x, before)
+            look(gathered, given, lane, place[0], x, before)
+            place[1] = levels
+            place[2] += 1
+            if place[2] > MOST_SWITCHES:
+                return LOST
+        if units > 0:
+            position, within = position + units, 0.0
+    return GOES_ON
+
+
+@inlined
+def first_state(given: Table, lane: int, joint: int, x: Table) -> int:
+    """Full or half contact of a joint as the state at the start has it."""
+    turn = x[1] - x[0] if joint == 1 else x[0]
+    if given[lane, r.RUBBER_B + joint] == 0.0 or x[2 + joint] + given[lane, r.B_B + joint] * abs(turn) <= 0.0:
+        return FULL
+    return HALF_RIGHT if turn >= 0.0 else HALF_LEFT
+
+
+@called
+def close(result: Table, given: Table, gathered: Table, lane: int, x: Table, time: float, how: int, body: int) -> None:
+    """Write the account of a lane that ends at ``time`` (s)."""
+    over_1, over_2 = math.nan, math.nan
+    if how == FALLEN:
+        over_1, over_2 = gathered[r.WINDOW] if body == 0 else math.nan, gathered[r.WINDOW]
+    elif how == GOES_ON:
+        # a body whose mass centre is past its toe and moves outwards counts as overturned
+        m1, m2, h1, h2 = given[lane, r.M1], given[lane, r.M2], given[lane, r.H1], given[lane, r.H2]
+        first, second = m1 * h1 + m2 * given[lane, r.LEVER], m2 * h2
+        side = 1.0 if x[0] >= 0.0 else -1.0
+        past = side * (first * x[0] + second * x[1]) > (m1 + m2) * given[lane, r.B_B]
+        if given[lane, r.RUBBER_B] > 0.0 and past and side * (first * x[4] + second * x[5]) > 0.0:
+            over_1, over_2 = time, time
+        side = 1.0 if x[1] >= x[0] else -1.0
+        past = side * h2 * x[1] > given[lane, r.B_T]
+        if given[lane, r.RUBBER_T] > 0.0 and over_2 != over_2 and past and side * (x[5] - x[4]) > 0.0:
+            over_2 = time
+    result[lane, kept.R_OVER_1], result[lane, kept.R_OVER_2] = over_1, over_2
+    result[lane, kept.R_FAILED] = 1.0 if how == LOST else 0.0
+    for end in range(2):
+        result[lane, kept.R_PEAK_1 + end] = gathered[r.PEAK_1 + end]
+        result[lane, kept.R_UP_B + end] = gathered[r.UP_B + end]
+        result[lane, kept.R_ONSET_B + end] = gathered[r.ONSET_B + end]
+        result[lane, kept.R_SHARE_B + end] = gathered[r.SHARE_B + end]
+        result[lane, kept.R_CLOSED_B + end] = gathered[r.CLOSED_B + end]
+        result[lane, kept.R_LOST_B + end] = gathered[r.LOST_B + end]
+        along, across = gathered[r.ALONG_B + end], gathered[r.ACROSS_B + end]
+        result[lane, kept.R_FRICTION_B + end] = along / across if across > 0.0 else NEVER
+        result[lane, kept.R_END_1 + end] = x[end]
+
+
+@compiled
+def advance(
+    record: Table, time_step: float, shaken: int, first: Table, last: Table, given: Table, systems: Table,
+    most_levels: int, result: Table, sampled: bool, trace: Table, log: Table, count: Table, may_rest: bool,
+) -> int:  # fmt: skip
+    """Run every lane from sample ``first`` to ``last``; returns the number of whole steps taken.
+
+    ``record`` (2, n): a and a_z every ``time_step`` (s), linear between; the shaking ends at sample
+    ``shaken``. ``systems`` (n, 25, 10, N_ROWS): `equation.systems`, transposed. ``trace`` (n, m, 8) takes q
+    and q' at every sample if ``sampled``; ``log`` (n, k, 2) uplifts, closings, rest and overturning.
+    """
+    table = np.zeros((STATES * STATES, most_levels + 1, COLUMNS, 8))
+    built, gathered, place = np.zeros(STATES * STATES, np.bool_), np.zeros(r.N_GATHERED), np.zeros(4, np.int64)
+    x, to = np.zeros(r.N_STATE), np.zeros(r.N_STATE)
+    before, after = np.zeros(r.N_READING), np.zeros(r.N_READING)
+    motion, watched = np.zeros((ORDER + 1, 8)), np.zeros((4, ORDER + 1))
+    powers, sums = np.zeros((COLUMNS, 8)), np.zeros((COLUMNS, 8))
+    steps = 0
+    for lane in range(given.shape[0]):
+        system = systems[lane]
+        per, levels = int(given[lane, r.STEPS]), int(given[lane, r.LEVELS])
+        length = time_step / per
+        unit = length / (1 << levels)
+        built[:], gathered[:] = False, 0.0
+        gathered[r.ONSET_B : r.ONSET_T + 1], gathered[r.SHARE_B : r.SHARE_T + 1] = NEVER, 1.0
+        gathered[r.ACROSS_B : r.ACROSS_T + 1] = 1.0
+        for row in range(8):
+            x[row] = given[lane, r.START + row]
+        gathered[r.PEAK_1], gathered[r.PEAK_2] = abs(x[0]), abs(x[1])
+        base, top = first_state(given, lane, 0, x), first_state(given, lane, 1, x)
+        place[0], place[1], place[3] = STATES * base + top, levels, 0
+        enter(system, table, built, place[0], levels, unit, powers, sums)
+        i, window, how = first[lane], -1, GOES_ON
+        noise = ROUNDING * (given[lane, r.M1] + given[lane, r.M2]) * given[lane, r.GRAVITY] * given[lane, r.SUNK_B]
+        for joint in range(2):
+            if (base, top)[joint] != FULL:
+                gathered[r.ONSET_B + joint] = i * time_step
+        while True:
+            shaking = i < shaken
+            x[r.A] = given[lane, r.OFFSET] + given[lane, r.SCALE] * record[0, i]
+            x[r.G] = given[lane, r.GRAVITY] + given[lane, r.VSCALE] * record[1, i]
+            x[r.A_SLOPE], x[r.G_SLOPE] = 0.0, 0.0
+            if shaking:
+                x[r.A_SLOPE] = given[lane, r.SCALE] * (record[0, i + 1] - record[0, i]) / time_step
+                x[r.G_SLOPE] = given[lane, r.VSCALE] * (record[1, i + 1] - record[1, i]) / time_step
+            else:
+                # beyond the record's last sample the base is at rest: it may jump there
+                x[r.A], x[r.G] = given[lane, r.OFFSET], given[lane, r.GRAVITY]
+            read(system, place[0], x, before)
+            if i == first[lane]:
+                look(gathered, given, lane, place[0], x, before)
+            if sampled and i - first[lane] < trace.shape[1]:
+                for k in range(8):
+                    trace[lane, i - first[lane], k] = x[k]
+            ended = i >= last[lane]
+            if not shaking and i >= window:
+                if gathered[r.WINDOW] <= CALM * gathered[r.KINETIC] + noise and window >= 0:
+                    note(log, count, lane, i * time_step, kept.LOG_REST)
+                    ended = ended or may_rest
+                gathered[r.WINDOW] = 0.0
+                window = i + 1 + int(given[lane, r.PERIOD] / time_step)
+            if ended:
+                break
+            place[2] = 0
+            for part in range(per):
+                now = i * time_step + part * length
+                how = cross(
+                    given,
+                    lane,
+                    system,
+                    table,
+                    built,
+                    now,
+                    levels,
+                    unit,
+                    place,
+                    gathered,
+                    x,
+                    to,
+                    before,
+                    after,
+                    motion,
+                    watched,
+                    powers,
+                    sums,
+                    log,
+                    count,
+                )
+                steps += 1
+                if how != GOES_ON:
+                    break
+            if how != GOES_ON:
+                break
+            i += 1
+        if how == FALLEN:
+            note(log, count, lane, gathered[r.WINDOW], kept.LOG_OVER_1 + place[3])
+        close(result, given, gathered, lane, x, i * time_step, how, place[3])
+    return steps

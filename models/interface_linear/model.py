@@ -1,0 +1,42 @@
+"""The paper's linear equations of two blocks on rubber, corrected, as a `Model`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from models.base import Quantity
+from models.interface import modes
+from models.interface.layered import LayeredWall
+from models.interface.model import Interface
+from models.interface_linear import declaration, equation
+
+
+@dataclass(frozen=True)
+class InterfaceLinear(Interface):
+    """Two rigid blocks on rubber, linear between switches (Mordant, Denoel, Degee 2015, Eq. 6, corrected).
+
+    M q'' + C q' + K q = f in q = (theta1, theta2, z1, z2), each joint in full contact, or in contact on half
+    its length once z + b |r| > 0; dashpot law A. Exact in each configuration; see
+    `models.interface_linear.equation` and docs/errata.md. For small rotations: the frozen half contact
+    stiffens where the exact contact of `interface` softens, so these walls hardly overturn.
+    """
+
+    name: str = "interface_linear"
+    title: str = "the paper's linear wall and block on rubber layers (Eq. 6, corrected)"
+    version: str = "1"
+    outputs: tuple[Quantity, ...] = declaration.OUTPUTS
+
+    @property
+    def options(self) -> Mapping[str, tuple[str, ...]]:
+        return declaration.OPTIONS
+
+    def words(self, options: Mapping[str, str] | None) -> dict[str, str]:
+        """Every option of `interface` with its word: `joints` as chosen, the others as the paper has them."""
+        return {**declaration.FIXED, **super().words(options)}
+
+    def natural_modes(self, wall: LayeredWall) -> modes.Modes:
+        return equation.at_rest(wall)
+
+
+MODEL = InterfaceLinear()

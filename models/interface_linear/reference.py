@@ -1,0 +1,329 @@
+"""The plain, slow route: scipy's DOP853 in each configuration, its dense events at the switches.
+
+M q'' = f - C q' - K q + D mu with N q'' = 0 for the joints that are held, solved as it stands; the rules of
+the switches are those of `models.interface_linear.equation`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from models.base import FloatArray
+from models.interface.account import Account, Pair, Reading
+from models.interface.declaration import CALM, STATES
+from models.interface.ground import Piece, pieces
+from models.interface.layered import FREE, LayeredWall
+from models.interface.modes import layer_matrix, static_state
+from models.interface.reference import ReferenceResult
+from models.interface_linear import equation
+from models.interface_linear.declaration import BRIEF
+from models.interface_linear.lanes.run import fastest_rate
+from models.shaking import Shaking
+
+TOUCH = 1e-12
+"""A watched value (over its size at rest) counts as positive above this."""
+
+
+@dataclass(frozen=True)
+class Joint:
+    """State of a joint: the side that presses (0: both), and whether it is held at the switch."""
+
+    side: int = 0
+    held: bool = False
+
+    @property
+    def half(self) -> int:
+        """The side as the layer's matrices take it."""
+        return 0 if self.held else self.side
+
+
+Joints = tuple[Joint, Joint]
+
+
+class Equation:
+    """One wall: the equations of a configuration, what is watched in it, and what is read off a state."""
+
+    def __init__(self, wall: LayeredWall) -> None:
+        self.lanes, self.wall = wall, wall.one()
+        self.free = FREE[wall.joints]
+        self.loads = equation.loads(wall)[0]
+        self.sunk, self.sigma = (size[0] for size in equation.sizes(wall))
+        self.laid = [joint for joint, name in enumerate(("base", "top")) if wall.joints in ("both", name)]
+        self.width = [float(equation.half_width(wall, joint)[0]) for joint in (0, 1)]
+        self.damping = (self.wall.base_damping, self.wall.top_damping)
+        self.stiffness = (self.wall.base_stiffness, self.wall.top_stiffness)
+        self.layers: dict[tuple[int, int], FloatArray] = {}
+        self.known: dict[Joints, tuple[FloatArray, FloatArray, FloatArray]] = {}
+
+    def matrices(self, joints: Joints) -> tuple[FloatArray, FloatArray, FloatArray]:
+        if joints not in self.known:
+            m, c, k = equation.matrices(self.lanes, (joints[0].half, joints[1].half))
+            self.known[joints] = (m[0], c[0], k[0])
+        return self.known[joints]
+
+    def gap(self, joint: int, side: int) -> FloatArray:
+        return np.asarray(equation.gap(self.lanes, joint, side)[0])
+
+    def motion(self, joints: Joints, q: FloatArray, v: FloatArray, felt: Pair) -> tuple[FloatArray, dict[int, float]]:
+        """q'' (4,) under a, G, and mu of the joints that are held."""
+        mass, damping, stiffness = self.matrices(joints)
+        held = [joint for joint in self.laid if joints[joint].held]
+        normal = np.array([self.gap(joint, joints[joint].side) for joint in held]).reshape(-1, 4)
+        push = np.array([equation.jump(self.lanes, joint, joints[joint].side)[0] for joint in held]).reshape(-1, 4)
+        free, count = self.free, self.free.shape[1]
+        left = np.zeros((count + len(held), count + len(held)))
+        left[:count, :count] = free.T @ mass @ free
+        left[:count, count:] = -free.T @ push.T
+        left[count:, :count] = normal @ free
+        force = self.loads @ felt - damping @ v - stiffness @ q
+        found = np.linalg.solve(left, np.concatenate([free.T @ force, np.zeros(len(held))]))
+        return free @ found[:count], dict(zip(held, found[count:].tolist(), strict=True))
+
+    def watched(self, joints: Joints, joint: int, q: FloatArray, v: FloatArray, felt: Pair) -> Pair:
+        """The two values of a joint that are negative as long as it stays in its state."""
+        state = joints[joint]
+        turn = q[1] - q[0] if joint else q[0]
+        rate = v[1] - v[0] if joint else v[0]
+        if state.side == 0:
+            right, left = (float(self.gap(joint, side) @ q) / float(self.sunk[joint]) for side in (1, -1))
+            return right, left
+        if not state.held:
+            rise = self.gap(joint, state.side) @ q
+            return -rise / self.sunk[joint], -state.side * self.width[joint] * turn / self.sunk[joint]
+        mu = self.motion(joints, q, v, felt)[1][joint]
+        sigma = state.side * (self.stiffness[joint] * turn + self.damping[joint] * rate)
+        return -mu / self.sigma[joint], (mu - sigma) / self.sigma[joint]
+
+    def power(self, joints: Joints, q: FloatArray, v: FloatArray, mu: dict[int, float]) -> Pair:
+        """Power (W) of each layer on the bodies."""
+        found = [0.0, 0.0]
+        for joint in self.laid:
+            layer = self._layer(joint, joints[joint].half)
+            found[joint] = -float(v @ layer @ (self.stiffness[joint] * q + self.damping[joint] * v))
+            if joint in mu:
+                found[joint] += mu[joint] * float(equation.jump(self.lanes, joint, joints[joint].side)[0] @ v)
+        return found[0], found[1]
+
+    def stored(self, joints: Joints, q: FloatArray) -> Pair:
+        """Elastic energy (J) of each layer."""
+        base, top = (0.5 * self.stiffness[j] * float(q @ self._layer(j, joints[j].half) @ q) for j in (0, 1))
+        return base, top
+
+    def _layer(self, joint: int, side: int) -> FloatArray:
+        """B (4, 4) of one layer for 1 per metre of contact."""
+        if (joint, side) not in self.layers:
+            one, none = np.ones(1), np.zeros(1)
+            values = (one, none) if joint == 0 else (none, one)
+            sides = (side, 0) if joint == 0 else (0, side)
+            self.layers[joint, side] = layer_matrix(self.lanes, *values, sides)[0]
+        return self.layers[joint, side]
+
+    def read(self, joints: Joints, q: FloatArray, v: FloatArray, felt: Pair) -> Reading:
+        """What the account of a run takes from a state."""
+        wall, (a, gravity) = self.wall, felt
+        second = self.motion(joints, q, v, felt)[0]
+        lever = wall.height_1 + wall.rise
+        across = wall.mass_2 * (gravity + second[2] + second[3])
+        along = wall.mass_2 * (a + lever * second[0] + wall.centre_2 * second[1])
+        down = across + wall.mass_1 * (gravity + second[2])
+        ratios = [abs(along + wall.mass_1 * (a + wall.centre_1 * second[0])), abs(along - q[0] * across)]
+        normal = [down, across]
+        shares = [1.0, 1.0]
+        for joint in self.laid:
+            apart = q[2 + joint] >= self.width[joint] * abs(q[1] - q[0] if joint else q[0])
+            shares[joint] = 1.0 if joints[joint].side == 0 else 0.0 if apart else 0.5
+            ratios[joint] = ratios[joint] / normal[joint] if normal[joint] > 0.0 else math.inf
+        return Reading(
+            rotations=(float(q[0]), float(q[1])),
+            heights=(1.0 if joints[0].side else -1.0, 1.0 if joints[1].side else -1.0),
+            friction=(ratios[0], ratios[1]),
+            shares=(shares[0], shares[1]),
+            stored=self.stored(joints, q),
+            kinetic=float(0.5 * v @ self.matrices(joints)[0] @ v),
+        )
+
+    def toppled(self, q: FloatArray, v: FloatArray) -> tuple[bool, bool]:
+        """Whether the mass centre over each joint is past its toe and moves outwards."""
+        wall = self.wall
+        height = wall.height_1 + wall.rise
+        lever = np.array([wall.mass_1 * wall.centre_1 + wall.mass_2 * height, wall.mass_2 * wall.centre_2])
+        side = math.copysign(1.0, q[0])
+        toe = (wall.mass_1 + wall.mass_2) * wall.base_half_width
+        base = 0 in self.laid and side * (lever @ q[:2]) > toe and side * (lever @ v[:2]) > 0.0
+        side = math.copysign(1.0, q[1] - q[0])
+        top = side * wall.centre_2 * q[1] > wall.top_half_width and side * (v[1] - v[0]) > 0.0
+        return bool(base), bool(1 in self.laid and top)
+
+
+def run(
+    wall: LayeredWall,
+    shaking: Shaking,
+    scale: float = 1.0,
+    *,
+    tail: float = 10.0,
+    initial: Mapping[str, float] | None = None,
+    duration: float | None = None,
+    rtol: float = 1e-10,
+    brief: float = BRIEF,
+) -> ReferenceResult:
+    """One wall under ``scale`` times the shaking; see `models.interface.reference.run`."""
+    until = shaking.duration + tail if duration is None else duration
+    grid = shaking.time_step * np.arange(round(until / shaking.time_step) + 1, dtype=np.float64)
+    body = _Run(wall, grid, rtol, brief, may_rest=duration is None)
+    rest = dict(zip(STATES, [*static_state(wall)[0], 0.0, 0.0, 0.0, 0.0], strict=True))
+    body.begin(np.array([(initial or {}).get(name, rest[name]) for name in STATES]))
+    for piece in pieces(wall, shaking, scale, until):
+        body.advance(piece, shaken=piece.start < shaking.duration)
+        if body.finished:
+            break
+    return body.result()
+
+
+class _Run:
+    """State of one run: y = (q, q', works of both layers)."""
+
+    def __init__(self, wall: LayeredWall, grid: FloatArray, rtol: float, brief: float, *, may_rest: bool) -> None:
+        self.equation = Equation(wall)
+        self.grid, self.rtol, self.may_rest = grid, rtol, may_rest
+        self.brief = brief / float(fastest_rate(wall)[0])
+        self.history = np.zeros((8, grid.size))
+        self.written, self.finished = 0, False
+        self.time, self.calm_since, self.most = 0.0, math.nan, 0.0
+        self.y, self.joints = np.zeros(10), (Joint(), Joint())
+        fastest = math.sqrt(abs(float(equation.at_rest(wall).squares[0, 0])))
+        sizes = np.array([float(wall.slenderness[0]), float(wall.slenderness_2[0]), *self.equation.sunk])
+        weight = float(wall.mass[0] * wall.gravity[0] * wall.base_half_width[0] * wall.slenderness[0])
+        self.atol = rtol * np.concatenate([sizes, sizes * fastest, (weight, weight)])
+        self.period = 2.0 * math.pi / fastest
+        self.account = Account(self.equation.wall)
+
+    def begin(self, state: FloatArray) -> None:
+        self.y = np.concatenate([state, (0.0, 0.0)])
+        for joint in self.equation.laid:
+            turn = state[1] - state[0] if joint else state[0]
+            if state[2 + joint] + self.equation.width[joint] * abs(turn) > 0.0:
+                self._set(joint, Joint(1 if turn >= 0.0 else -1))
+
+    def _set(self, joint: int, state: Joint) -> None:
+        self.joints = (state, self.joints[1]) if joint == 0 else (self.joints[0], state)
+
+    def advance(self, piece: Piece, shaken: bool) -> None:
+        """Through one straight piece of the ground's motion; ``shaken`` is false after the record's end."""
+        self.time = piece.start
+        ends = [piece.end] if shaken else [*np.arange(piece.start + self.period, piece.end, self.period), piece.end]
+        for end in ends:
+            while self.time < end and not self.finished:
+                self._run_until(end, piece)
+            if not shaken and not self.finished and (self.time - self.calm_since >= self.period or self.most == 0.0):
+                self.finished = self.may_rest
+                self.account.rest(self.time)
+            if self.finished:
+                return
+
+    def _run_until(self, end: float, piece: Piece) -> None:
+        """To ``end``, or to the next switch before it."""
+        joints, solved = self.joints, self.equation
+
+        def derivative(time: float, y: FloatArray) -> FloatArray:
+            q, v, felt = y[:4], y[4:8], piece.at(time)
+            second, mu = solved.motion(joints, q, v, felt)
+            return np.concatenate([v, second, solved.power(joints, q, v, mu)])
+
+        def watch(joint: int, which: int) -> Callable[[float, FloatArray], float]:
+            def value(time: float, y: FloatArray) -> float:
+                return solved.watched(joints, joint, y[:4], y[4:8], piece.at(time))[which] - TOUCH
+
+            value.terminal, value.direction = True, 1.0  # type: ignore[attr-defined]
+            return value
+
+        def fall(_: float, y: FloatArray) -> float:
+            return float(np.max(np.abs(y[:2])) - math.pi / 2.0)
+
+        fall.terminal = True  # type: ignore[attr-defined]
+        for joint in solved.laid:
+            now = solved.watched(joints, joint, self.y[:4], self.y[4:8], piece.at(self.time))
+            if max(now) > TOUCH:
+                self._switch(joint, now[1] > TOUCH, piece)
+                return
+        watches = [(joint, which) for joint in solved.laid for which in (0, 1)]
+        solution = solve_ivp(
+            derivative, (self.time, end), self.y, "DOP853", dense_output=True, rtol=self.rtol, atol=self.atol,
+            events=[*(watch(*each) for each in watches), fall],
+        )  # fmt: skip
+        if not solution.success:
+            self.account.failed = self.finished = True
+            return
+        self._note(solution, piece)
+        self.time, self.y = float(solution.t[-1]), solution.y[:, -1]
+        if solution.status == 1 and solution.t_events is not None:
+            if solution.t_events[-1].size:
+                self.account.fall(self.time, self.y[:2])
+                self.finished = True
+                return
+            joint, which = next(each for each, times in zip(watches, solution.t_events[:-1], strict=True) if times.size)
+            self._switch(joint, which == 1, piece)
+
+    def _switch(self, joint: int, second: bool, piece: Piece) -> None:
+        """A joint changes its state, its watched value (the second one or the first) having become positive."""
+        state, felt = self.joints[joint], piece.at(self.time)
+        if state.held:
+            self._settle(joint)
+            self._set(joint, Joint(state.side) if second else Joint())
+        elif second and state.side:
+            self._set(joint, Joint(-state.side))
+        else:
+            side = state.side or (-1 if second else 1)
+            q, v, opening = self.y[:4], self.y[4:8], []
+            for trial in (Joint(), Joint(side)):
+                self._set(joint, trial)
+                opening.append(float(self.equation.gap(joint, side) @ self.equation.motion(self.joints, q, v, felt)[0]))
+            rate = abs(float(self.equation.gap(joint, side) @ v))
+            after = abs(opening[1] if state.side == 0 else opening[0])
+            if opening[0] > 0.0 > opening[1] and 2.0 * rate <= self.brief * after:
+                self._set(joint, Joint(side, held=True))
+                self._settle(joint)
+            else:
+                self._set(joint, Joint(side) if state.side == 0 else Joint())
+        self.account.sample(self.time, self.equation.read(self.joints, self.y[:4], self.y[4:8], felt))
+
+    def _settle(self, joint: int) -> None:
+        """Put the state on h = h' = 0 of a joint that is held, by an impulse of mu d."""
+        side, solved = self.joints[joint].side, self.equation
+        turn = self.y[1] - self.y[0] if joint else self.y[0]
+        self.y[2 + joint] = -side * solved.width[joint] * turn
+        held = [k for k in solved.laid if self.joints[k].held]
+        normal = np.array([solved.gap(k, self.joints[k].side) for k in held])
+        push = np.array([equation.jump(solved.lanes, k, self.joints[k].side)[0] for k in held]).T
+        free = solved.free
+        moved = free @ np.linalg.solve(free.T @ solved.matrices(self.joints)[0] @ free, free.T @ push)
+        self.y[4:8] -= moved @ np.linalg.solve(normal @ moved, normal @ self.y[4:8])
+
+    def _note(self, solution: object, piece: Piece) -> None:
+        """Samples of the steps just taken: outputs at four points a step, history at the grid's times."""
+        nodes, dense = solution.t, solution.sol  # type: ignore[attr-defined]
+        fine = np.interp(np.arange(4 * (nodes.size - 1) + 1) / 4.0, np.arange(nodes.size), nodes)
+        for time, y in zip(fine.tolist(), dense(fine).T, strict=True):
+            reading = self.equation.read(self.joints, y[:4], y[4:8], piece.at(time))
+            self.account.work = y[8:].tolist()
+            self.account.sample(time, reading)
+            self.most = max(self.most, self.account.kinetic)
+            if self.account.kinetic >= CALM * self.most:
+                self.calm_since = time
+        stop = int(np.searchsorted(self.grid, nodes[-1], side="right"))
+        if stop > self.written:
+            self.history[:, self.written : stop] = dense(self.grid[self.written : stop])[:8]
+            self.written = stop
+
+    def result(self) -> ReferenceResult:
+        self.history[:, self.written :] = self.y[:8, None]
+        if self.account.fallen:
+            self.history[:4, self.written :] = np.clip(self.y[:4], -math.pi / 2.0, math.pi / 2.0)[:, None]
+            self.history[4:, self.written :] = 0.0
+        elif not self.account.failed:
+            self.account.close(self.time, self.equation.toppled(self.y[:4], self.y[4:8]))
+        return ReferenceResult(self.account.outputs(self.y[:4]), self.grid, self.history, tuple(self.account.events))
