@@ -86,6 +86,15 @@ def models_page() -> str:
 
 
 def _mechanism(mechanism: Mechanism, where: str) -> str:
+    first, *others = (_form(form) for form in (mechanism, *mechanism.forms))
+    elsewhere = "".join(
+        f"\nOn {_acts_on(form)} with parameters of its own: {text}"
+        for form, text in zip(mechanism.forms, others, strict=True)
+    )
+    return f"## `{mechanism.name}`\n\nClass `{mechanism.effect_class}`; {where}. {first}{elsewhere}"
+
+
+def _form(mechanism: Mechanism) -> str:
     parameters = _table(
         ("parameter", "unit", "meaning", "null", "range of a fit"),
         (
@@ -94,19 +103,18 @@ def _mechanism(mechanism: Mechanism, where: str) -> str:
         ),
     )
     source = f" Source: {mechanism.source}." if mechanism.source else ""
-    return (
-        f"## `{mechanism.name}`\n\nClass `{mechanism.effect_class}`; {where}. `{mechanism.equation}`.{source}\n\n"
-        f"Left out, it shows: {mechanism.signature}.\n\n{parameters}"
-    )
+    return f"`{mechanism.equation}`.{source}\n\nLeft out, it shows: {mechanism.signature}.\n\n{parameters}"
+
+
+def _acts_on(mechanism: Mechanism) -> str:
+    return ", ".join(f"`{name}`" for name in mechanism.acts)
 
 
 def mechanisms_page() -> str:
     from diagnosis.sensors import SENSORS
     from models.mechanisms import MECHANISMS
 
-    inside = "\n".join(
-        _mechanism(m, "acts on " + ", ".join(f"`{name}`" for name in m.acts)) for m in MECHANISMS.values()
-    )
+    inside = "\n".join(_mechanism(m, f"acts on {_acts_on(m)}") for m in MECHANISMS.values())
     beside = "\n".join(_mechanism(m, "an instrument's effect, on every model") for m in SENSORS.values())
     return (
         "# Mechanisms\n\nWhat a base model may leave out. Those of the first part are usable in plans, specimens and "

@@ -7,6 +7,7 @@ GRAVITY = 9.80665
 _FACTORS = {"m s-2": (1.0 / GRAVITY, "g"), "Pa": (1e-6, "MPa")}
 _TEXT = {
     "s-1": "s⁻¹", "m s-1": "m s⁻¹", "rad s-1": "rad s⁻¹", "kg m-3": "kg m⁻³", "N m-2": "N m⁻²", "N s m-2": "N s m⁻²",
+    "N m-1": "N m⁻¹", "N s m-1": "N s m⁻¹",
 }  # fmt: skip
 
 
