@@ -58,8 +58,8 @@ class Search:
 
 
 def adjusted(explanation: Explanation) -> float:
-    """Loss plus the price of parameters beyond the first of each mechanism."""
-    return explanation.loss + PER_SHAPE * (explanation.size - len(explanation.candidates))
+    """Loss plus the price of parameters beyond the first of each mechanism, chosen ones (an order) included."""
+    return explanation.loss + PER_SHAPE * sum(len(c.unknowns) - 1 + len(c.held) for c in explanation.candidates)
 
 
 def survives(before: Explanation, after: Explanation, threshold: float = MISSING) -> bool:

@@ -34,11 +34,6 @@ class Explanation:
     def classes(self) -> tuple[str, ...]:
         return tuple(c.effect_class for c in self.candidates)
 
-    @property
-    def size(self) -> int:
-        """Unknowns that belong to mechanisms."""
-        return sum(len(c.unknowns) for c in self.candidates)
-
     def part(self, candidate: Candidate) -> FloatArray:
         """Fitted coordinates of one of the candidates."""
         names = [x.name for x in self.fitted.misfit.unknowns]

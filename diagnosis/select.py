@@ -29,7 +29,7 @@ QUICK = 6
 THOROUGH = 2
 NEAR, NEAR_ADEQUATE = 0.2, 0.6
 """Share of the leader's gain from which a single is refitted from the leader's optimum too."""
-FIRST_POOL = 3
+FIRST_POOL = 2
 SECOND_TRIES = 6
 MOST_EFFECTS = 3
 POOL_SHARE = 0.25
@@ -52,9 +52,11 @@ def search(base: Explanation, candidates: Sequence[Candidate], progress: Progres
     yield found
     _pairs(found, progress)
     yield found
-    _more(found, progress)
-    yield found
-    _backward(found)
+    if found.outside is None:
+        _more(found, progress)
+        yield found
+    if found.outside is None:
+        _backward(found)
     settle_ties(found)
     found.best = None if found.best is None else with_memory(again(found.best))
     yield found
@@ -126,14 +128,17 @@ def pool(found: Search) -> list[Explanation]:
 def _pairs(found: Search, progress: Progress) -> None:
     if found.best is None:
         return
+    progress("comparing with laws outside the library", 0.48)
+    others = seconds(found, found.best)
     if not adequate(found.best):
-        progress("comparing with laws outside the library", 0.48)
-        found.outside = outside(found.best, seconds(found, found.best))
+        found.outside = outside(found.best, others)
     singles = pool(found) if found.outside is None else [found.best]
     pairs: list[Explanation] = []
     for k, single in enumerate(singles):
         progress(f"looking for a second effect beside {single.names[0]}", 0.5 + 0.25 * k / len(singles))
-        pairs += _extended(found, single)
+        pairs += _extended(single, others if single is found.best else seconds(found, single))
+        if any(adequate(e) for e in pairs):
+            break
     if not pairs:
         return
     if found.outside is not None:
@@ -153,19 +158,23 @@ def seconds(found: Search, explanation: Explanation) -> list[Score]:
     return score(open_screen(explanation.fitted), others)
 
 
-def _extended(found: Search, explanation: Explanation) -> list[Explanation]:
-    """Refits with one more mechanism of another class."""
-    scores = seconds(found, explanation)
+def _extended(explanation: Explanation, scores: Sequence[Score]) -> list[Explanation]:
+    """Refits with one more mechanism, the strongest of a screen beside the explanation."""
     if adequate(explanation) and max((s.statistic for s in scores), default=0.0) < HOPELESS:
         return []
     return _refits(explanation, scores, 2, SECOND_TRIES)
 
 
 def _more(found: Search, progress: Progress) -> None:
-    """A third effect, by the same rule."""
+    """A third effect, by the same rule, unless a law outside the library explains more."""
     while found.best is not None and 2 <= len(found.best.candidates) < MOST_EFFECTS:
         progress("looking for a further effect", 0.8)
-        further = _extended(found, found.best)
+        others = seconds(found, found.best)
+        if not adequate(found.best):
+            found.outside = outside(found.best, others)
+            if found.outside is not None:
+                return
+        further = _extended(found.best, others)
         if not further:
             return
         found.tried += further
@@ -191,7 +200,7 @@ def _backward(found: Search) -> None:
         return
     for candidate in found.best.candidates:
         rest = without(found.best, candidate)
-        found.tried += _extended(found, rest)
+        found.tried += _extended(rest, seconds(found, rest))
     same = [e for e in found.tried if len(e.candidates) == len(found.best.candidates)]
     better = min(same, key=adjusted)
     if adjusted(better) < adjusted(found.best):
