@@ -33,6 +33,8 @@ def mechanisms() -> Catalogue[Mechanism]:
 
 def _about(entry: Model | Mechanism) -> str:
     if isinstance(entry, Mechanism):
-        parameters = ", ".join(f"{p.name} [{p.unit}]" for p in entry.parameters)
-        return f"{entry.effect_class}: {parameters}; acts on {', '.join(entry.acts) or 'no model yet'}"
+        forms = (entry, *entry.forms)
+        acted = [model for form in forms for model in form.acts]
+        parameters = ", ".join(f"{p.name} [{p.unit}]" for form in forms for p in form.parameters)
+        return f"{entry.effect_class}: {parameters}; acts on {', '.join(acted)}"
     return entry.title

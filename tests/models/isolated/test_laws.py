@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from models.isolated import bearing
@@ -35,6 +35,11 @@ def drive(values: dict[str, float], turns: list[float], steps: int = 60) -> tupl
                 hidden, bearing.rates(one, np.array([last]), change / duration, hidden), strict=True)]  # fmt: skip
             rates = bearing.rates(one, middle, change / duration, half)
             hidden = [h + duration * r for h, r in zip(hidden, rates, strict=True)]
+            # u and its largest value so far may differ by rounding, and then the latter has no rate
+            hidden = [
+                np.maximum(h, abs(u)) if law.name == "mullins" else h
+                for (law, _), h in zip(one.rubber_laws, hidden, strict=True)
+            ]
             crossings = memory.crossings + (1.0 if u * last < 0.0 else 0.0)
             memory = bearing.Memory(tuple(hidden), memory.amplitude, crossings)
             at = np.array([u])
@@ -45,6 +50,7 @@ def drive(values: dict[str, float], turns: list[float], steps: int = 60) -> tupl
 
 @pytest.mark.parametrize("name", LAWS)
 @settings(max_examples=10, deadline=None)
+@example(turns=[0.115234375, 0.0])
 @given(turns=TURNS)
 def test_closed_cycles_never_give_energy_back(name: str, turns: list[float]) -> None:
     # the fourth round closes: what remembers has seen the path before (wear never closes: it stores less)
@@ -56,6 +62,7 @@ def test_closed_cycles_never_give_energy_back(name: str, turns: list[float]) -> 
 
 @pytest.mark.parametrize("name", sorted(set(LAWS) - {"payne"}))
 @settings(max_examples=5, deadline=None)
+@example(turns=[0.115234375, 0.0])
 @given(turns=TURNS)
 def test_what_is_put_in_is_stored_or_lost_at_any_time(name: str, turns: list[float]) -> None:
     # Payne's stiffness rises at a reversal, out of nothing: only its closed cycles lose
