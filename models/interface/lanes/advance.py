@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from models.interface.declaration import CALM
-from models.interface.lanes.fibres import FIBRES, N_HIDDEN, fibres_all
+from models.interface.lanes.fibres import fibres_all
 from models.interface.lanes.rows import (
     CLOCK,
     FLAG,
@@ -25,8 +25,8 @@ from models.interface.lanes.rows import (
     LOG_OVER_2,
     LOG_REST,
     LOG_UPLIFT_B,
-    N_LAW,
     N_WORK,
+    N_WORK_LAWS,
     Q_PERIOD,
     Q_STEPS,
     RA,
@@ -76,8 +76,7 @@ def advance(
     ``may_rest``: a lane ends when it has come to rest. ``mixed``, ``laws``: see `step`.
     """
     n = given.shape[0]
-    w = np.zeros(N_WORK * W)
-    x, p = np.zeros(2 * FIBRES * N_HIDDEN * W), np.zeros(2 * N_LAW * W)
+    w = np.zeros((N_WORK if laws is None else N_WORK_LAWS) * W)
     was = np.zeros((2, W))
     at, bound, of = np.zeros(W, np.int64), np.zeros(W, np.int64), np.full(W, -1)
     sub, per, window = np.zeros(W, np.int64), np.ones(W, np.int64), np.zeros(W, np.int64)
@@ -99,7 +98,7 @@ def advance(
                     waiting += 1
                     at[slot], bound[slot], window[slot] = first[lane], first[lane], -1
                     per[slot] = int(given[lane, Q_STEPS])
-                    start(given, result, w, lane, slot, record, at[slot], time_step, logged, x, p, mixed, laws)
+                    start(given, result, w, lane, slot, record, at[slot], time_step, logged, mixed, laws)
                 if at[slot] < bound[slot]:
                     break
                 i = at[slot]
@@ -148,7 +147,7 @@ def advance(
                 for slot in range(W):
                     was[0, slot], was[1, slot] = w[LIFT_B * W + slot], w[LIFT_T * W + slot]
             if laws is not None:
-                fibres_all(w, x, p, laws)
+                fibres_all(w, laws)
             flagged = step_all(w, mixed, laws)
             steps += active
             if flagged > 0:

@@ -11,6 +11,7 @@ from models.lanes.compiler import inlined
 Table = Any
 HALF_TURN = 1.5707963267948966
 NEVER = 1e300
+TINY = 1e-60
 
 
 @inlined
@@ -28,15 +29,17 @@ def read_joints(
     now_t = z2 + max(bt * abs(sr), late_t * y2 + bt * abs(sr + late_t * rt))
     was_b, was_t = w[r.LIFT_B * W + i], w[r.LIFT_T * W + i]
     w[r.LIFT_B * W + i], w[r.LIFT_T * W + i] = now_b, now_t
-    size_b, size_t = abs(now_b) + abs(was_b), abs(now_t) + abs(was_t)
+    size_b, size_t = abs(now_b) + abs(was_b) + TINY, abs(now_t) + abs(was_t) + TINY
     inverse = 1.0 / (size_b * size_t)
-    w[r.UP_B * W + i] += (max(now_b, 0.0) + max(was_b, 0.0)) * (inverse * size_t)
-    w[r.UP_T * W + i] += (max(now_t, 0.0) + max(was_t, 0.0)) * (inverse * size_b)
+    part_b = (max(now_b, 0.0) + max(was_b, 0.0)) * (inverse * size_t)
+    part_t = (max(now_t, 0.0) + max(was_t, 0.0)) * (inverse * size_b)
+    w[r.UP_B * W + i] += part_b
+    w[r.UP_T * W + i] += part_t
     clock = w[r.CLOCK * W + i]
     w[r.CLOCK * W + i] = clock + 1.0
     up_b, up_t = now_b > 0.0, now_t > 0.0
     were_b, were_t = was_b > 0.0, was_t > 0.0
-    first_b, first_t = clock - was_b * (inverse * size_t), clock - was_t * (inverse * size_b)
+    first_b, first_t = clock + 1.0 - part_b, clock + 1.0 - part_t
     w[r.ONSET_B * W + i] = min(w[r.ONSET_B * W + i], first_b if up_b & (not were_b) else NEVER)
     w[r.ONSET_T * W + i] = min(w[r.ONSET_T * W + i], first_t if up_t & (not were_t) else NEVER)
     w[r.CLOSED_B * W + i] += 1.0 if were_b & (not up_b) else 0.0
@@ -46,8 +49,7 @@ def read_joints(
 
 @inlined
 def read_bodies(w: Table, i: int, t1: float, t2: float, kinetic: float) -> bool:
-    """Peaks of rotation and of (twice) the kinetic energy; whether both bodies stand."""
-    w[r.KINETIC * W + i] = max(w[r.KINETIC * W + i], kinetic)
+    """Peaks of rotation and of the kinetic energy (any multiple of it); whether both bodies stand."""
     w[r.WINDOW * W + i] = max(w[r.WINDOW * W + i], kinetic)
     size_1, size_2 = abs(t1), abs(t2)
     w[r.PEAK_1 * W + i] = max(w[r.PEAK_1 * W + i], size_1)
@@ -57,9 +59,9 @@ def read_bodies(w: Table, i: int, t1: float, t2: float, kinetic: float) -> bool:
 
 @inlined
 def account_joints(
-    w: Table, i: int, h: float, px: float, pz: float, ux: float, uz: float, power_b: float, power_t: float
+    w: Table, i: int, px: float, pz: float, ux: float, uz: float, power_b: float, power_t: float
 ) -> None:
-    """Worst friction demand of both joints, without a division, and the work of the strips."""
+    """Worst friction demand of both joints, without a division, and the work of the strips (over h/2)."""
     along, across = abs(ux), max(uz, 0.0)
     worse = along * w[r.ACROSS_T * W + i] > w[r.ALONG_T * W + i] * across
     w[r.ALONG_T * W + i] = along if worse else w[r.ALONG_T * W + i]
@@ -68,6 +70,6 @@ def account_joints(
     worse = along * w[r.ACROSS_B * W + i] > w[r.ALONG_B * W + i] * across
     w[r.ALONG_B * W + i] = along if worse else w[r.ALONG_B * W + i]
     w[r.ACROSS_B * W + i] = across if worse else w[r.ACROSS_B * W + i]
-    w[r.WORK_B * W + i] += 0.5 * h * (w[r.POWER_B * W + i] + power_b)
-    w[r.WORK_T * W + i] += 0.5 * h * (w[r.POWER_T * W + i] + power_t)
+    w[r.WORK_B * W + i] += w[r.POWER_B * W + i] + power_b
+    w[r.WORK_T * W + i] += w[r.POWER_T * W + i] + power_t
     w[r.POWER_B * W + i], w[r.POWER_T * W + i] = power_b, power_t

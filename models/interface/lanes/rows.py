@@ -8,6 +8,8 @@ W = 16
     T1, T2, Z1, Z2, V1, V2, Y1, Y2, A1, A2, AZ1, AZ2,
     # record at the end of the coming step, its growth from step to step, length of the steps (s), steps done
     RA, RV, GROWTH_A, GROWTH_V, STEP, CLOCK,
+    # what the step rule makes of the lane's constants: powers of h, masses, stiffness of the layers
+    HALF, NEAR, FAR, N1, N2, STIFF_B, STIFF_T,
     # constants of the lane
     SCALE, OFFSET, GRAVITY, VSCALE,
     M1, H1, I1, M2, H2, I2, HEIGHT, B1, BT, TOE_1, TOE_T, KB, KT, CB, CT, LATE_B, LATE_T, CLIP, FREE_B, FREE_T,
@@ -21,8 +23,8 @@ W = 16
     FZ_B, FZ_T, FS_B, FS_T, FY_B, FY_T, FR_B, FR_T, FN_B, FN_T, FM_B, FM_T, F1_B, F1_T, F2_B, F2_T, F3_B, F3_T,
     # whether uplifts and closings are to be logged, whether the lane needs attention
     LOGGED, FLAG,
-) = range(84)  # fmt: skip
-N_WORK = 84
+) = range(91)  # fmt: skip
+N_WORK = 91
 CONSTANTS = tuple(range(SCALE, FREE_T + 1))
 """Rows copied from ``given``, in this order."""
 
@@ -40,6 +42,12 @@ Q_LAWS = Q_RELAXED + 4
 ) = range(11)  # fmt: skip
 N_LAW = 11
 N_GIVEN = Q_LAWS + 2 * N_LAW
+
+# --- work with laws on fibres: their numbers, base and top, and the hidden rows of every fibre, base and top
+FIBRES, N_HIDDEN = 16, 5
+W_LAWS = N_WORK
+W_FIBRES = N_WORK + 2 * N_LAW
+N_WORK_LAWS = W_FIBRES + 2 * FIBRES * N_HIDDEN
 
 # --- result: what a lane has gathered
 (

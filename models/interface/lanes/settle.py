@@ -61,12 +61,24 @@ from models.interface.lanes.rows import (
     Z2,
     W,
 )  # fmt: skip
-from models.interface.lanes.step import AM, step_one
+from models.interface.lanes.step import AM, BETA, GAMMA, step_one
 from models.lanes.compiler import called, inlined
 
 Table = Any
 HALF_TURN = 1.5707963267948966
 NEVER = 1e300
+
+
+@called
+def set_step(w: Table, slot: int, h: float) -> None:
+    """What the step rule makes of a lane's constants and its step of h seconds."""
+    w[STEP * W + slot] = h
+    w[r.HALF * W + slot], w[r.NEAR * W + slot], w[r.FAR * W + slot] = 0.5 * h * h, BETA * h * h, GAMMA * h
+    for body in range(2):
+        w[(r.N1 + body) * W + slot] = (1.0 - AM) * w[(M1 + (r.M2 - r.M1) * body) * W + slot]
+    for joint in range(2):
+        k, c = w[(KB + joint) * W + slot], w[(r.CB + joint) * W + slot]
+        w[(r.STIFF_B + joint) * W + slot] = h * (GAMMA * c + BETA * h * k)
 
 
 @called
@@ -79,7 +91,7 @@ def consistent(w: Table, slot: int, a: float, v: float, mixed: Any, laws: Any) -
     for row in range(A1, A1 + 4):
         w[row * W + slot] = 0.0
     # a step of no length from no acceleration: (1 - am) M d = Q - n
-    w[STEP * W + slot] = 0.0
+    set_step(w, slot, 0.0)
     step_one(w, slot, mixed, laws)
     for row in range(A1, A1 + 4):
         kept[row] = (1.0 - AM) * w[row * W + slot]
@@ -115,7 +127,7 @@ def stored_top(w: Table, slot: int) -> float:
 @called
 def start(
     given: Table, result: Table, w: Table, lane: int, slot: int, record: Table, sample: int, time_step: float,
-    logged: bool, x: Table, p: Table, mixed: Any, laws: Any,
+    logged: bool, mixed: Any, laws: Any,
 ) -> None:  # fmt: skip
     """Put a lane in a slot, in its initial state, at ``sample`` of the record."""
     for row in range(N_WORK):
@@ -129,9 +141,10 @@ def start(
     w[ALONG_B * W + slot], w[ALONG_T * W + slot] = 0.0, 0.0
     w[ACROSS_B * W + slot], w[ACROSS_T * W + slot] = 1.0, 1.0
     n = given[lane, Q_STEPS]
-    w[STEP * W + slot], w[CLOCK * W + slot] = time_step / n, sample * n
+    set_step(w, slot, time_step / n)
+    w[CLOCK * W + slot] = sample * n
     if laws is not None:
-        fibres_at_start(w, x, p, given, lane, slot, laws)
+        fibres_at_start(w, given, lane, slot, laws)
     consistent(w, slot, record[0, sample], record[1, sample], mixed, laws)
     w[PEAK_1 * W + slot], w[PEAK_2 * W + slot] = abs(w[T1 * W + slot]), abs(w[T2 * W + slot])
     w[ONSET_B * W + slot] = sample * n if w[LIFT_B * W + slot] > 0.0 else NEVER
@@ -152,6 +165,7 @@ def empty(w: Table, slot: int) -> None:
         w[row * W + slot] = 1.0
     w[Z1 * W + slot], w[Z2 * W + slot] = -1.0, -1.0
     w[GRAVITY * W + slot] = 0.0
+    set_step(w, slot, 0.0)
 
 
 @inlined
@@ -207,8 +221,8 @@ def finish(result: Table, w: Table, lane: int, slot: int, fell: bool) -> None:
     result[lane, r.R_SHARE_B] = 0.5 * w[SHARE_B * W + slot] / w[B1 * W + slot]
     result[lane, r.R_SHARE_T] = 0.5 * w[SHARE_T * W + slot] / w[BT * W + slot]
     result[lane, r.R_CLOSED_B], result[lane, r.R_CLOSED_T] = w[CLOSED_B * W + slot], w[CLOSED_T * W + slot]
-    result[lane, r.R_LOST_B] = result[lane, r.R_STORED_B] - stored_base(w, slot) - w[WORK_B * W + slot]
-    result[lane, r.R_LOST_T] = result[lane, r.R_STORED_T] - stored_top(w, slot) - w[WORK_T * W + slot]
+    result[lane, r.R_LOST_B] = result[lane, r.R_STORED_B] - stored_base(w, slot) - 0.5 * h * w[WORK_B * W + slot]
+    result[lane, r.R_LOST_T] = result[lane, r.R_STORED_T] - stored_top(w, slot) - 0.5 * h * w[WORK_T * W + slot]
     result[lane, r.R_FRICTION_B] = ratio(w[ALONG_B * W + slot], w[ACROSS_B * W + slot])
     result[lane, r.R_FRICTION_T] = ratio(w[ALONG_T * W + slot], w[ACROSS_T * W + slot])
     result[lane, r.R_END_1], result[lane, r.R_END_2] = t1, t2
@@ -217,6 +231,7 @@ def finish(result: Table, w: Table, lane: int, slot: int, fell: bool) -> None:
 @inlined
 def at_rest(w: Table, slot: int, calm: float) -> bool:
     """Whether the kinetic energy stayed under its share ``calm`` of the peak; begins the next window."""
+    w[KINETIC * W + slot] = max(w[KINETIC * W + slot], w[WINDOW * W + slot])
     still = w[WINDOW * W + slot] <= calm * w[KINETIC * W + slot]
     w[WINDOW * W + slot] = 0.0
     return bool(still)

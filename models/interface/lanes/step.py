@@ -40,7 +40,7 @@ def step_one(w: Table, i: int, mixed: Any, laws: Any) -> bool:
     # --- predictor and inputs at the end of the step
     o1, o2, o3, o4 = w[r.A1 * W + i], w[r.A2 * W + i], w[r.AZ1 * W + i], w[r.AZ2 * W + i]
     v1, v2, y1, y2 = w[r.V1 * W + i], w[r.V2 * W + i], w[r.Y1 * W + i], w[r.Y2 * W + i]
-    half = 0.5 * h * h
+    half, near, far = w[r.HALF * W + i], w[r.NEAR * W + i], w[r.FAR * W + i]
     t1, t2 = w[r.T1 * W + i] + h * v1 + half * o1, w[r.T2 * W + i] + h * v2 + half * o2
     z1, z2 = w[r.Z1 * W + i] + h * y1 + half * o3, w[r.Z2 * W + i] + h * y2 + half * o4
     v1, v2, y1, y2 = v1 + h * o1, v2 + h * o2, y1 + h * o3, y2 + h * o4
@@ -48,8 +48,7 @@ def step_one(w: Table, i: int, mixed: Any, laws: Any) -> bool:
     g = w[r.GRAVITY * W + i] + w[r.VSCALE * W + i] * w[r.RV * W + i]
     # --- kinematics: columns A, B, (-s1, c1), (0, 1) of J_2 in the wall's frame
     s1, c1 = sine_cosine(t1)
-    s2, c2 = sine_cosine(t2)
-    sr, cr = s2 * c1 - c2 * s1, c2 * c1 + s2 * s1
+    sr, cr = sine_cosine(t2 - t1)
     turn = v2 - v1
     m1, m2, i1, i2 = w[r.M1 * W + i], w[r.M2 * W + i], w[r.I1 * W + i], w[r.I2 * W + i]
     h1, h2 = w[r.H1 * W + i], w[r.H2 * W + i]
@@ -84,46 +83,49 @@ def step_one(w: Table, i: int, mixed: Any, laws: Any) -> bool:
     # --- strips
     rb, rt = c1 * v1, cr * turn
     kb, kt, cb, ct, clip = w[r.KB * W + i], w[r.KT * W + i], w[r.CB * W + i], w[r.CT * W + i], w[r.CLIP * W + i]
-    side_b, lean_b, slope_b, steep_b = slopes(kb, cb, s1, rb)
-    side_t, lean_t, slope_t, steep_t = slopes(kt, ct, sr, rt)
+    slope_b, steep_b, lean_b = slopes(kb, cb, s1, rb)
+    slope_t, steep_t, lean_t = slopes(kt, ct, sr, rt)
     below, above = lean_b * steep_b, lean_t * steep_t
     inverse = 1.0 / (below * above)
-    nb, mb, d1b, d2b, d3b = resultants(
-        w[r.B1 * W + i], clip, z1, kb * z1 + cb * y1, side_b, lean_b, slope_b, steep_b, inverse * above
-    )
-    nt, mt, d1t, d2t, d3t = resultants(
-        w[r.BT * W + i], clip, z2, kt * z2 + ct * y2, side_t, lean_t, slope_t, steep_t, inverse * below
-    )
+    nb, mb, d1b, d2b, d3b, share_b = resultants(
+        w[r.B1 * W + i], clip, z1, kb * z1 + cb * y1, s1, slope_b, steep_b, lean_b, inverse * above,
+        w[r.STIFF_B * W + i],
+    )  # fmt: skip
+    nt, mt, d1t, d2t, d3t, share_t = resultants(
+        w[r.BT * W + i], clip, z2, kt * z2 + ct * y2, sr, slope_t, steep_t, lean_t, inverse * below,
+        w[r.STIFF_T * W + i],
+    )  # fmt: skip
+    w[r.SHARE_B * W + i] = min(w[r.SHARE_B * W + i], share_b)
+    w[r.SHARE_T * W + i] = min(w[r.SHARE_T * W + i], share_t)
     if laws is not None:
         nb, mb = nb + w[r.FN_B * W + i], mb + w[r.FM_B * W + i]
         nt, mt = nt + w[r.FN_T * W + i], mt + w[r.FM_T * W + i]
     # --- residual Q - n - M a, and the matrix (1 - am) M + gamma h C + beta h^2 K
-    couple = mt * cr
-    f1 = free_b * couple - mb * c1 - i1 * o1 - px * jx - pz * jz - ux * ax - uz * az
-    f2 = -couple - i2 * o2 * free_t - ux * bx - uz * bz
+    couple_b, couple_t = mb * c1, mt * cr
+    f1 = free_b * couple_t - couple_b - i1 * o1 - px * jx - pz * jz - ux * ax - uz * az
+    f2 = -couple_t - i2 * o2 * free_t - ux * bx - uz * bz
     f3 = nb - free_b * pz - ux * cx - uz * cz
     f4 = nt - free_t * uz
-    eb, et = h * (GAMMA * cb + BETA * h * kb), h * (GAMMA * ct + BETA * h * kt)
-    w[r.SHARE_B * W + i] = min(w[r.SHARE_B * W + i], d1b)
-    w[r.SHARE_T * W + i] = min(w[r.SHARE_T * W + i], d1t)
-    d1b, d2b, d3b, d1t, d2t, d3t = eb * d1b, eb * d2b, eb * d3b, et * d1t, et * d2t, et * d3t
     if laws is not None:
-        near = BETA * h * h
         d1b, d1t = d1b + near * w[r.F1_B * W + i], d1t + near * w[r.F1_T * W + i]
         d2b, d2t = d2b + near * w[r.F2_B * W + i], d2t + near * w[r.F2_T * W + i]
         d3b, d3t = d3b + near * w[r.F3_B * W + i], d3t + near * w[r.F3_T * W + i]
     d2b, d3b, d2t, d3t = d2b * c1, d3b * c1 * c1, d2t * cr, d3t * cr * cr
-    n1, n2 = (1.0 - AM) * m1, (1.0 - AM) * m2
-    w11 = (1.0 - AM) * i1 + n1 * (jx * jx + jz * jz) + n2 * (ax * ax + az * az) + d3b + free_b * d3t
-    w12 = n2 * (ax * bx + az * bz) - free_b * d3t
-    w13 = free_b * n1 * jz + n2 * (ax * cx + az * cz) - d2b
-    w14 = free_t * n2 * az + free_b * d2t
-    w22 = (1.0 - AM) * i2 + n2 * (bx * bx + bz * bz) + d3t
-    w23 = n2 * (bx * cx + bz * cz)
-    w24 = free_t * n2 * bz - d2t
-    w33 = n1 + n2 + d1b
-    w34 = free_t * n2 * cz
-    w44 = n2 + d1t
+    n1, n2 = w[r.N1 * W + i], w[r.N2 * W + i]
+    njx, njz = n1 * jx, n1 * jz
+    nax, naz, nbx, nbz, ncx, ncz = n2 * ax, n2 * az, n2 * bx, n2 * bz, n2 * cx, n2 * cz
+    k11 = (1.0 - AM) * i1 + njx * jx + njz * jz + nax * ax + naz * az
+    k12 = nax * bx + naz * bz
+    w13 = free_b * njz + nax * cx + naz * cz
+    w14 = free_t * naz
+    k22 = (1.0 - AM) * i2 + nbx * bx + nbz * bz
+    w23 = nbx * cx + nbz * cz
+    w24 = free_t * nbz
+    w34 = free_t * ncz
+    k13, k14, k24 = w13, w14, w24
+    w11, w12, w22 = k11 + d3b + free_b * d3t, k12 - free_b * d3t, k22 + d3t
+    w13, w14, w24 = w13 - d2b, w14 + free_b * d2t, w24 - d2t
+    w33, w44 = n1 + n2 + d1b, n2 + d1t
     if mixed is not None:
         w44 += (1.0 - free_t) * n1
     # --- z1, z2 eliminated first, all over their determinant
@@ -146,28 +148,29 @@ def step_one(w: Table, i: int, mixed: Any, laws: Any) -> bool:
     if mixed is not None:
         d2 = d2 if free_t > 0.0 else d1 + o1 - o2
     # --- the new state
-    near, far = BETA * h * h, GAMMA * h
-    t1, t2, z1, z2 = t1 + near * d1, t2 + near * d2, z1 + near * d3, z2 + near * d4
+    turned_1, turned_2 = near * d1, near * d2
+    t1, t2, z1, z2 = t1 + turned_1, t2 + turned_2, z1 + near * d3, z2 + near * d4
     v1, v2, y1, y2 = v1 + far * d1, v2 + far * d2, y1 + far * d3, y2 + far * d4
     w[r.T1 * W + i], w[r.T2 * W + i], w[r.Z1 * W + i], w[r.Z2 * W + i] = t1, t2, z1, z2
     w[r.V1 * W + i], w[r.V2 * W + i], w[r.Y1 * W + i], w[r.Y2 * W + i] = v1, v2, y1, y2
     w[r.A1 * W + i], w[r.A2 * W + i], w[r.AZ1 * W + i], w[r.AZ2 * W + i] = o1 + d1, o2 + d2, o3 + d3, o4 + d4
     # --- what is read off it
-    sr += cr * near * (d2 - d1)
     turn = v2 - v1
-    steady = read_joints(w, i, z1, z2, s1 + c1 * near * d1, sr, y1, y2, c1 * v1, cr * turn)
-    moves_x, moves_z = ax * v1 + bx * v2 + cx * y1, az * v1 + bz * v2 + cz * y1 + free_t * y2
-    goes_x, goes_z = jx * v1, jz * v1 + free_b * y1
-    kinetic = m1 * (goes_x * goes_x + goes_z * goes_z) + m2 * (moves_x * moves_x + moves_z * moves_z)
-    stands = read_bodies(w, i, t1, t2, kinetic + i1 * v1 * v1 + i2 * v2 * v2)
-    grown = 1.0 - AM
-    ux += m2 * grown * (ax * d1 + bx * d2 + cx * d3)
-    uz += m2 * grown * (az * d1 + bz * d2 + cz * d3 + free_t * d4)
-    px += m1 * grown * jx * d1 + ux * c1 + uz * s1
-    pz += m1 * grown * (jz * d1 + free_b * d3) + uz * c1 - ux * s1
-    power_b = (nb - d1b * d3 + d2b * d1) * y1 - (mb * c1 - d2b * d3 + d3b * d1) * v1
-    power_t = (nt - d1t * d4 + d2t * (d2 - d1)) * y2 - (couple - d2t * d4 + d3t * (d2 - d1)) * turn
-    account_joints(w, i, h, px, pz, ux, uz, power_b, power_t)
+    steady = read_joints(w, i, z1, z2, s1 + c1 * turned_1, sr + cr * (turned_2 - turned_1), y1, y2, c1 * v1, cr * turn)
+    # v M v, times 1 - am: only its ratio to its peak is looked at
+    both_1 = k11 * v1 + 2.0 * (k12 * v2 + k13 * y1 + k14 * y2)
+    both_2 = k22 * v2 + 2.0 * (w23 * y1 + k24 * y2)
+    kinetic = both_1 * v1 + both_2 * v2 + ((n1 + n2) * y1 + 2.0 * w34 * y2) * y1 + n2 * y2 * y2
+    stands = read_bodies(w, i, t1, t2, kinetic)
+    # forces of the strips in the new state, by their tangent: they carry what lies above
+    nb, nt = nb - d1b * d3 + d2b * d1, nt - d1t * d4 + d2t * (d2 - d1)
+    couple_b, couple_t = couple_b - d2b * d3 + d3b * d1, couple_t - d2t * d4 + d3t * (d2 - d1)
+    ux += nax * d1 + nbx * d2 + ncx * d3
+    across = nt
+    if mixed is not None:
+        across = nt if free_t > 0.0 else uz + naz * d1 + ncz * d3
+    px += njx * d1 + ux * c1 + across * s1
+    account_joints(w, i, px, nb, ux, across, nb * y1 - couple_b * v1, nt * y2 - couple_t * turn)
     attention = not (stands & steady)
     w[r.FLAG * W + i] = 1.0 if attention else 0.0
     return attention

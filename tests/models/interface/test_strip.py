@@ -8,7 +8,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from models.interface.lanes.strip import resultants, slopes
-from models.interface.strip import strip
+from models.interface.strip import pressing, strip
 
 
 def quadrature(b, k, c, z, s, z_rate, s_rate, clip):
@@ -68,14 +68,19 @@ def test_the_branch_free_strip_of_the_lanes_is_the_same(state) -> None:
     # at the very edges (an underside that just touches, a stress that vanishes everywhere) the share is undetermined
     assume(abs(z) > 1e-9 and abs(k * z + c * z_rate) > 1e-6 * k)
     slow = strip(b, k, c, z, s, z_rate, s_rate, clip)
-    side, lean, y1, steep = slopes.py_func(k, c, s, s_rate)
+    slope, steep, lean = slopes.py_func(k, c, s, s_rate)
     fast = resultants.py_func(
-        b, float(clip), z, k * z + c * z_rate, side, lean, y1, steep, 1.0 / (lean * steep)
+        b, float(clip), z, k * z + c * z_rate, s, slope, steep, lean, 1.0 / (lean * steep), 3.0
     )  # fmt: skip
     size = 2.0 * b * (k * (abs(z) + b * abs(s)) + c * (abs(z_rate) + b * abs(s_rate)))
     assert fast[0] == pytest.approx(slow.force, abs=1e-13 * size + 1e-30)
     assert fast[1] == pytest.approx(slow.moment, abs=1e-13 * size * b + 1e-30)
-    assert fast[2] / (2.0 * b) == pytest.approx(slow.share, abs=1e-12)
+    assert fast[5] / (2.0 * b) == pytest.approx(slow.share, abs=1e-12)
+    # the tangent stiffness: integrals of a constant times 1, x, x^2 over the stretch that presses
+    low, high = pressing(b, k, c, z, s, z_rate, s_rate, clip)
+    for power in (1, 2, 3):
+        exact = 3.0 * (high**power - low**power) / power
+        assert fast[1 + power] == pytest.approx(exact, abs=1e-11 * b**power)
 
 
 @pytest.mark.parametrize("share", [0.2, 0.9, 1.0, 1.5, 4.0, 30.0])
