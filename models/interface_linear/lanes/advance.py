@@ -65,7 +65,7 @@ def switch(
         note(log, count, lane, time, kept.LOG_CLOSING_B + joint)
 
 
-@called
+@inlined
 def cross(
     given: Table, lane: int, system: Table, table: Table, built: Table, time: float, levels: int, unit: float,
     place: Table, gathered: Table, x: Table, to: Table, before: Table, after: Table, motion: Table, watched: Table,

@@ -8,7 +8,7 @@ from typing import Any
 from models.interface_linear.equation import FULL, HELD_RIGHT, STATES
 from models.interface_linear.lanes import rows as r
 from models.interface_linear.lanes.rows import ACC, RATE, VALUE, A, G
-from models.lanes.compiler import called, inlined
+from models.lanes.compiler import inlined
 
 Table = Any
 
@@ -103,7 +103,7 @@ def look(gathered: Table, given: Table, lane: int, c: int, x: Table, reading: Ta
             gathered[r.SHARE_B + joint] = min(gathered[r.SHARE_B + joint], 0.0 if apart else 0.5)
 
 
-@called
+@inlined
 def gather(
     gathered: Table, given: Table, lane: int, c: int, x0: Table, before: Table, x1: Table, after: Table, t: float,
 ) -> None:  # fmt: skip

@@ -161,6 +161,14 @@ def test_holding_a_joint_at_the_switch_is_the_limit_of_its_excursions() -> None:
     assert errors[0] < errors[1]
 
 
+def test_switches_without_end_are_flagged() -> None:
+    """Never held, a joint in slow uplift alternates faster and faster: given up, not waited for."""
+    shaking = Shaking(0.01, np.concatenate([np.linspace(0.0, 0.7, 101), np.full(20, 0.7)]))
+    never, held = (lanes.run(wall(SHORT), shaking, np.ones(1), brief=b) for b in (0.0, 0.2))
+    assert lanes.outputs(wall(SHORT), never.result)["status"][0] == 4
+    assert lanes.outputs(wall(SHORT), held.result)["status"][0] == 2
+
+
 @pytest.mark.parametrize("joints", ["base", "top"])
 def test_rubber_at_one_joint_only(joints: str) -> None:
     rng = np.random.default_rng(11)
