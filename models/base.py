@@ -169,8 +169,8 @@ class Model(Protocol):
         """Sentences about values that have no meaning together (for instance e <= 0); empty: fine."""
         ...
 
-    def derive(self, values: Values) -> dict[str, FloatArray]:
-        """Auxiliary constants (alpha, R, p ...), by the names of ``derived``."""
+    def derive(self, values: Values, options: Mapping[str, str] | None = None) -> dict[str, FloatArray]:
+        """Auxiliary constants (alpha, R, p ...) under the words of ``options``, by the names of ``derived``."""
         ...
 
     def evaluate(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import product
 from typing import Any
@@ -94,7 +94,7 @@ def motion_coordinates(plan: Plan) -> list[Coordinate]:
 
 def derived_coordinates(plan: Plan, model: Model) -> list[Coordinate]:
     """The model's constants (alpha, R, p ...), each over only the axes on which it depends."""
-    axes = [axis for axis in plan.axes if any(_physical(model, name) for name in axis.sets)]
+    axes = [axis for axis in plan.axes if any(_physical(model, n) or n in model.options for n in axis.sets)]
     corners = [np.unique([0, axis.size // 2, axis.size - 1]) for axis in axes]
     trial = _derive(plan, model, axes, corners)
     found = []
@@ -125,9 +125,24 @@ def _derive(plan: Plan, model: Model, axes: list[Axis], positions: list[NDArray[
     values: dict[str, Any] = {
         name: np.full(len(index), value) for name, value in plan.fixed.items() if _physical(model, name)
     }
+    words: dict[str, NDArray[Any]] = {}
     for k, axis in enumerate(axes):
         for name, points in axis.sets.items():
             if _physical(model, name):
                 values[name] = np.asarray(points)[index[:, k]]
-    derived = model.derive(values)
-    return {name: np.broadcast_to(v, len(index)).reshape(shape) for name, v in derived.items()}
+            elif name in model.options:
+                words[name] = np.asarray(points)[index[:, k]]
+    found = {quantity.name: np.empty(len(index)) for quantity in model.derived}
+    for rows, chosen in _by_words(words, len(index)):
+        derived = model.derive({name: v[rows] for name, v in values.items()}, {**plan.options, **chosen})
+        for name, v in derived.items():
+            found[name][rows] = v
+    return {name: v.reshape(shape) for name, v in found.items()}
+
+
+def _by_words(words: dict[str, NDArray[Any]], count: int) -> Iterator[tuple[NDArray[np.intp], dict[str, str]]]:
+    """The rows that share their option words, with these: a model takes them once a call."""
+    each = list(zip(*(w.tolist() for w in words.values()), strict=True)) if words else [()] * count
+    for chosen in dict.fromkeys(each):
+        rows = np.array([k for k, own in enumerate(each) if own == chosen], dtype=np.intp)
+        yield rows, dict(zip(words, map(str, chosen), strict=True))

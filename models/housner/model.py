@@ -69,7 +69,7 @@ class Housner:
             )
         return found
 
-    def derive(self, values: Values) -> dict[str, FloatArray]:
+    def derive(self, values: Values, options: Mapping[str, str] | None = None) -> dict[str, FloatArray]:
         """alpha (rad), R (m), p (s-1), e, onset acceleration (m s-2), arrays ``(n,)``."""
         block = build(values, False)
         given = block.restitution

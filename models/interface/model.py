@@ -100,16 +100,17 @@ class Interface:
         joints = told.pop() if len(told) == 1 and not BOTH & set(values) else "both"
         return build(values, self.words({"joints": joints}), False, model=self.name)
 
-    def derive(self, values: Values) -> dict[str, FloatArray]:
+    def derive(self, values: Values, options: Mapping[str, str] | None = None) -> dict[str, FloatArray]:
         """Static state, natural frequencies, mode shapes and modal damping at rest, arrays ``(n,)``."""
-        wall = self._as_described(values)
+        told = options is not None
+        wall = build(values, self.words(options), False, model=self.name) if told else self._as_described(values)
         return modes.derived(wall, self.natural_modes(wall))
 
     def natural_modes(self, wall: LayeredWall) -> modes.Modes:
         """Undamped modes in full contact."""
         return modes.at_rest(wall)
 
-    def _wall(self, values: Values, options: Mapping[str, str] | None, shaking: Shaking, size: int) -> LayeredWall:
+    def _shaken(self, values: Values, options: Mapping[str, str] | None, shaking: Shaking, size: int) -> LayeredWall:
         vertical = shaking.vertical is not None and shaking.vertical_acts
         wall = build(values, self.words(options), vertical, size, self.name)
         if wall.size != size:
@@ -133,7 +134,7 @@ class Interface:
     ) -> dict[str, NDArray[Any]]:
         """Outputs ``(n,)`` of n lanes under ``scale`` (n,) times the shaking; see `Model.evaluate`."""
         scale = np.atleast_1d(np.asarray(scale, float))
-        wall = self._wall(values, options, shaking, scale.size)
+        wall = self._shaken(values, options, shaking, scale.size)
         self._integrator(integrator)
         if integrator == "lanes":
             lanes = self._part("lanes.run")
@@ -164,7 +165,7 @@ class Interface:
         ``initial`` holds arrays ``(n,)`` by the names of `states`; what it leaves out is as at rest.
         """
         n = first.size
-        wall = self._wall(values, options, shaking, n)
+        wall = self._shaken(values, options, shaking, n)
         last = np.minimum(first + samples - 1, shaking.horizontal.size - 1)
         ran = self._part("lanes.run").run(
             wall, shaking, np.broadcast_to(np.asarray(scale, float), (n,)), initial=initial, first=first, last=last,
@@ -193,7 +194,7 @@ class Interface:
         ``duration`` (s) cuts the run or lengthens it beyond the shaking; the channels of a run that
         overturns stay where a body reached pi/2.
         """
-        wall = self._wall(values, options, shaking, 1)
+        wall = self._shaken(values, options, shaking, 1)
         self._integrator(integrator)
         end = shaking.duration + tail if duration is None else duration
         count = round(end / shaking.time_step) + 1

@@ -65,9 +65,9 @@ class Isolated:
         """Values that describe no building: levels without a mass, storeys without a stiffness, and so on."""
         return complaints(values)
 
-    def derive(self, values: Values) -> dict[str, FloatArray]:
+    def derive(self, values: Values, options: Mapping[str, str] | None = None) -> dict[str, FloatArray]:
         """Mass, natural frequencies and modal damping at small strain, arrays ``(n,)``."""
-        return modes.derived(build(values, self.words(None)))
+        return modes.derived(build(values, self.words(options)))
 
     def _chain(self, values: Values, options: Mapping[str, str] | None, size: int) -> Chain:
         chain = build(values, self.words(options), size)

@@ -74,7 +74,7 @@ class Stacked:
                 )
         return found
 
-    def derive(self, values: Values) -> dict[str, FloatArray]:
+    def derive(self, values: Values, options: Mapping[str, str] | None = None) -> dict[str, FloatArray]:
         """Slenderness angles (rad), R (m), p (s-1), e and onset accelerations (m s-2), arrays ``(n,)``."""
         stack = build(values, False)
         base = stack.gravity * stack.half_width / stack.centre

@@ -13,9 +13,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import models
+from grids.plan import read_plan
 from models.base import STATUS
 from models.errors import InputError
 from study.export import export
+from study.labels import derived_coordinates
 from study.open import open_study
 from study.provenance import attribute, sha256
 from study.run import run
@@ -49,6 +51,21 @@ def test_derived_coordinates_lie_over_the_axes_they_depend_on(cube: xr.Dataset) 
     expected = models.get("housner").derive(values)
     for name in ("alpha", "radius", "frequency_parameter", "onset_acceleration"):
         np.testing.assert_array_equal(cube[name].values.ravel(), expected[name])
+
+
+def test_derived_coordinates_know_the_option_words() -> None:
+    plan = read_plan(Path(__file__).parents[2] / "studies" / "rubber_laws.toml")
+    model = models.get("interface")
+    found = {c.name: c for c in derived_coordinates(plan, model)}
+    sunk = found["static_sinking_base"]
+    assert sunk.dims == ("rubber_law", "layer_modulus")
+    laws = plan.axes[0].values.tolist()
+    alone = {k: v for k, v in plan.fixed.items() if "." not in k} | {"layer_modulus": plan.axes[1].values}
+    linear = model.derive(alone)["static_sinking_base"]
+    np.testing.assert_allclose(sunk.values[laws.index("linear")], linear, rtol=1e-12)
+    np.testing.assert_allclose(sunk.values[laws.index("maxwell")], linear, rtol=1e-12)
+    assert np.all(sunk.values[laws.index("hardening")] < linear)
+    assert np.all(sunk.values[laws.index("mullins")] > linear)
 
 
 def test_provenance_stands_in_one_place(cube: xr.Dataset) -> None:
