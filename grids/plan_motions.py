@@ -12,6 +12,7 @@ import numpy as np
 from grids.axes import Axis
 from grids.files import Schema
 from grids.motions import Motion, find, read_motion
+from grids.motions.made import MAKERS
 from grids.targets import MOTION
 from models.errors import InputError
 
@@ -19,6 +20,7 @@ from models.errors import InputError
 class MotionTable(Schema):
     files: str | list[str | dict[str, Any]] | None = None
     pulse: dict[str, Any] | None = None
+    artificial: dict[str, Any] | None = None
     component: str | None = None
     vertical: bool | None = None
 
@@ -47,13 +49,15 @@ def read_motions(
         return read_motion(source, component=table.component, vertical=wanted, near=folder)
 
     listing = [axis for axis in axes if MOTION in axis.sets]
-    given = [name for name in ("files", "pulse") if getattr(table, name) is not None]
+    given = [name for name in ("files", *MAKERS) if getattr(table, name) is not None]
     if len(given) + len(listing) != 1:
         places = [f"[motion] {name}" for name in given] + [f"[axes] {axis.name}" for axis in listing]
         held = f"{' and '.join(places)} both name motions" if places else "no motion is given"
-        raise InputError(f"{held}; give exactly one of [motion] files, [motion] pulse, an axis of motions.")
+        kinds = ", ".join(f"[motion] {kind}" for kind in MAKERS)
+        raise InputError(f"{held}; give exactly one of [motion] files, {kinds}, an axis of motions.")
     if not listing:
-        sources = _listed(table.files) if table.pulse is None else [{"pulse": table.pulse}]
+        made = [{kind: getattr(table, kind)} for kind in MAKERS if kind in given]
+        sources = made or _listed(table.files)
         motions = _distinct([read(source) for source in _expanded(sources, folder)])
         if len(motions) == 1:
             return motions, axes
@@ -76,10 +80,10 @@ def _listed(files: str | list[str | dict[str, Any]] | None) -> list[str | dict[s
 
 
 def _expanded(sources: Iterable[Any], folder: Path) -> list[Any]:
-    """The sources with globs replaced by what they match."""
+    """The sources with globs and lists of seeds replaced by what they stand for."""
     found: list[Any] = []
     for source in sources:
-        found += [source] if isinstance(source, dict) else find(str(source), folder)
+        found += find(source if isinstance(source, dict) else str(source), folder)
     return found
 
 

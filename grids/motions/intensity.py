@@ -39,9 +39,9 @@ def intensity_measures(motion: Motion, high_pass: float | None = HIGH_PASS) -> I
     """PGA, PGV, PGD, Arias intensity and significant duration of the horizontal component.
 
     PGA, Arias intensity and duration are of the acceleration as it is. ``high_pass`` as in
-    `velocity_and_displacement`; a pulse is exact, its velocity is never filtered.
+    `velocity_and_displacement`; a pulse or an artificial motion needs none, its velocity is never filtered.
     """
-    corner = None if motion.source.get("format") == "pulse" else high_pass
+    corner = None if motion.source.get("format") in ("pulse", "artificial") else high_pass
     velocity, displacement = velocity_and_displacement(motion.horizontal, motion.time_step, corner)
     start, end = significant_interval(motion.horizontal, motion.time_step)
     return IntensityMeasures(

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import glob
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from fnmatch import fnmatchcase
 from pathlib import Path
+from typing import Any
 
 from grids.data_folder import data_folder
+from grids.motions.made import each, parse_made
 from grids.motions.readers import READERS, Reader, at2, npz
 from models.errors import InputError, nearest
 
@@ -74,16 +76,20 @@ def _is_pattern(text: str) -> bool:
     return any(mark in text for mark in "*?[")
 
 
-def find(source: str, near: Path | None = None) -> list[str]:
-    """The sources a glob stands for, in the order of their names; a source without one stands for itself.
+def find(source: str | Mapping[str, Any], near: Path | None = None) -> list[str | dict[str, Any]]:
+    """The sources that one stands for: files of a glob, in the order of their names; seeds; else itself.
 
     Both the file and the key may be globs ("RSN*.AT2", "strong_motion_83.npz:*_NS"). Vertical
     components are left out: they come with the horizontal ones of their record.
     """
+    if isinstance(source, str):
+        source = parse_made(source) or source
+    if isinstance(source, Mapping):
+        return [*each(source)]
     name, key = split_source(source)
     if not _is_pattern(name) and not _is_pattern(key or ""):
         return [source]
-    found: list[str] = []
+    found: list[str | dict[str, Any]] = []
     for path in _matching(name, near):
         if key is not None:
             found += [f"{path}:{k}" for k in _matching_keys(path, key)]

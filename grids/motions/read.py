@@ -12,7 +12,7 @@ import numpy as np
 
 from grids.motions.base import Motion
 from grids.motions.locate import SHIPPED, locate, reader_of
-from grids.motions.pulses import make_pulse
+from grids.motions.made import MAKERS, make, parse_made
 from grids.motions.readers.base import FloatArray, Record, vertical_sign
 from models.errors import InputError, nearest
 
@@ -27,17 +27,20 @@ def read_motion(
     """The motion a source stands for.
 
     ``source``: a shipped name, a path (looked for beside ``near``, in the current folder, then in the
-    data folder), ``"file.npz:key"``, ``{"pulse": {...}}``, or ``{"file": ..., ...}`` with what is to be
-    stated about the file (``time_step``, ``unit``, ``columns`` ...) instead of a TOML beside it.
+    data folder), ``"file.npz:key"``, ``{"pulse": {...}}`` or ``{"artificial": {...}}`` (or the same as a
+    TOML text, ``'pulse = {...}'``), or ``{"file": ..., ...}`` with what is to be stated about the file
+    (``time_step``, ``unit``, ``columns`` ...) instead of a TOML beside it.
     ``component``: the horizontal component; without it the one the file or key stands for, else
     the one with the larger peak. ``vertical``: None takes the vertical if the record has one, True
     demands it, False leaves it out. Raises InputError.
     """
+    if isinstance(source, str):
+        source = parse_made(source) or source
     if isinstance(source, Mapping):
-        if "pulse" in source:
-            return _pulse(source, component, vertical)
+        if any(kind in source for kind in MAKERS):
+            return _with_hashes(make(source, component, vertical))
         if "file" not in source:
-            raise InputError(f"motion {dict(source)!r}: give 'file' or 'pulse'")
+            raise InputError(f"motion {dict(source)!r}: give 'file', 'pulse' or 'artificial'")
         statement = {k: v for k, v in source.items() if k != "file"}
         name = str(source["file"])
     else:
@@ -51,17 +54,6 @@ def read_motion(
         cure = nearest(unknown[0], reader.statement_keys) if reader.statement_keys else "the file states it itself"
         raise InputError(f"motion {name!r}: {unknown[0]!r} cannot be stated for {reader.name}; {cure}")
     return _chosen(reader.read(path, key, statement), path, component, vertical)
-
-
-def _pulse(source: Mapping[str, Any], component: str | None, vertical: bool | None) -> Motion:
-    if len(source) > 1 or not isinstance(source["pulse"], Mapping):
-        raise InputError("motion: give pulse = {...} as a table, and nothing beside it")
-    motion = make_pulse(source["pulse"])
-    if component is not None:
-        raise InputError(f"motion {motion.name}: a pulse has no component {component!r}: leave component out")
-    if vertical:
-        raise InputError(f"motion {motion.name}: a pulse has no vertical component: leave vertical out")
-    return _with_hashes(motion)
 
 
 def _chosen(record: Record, path: Path, component: str | None, vertical: bool | None) -> Motion:

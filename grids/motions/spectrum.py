@@ -73,8 +73,18 @@ def _transition(omega: float, damping: float, step: float) -> tuple[FloatArray, 
     return whole[:2, :2], whole[:2, 2] - whole[:2, 3], whole[:2, 3]
 
 
+def recursive_filter(omega: float, damping: float, step: float) -> tuple[FloatArray, FloatArray]:
+    """Coefficients of the displacement u for the force p = -a: u_k = f.(p_k, p_k-1, p_k-2) - b.(u_k-1, u_k-2).
+
+    Returns (f, (1, b)) as `scipy.signal.lfilter` takes them: the two-state recurrence with u' eliminated.
+    """
+    a, b0, b1 = _transition(omega, damping, step)
+    forward = np.array([b1[0], b0[0] - a[1, 1] * b1[0] + a[0, 1] * b1[1], a[0, 1] * b0[1] - a[1, 1] * b0[0]])
+    return forward, np.array([1.0, -np.trace(a), np.linalg.det(a)])
+
+
 def _peak_displacement(acceleration: FloatArray, time_step: float, omega: float, damping: float) -> float:
-    """Largest |u|: the two-state recurrence as a second-order recursive filter of the force."""
+    """Largest |u| over the record and the free motion after it."""
     from scipy.signal import lfilter
 
     refine = max(1, math.ceil(SAMPLES_A_PERIOD * time_step * omega / (2 * math.pi)))
@@ -83,8 +93,7 @@ def _peak_displacement(acceleration: FloatArray, time_step: float, omega: float,
         fine = np.arange((force.size - 1) * refine + 1) / refine
         force = np.interp(fine, np.arange(force.size), force)
     a, b0, b1 = _transition(omega, damping, time_step / refine)
-    forward = np.array([b1[0], b0[0] - a[1, 1] * b1[0] + a[0, 1] * b1[1], a[0, 1] * b0[1] - a[1, 1] * b0[0]])
-    backward = np.array([1.0, -np.trace(a), np.linalg.det(a)])
+    forward, backward = recursive_filter(omega, damping, time_step / refine)
     # u is zero at the first sample, although the force there need not be
     initial = np.array([-forward[0], a[1, 1] * b1[0] - a[0, 1] * b1[1]]) * force[0]
     u, _ = lfilter(forward, backward, force, zi=initial)

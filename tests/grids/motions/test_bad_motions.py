@@ -343,7 +343,7 @@ def csv_sign_that_scales(files):
     return files.csv(toml='time_step = 0.01\n[columns]\nnorth = { column = 2, unit = "g", sign = 3 }\n')
 
 
-@case("give 'file' or 'pulse'", "shape")
+@case("give 'file', 'pulse' or 'artificial'", "shape")
 def table_without_file_or_pulse(files):
     return {"shape": "sine"}
 
