@@ -83,38 +83,49 @@ def tests(forces: Forces) -> list[Tested]:
                 continue
             score = screen.scores_with_residual(column) - cross * along
             sign = float(np.sign(score) * np.sign(along))
-            found.append(Tested(kind, depends_on, score**2 / information / excess, sign))
+            statistic = without_loudest(*screen.by_window(column - cross * plain))
+            found.append(Tested(kind, depends_on, statistic / excess, sign))
         spell = _spell(forces, plain) / excess
         found.append(Tested(kind, SPELL, spell * FLAG / SCAN_FLAG))
     return sorted(found, key=lambda t: -t.statistic)
 
 
+def without_loudest(score: FloatArray, information: FloatArray) -> float:
+    """Smallest score statistic when any one window (W,) is left out: one alone must not decide."""
+    left = np.maximum(information.sum() - information, 1e-12)
+    return float(np.min((score.sum() - score) ** 2 / left))
+
+
 def _spell(forces: Forces, column: FloatArray) -> float:
-    """Largest statistic of the force acting in one spell of windows, against acting always."""
-    screen = forces.screen
-    w = screen.weights
-    score = w * np.einsum("wm,wm->w", column, screen.residual)
-    information = w * np.einsum("wm,wm->w", column, column)
+    """Largest statistic of the force acting in one spell of windows, the loudest left out, against acting always."""
+    score, information = forces.screen.by_window(column)
     total_score, total = score.sum(), information.sum()
     records = forces.fitted.misfit.predictor.measured.recording_of
     best = 0.0
     for r in np.unique(records):
         own = np.flatnonzero(records == r)
-        s, i = np.cumsum(np.r_[0.0, score[own]]), np.cumsum(np.r_[0.0, information[own]])
         for a in range(own.size):
             for b in range(a + SHORTEST_SPELL, own.size + 1):
-                inside, part = s[b] - s[a], i[b] - i[a]
+                inside, part = _but_loudest(score[own[a:b]], information[own[a:b]])
                 left = part * (1.0 - part / total)
                 if left > 1e-3 * total:
                     best = max(best, (inside - part / total * total_score) ** 2 / left)
     return float(best)
 
 
+def _but_loudest(score: FloatArray, information: FloatArray) -> tuple[float, float]:
+    """Sums without the window that adds most to the score's size."""
+    loudest = int(np.argmax(score * np.sign(score.sum())))
+    return float(score.sum() - score[loudest]), float(information.sum() - information[loudest])
+
+
 def flags(tested: list[Tested], threshold: float = FLAG) -> tuple[Constancy, ...]:
-    """Tests beyond the threshold: one a kind of force, the strongest dependence first."""
+    """Dependences beyond the threshold: one a kind of force, the strongest first.
+
+    Plain forces are no flags: each has its mechanism in the library, which was refitted and is the better judge.
+    """
     found: dict[str, Constancy] = {}
     for test in tested:
-        if test.statistic >= threshold and test.kind not in found:
-            depends_on = test.depends_on or "acts though no mechanism explains it"
-            found[test.kind] = Constancy(test.kind, depends_on, test.statistic)
+        if test.depends_on and test.statistic >= threshold and test.kind not in found:
+            found[test.kind] = Constancy(test.kind, test.depends_on, test.statistic)
     return tuple(found.values())

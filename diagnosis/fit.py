@@ -21,7 +21,7 @@ STATE_STEPS = (1.0, 0.3, 0.0)
 ITERATIONS = 14
 TOLERANCE = 0.02
 """Gain in 2 log likelihood under which an iteration ends the fit."""
-BADLY, SCATTERED = 1.5, 64
+BADLY, SCATTERED = 1.5, 256
 """Squared misfit per sample of a stuck window (over that of most windows), and the states tried for it."""
 SCATTERINGS = 3
 

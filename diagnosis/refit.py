@@ -13,6 +13,8 @@ from diagnosis.memory import counted
 from models.base import FloatArray
 
 RECOUNTS = 4
+SHAPES, QUICK = 5, 6
+"""Values of a shape tried anew, and the iterations of each."""
 
 
 @dataclass(frozen=True)
@@ -87,6 +89,23 @@ def from_other(explanation: Explanation, other: Explanation, iterations: int = I
     )
     tried = Explanation(explanation.candidates, fit(mine.misfit, u, other.fitted.states, iterations))
     return min((explanation, tried), key=lambda e: e.loss)
+
+
+def reshaped(explanation: Explanation) -> Explanation:
+    """The best of this fit and of fits from other shapes of its mechanisms, one shape at a time.
+
+    Where a shape does nothing (a floor that is never reached, a gap never closed) its derivative is no guide.
+    """
+    fitted, tried = explanation.fitted, [explanation]
+    shapes = {x.name for c in explanation.candidates for x in c.unknowns[1:]}
+    for i, unknown in enumerate(fitted.misfit.unknowns):
+        if unknown.name not in shapes:
+            continue
+        for at in np.linspace(*unknown.bounds, SHAPES + 2)[1:-1]:
+            u = fitted.u.copy()
+            u[i] = at
+            tried.append(replace(explanation, fitted=fit(fitted.misfit, u, fitted.states, QUICK)))
+    return best_of(tried)
 
 
 def with_memory(explanation: Explanation) -> Explanation:

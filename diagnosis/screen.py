@@ -69,6 +69,12 @@ class Screen:
         plain = np.einsum("w,wm,wm->", self.weights, column, self.residual, optimize=True)
         return float(plain - self._along(column) @ self.inverse @ self.gradient)
 
+    def by_window(self, column: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Each window's part (W,) in the score and in the information of a reduced column, off the base parameters."""
+        off = column - self.by_unknown @ (self.inverse @ self._along(column))
+        scores = self.weights * np.einsum("wm,wm->w", off, self.residual)
+        return scores, self.weights * np.einsum("wm,wm->w", off, off)
+
 
 def open_screen(fitted: Fitted) -> Screen:
     """Linearise about a fit."""

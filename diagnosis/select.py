@@ -12,7 +12,7 @@ from diagnosis.candidates import Candidate
 from diagnosis.found import MISSING, Search, adequate, adjusted, survives
 from diagnosis.null import null_distribution
 from diagnosis.outside import outside
-from diagnosis.refit import Explanation, again, best_of, extend, from_other, with_memory, without
+from diagnosis.refit import QUICK, Explanation, again, best_of, extend, from_other, reshaped, with_memory, without
 from diagnosis.screen import Score, open_screen, score
 
 WORTH = 4.0
@@ -22,14 +22,12 @@ SHARE_OF_FIRST, SHARE_OF_SECOND = 0.05, 0.25
 """Of the strongest statistic: what a first or a further mechanism must reach to be refitted."""
 HOPELESS = 8.0
 """Statistic of the strongest further mechanism under which an adequate model is not extended."""
-TIE = 2.0
+TIE = 0.5
 """Gain within which two explanations are one for the data: the earlier in the catalogue is named."""
-QUICK = 6
-"""Iterations of a first refit; the strongest are then taken further."""
 THOROUGH = 2
 NEAR, NEAR_ADEQUATE = 0.2, 0.6
 """Share of the leader's gain from which a single is refitted from the leader's optimum too."""
-FIRST_POOL = 2
+FIRST_POOL = 3
 SECOND_TRIES = 6
 MOST_EFFECTS = 3
 POOL_SHARE = 0.25
@@ -96,7 +94,7 @@ def _singles(found: Search, progress: Progress) -> None:
     found.singles.sort(key=adjusted)
     if not found.singles:
         return
-    leader = found.singles[0] = again(found.singles[0])
+    leader = found.singles[0] = again(reshaped(found.singles[0]))
     if found.gain(leader) < MISSING:
         return
     restarted = from_other(found.base, leader)
@@ -132,12 +130,12 @@ def _pairs(found: Search, progress: Progress) -> None:
     others = seconds(found, found.best)
     if not adequate(found.best):
         found.outside = outside(found.best, others)
-    singles = pool(found) if found.outside is None else [found.best]
+    singles = pool(found)
     pairs: list[Explanation] = []
     for k, single in enumerate(singles):
         progress(f"looking for a second effect beside {single.names[0]}", 0.5 + 0.25 * k / len(singles))
         pairs += _extended(single, others if single is found.best else seconds(found, single))
-        if any(adequate(e) for e in pairs):
+        if any(adequate(e) for e in pairs):  # the backward check still tries the others in its place
             break
     if not pairs:
         return
@@ -149,7 +147,7 @@ def _pairs(found: Search, progress: Progress) -> None:
     pair = min(pairs, key=adjusted)
     alone = best_of([e for e in found.singles if e.names[0] in pair.names] or [found.best])
     if adjusted(found.best) - adjusted(pair) >= found.more and survives(alone, pair, found.more):
-        found.best = again(pair)
+        found.best = again(reshaped(pair))
 
 
 def seconds(found: Search, explanation: Explanation) -> list[Score]:

@@ -38,7 +38,7 @@ def report_page(
 ) -> str:
     """The page as text, with the pictures ``drawn``. What it says of the fit stands in ``diagnosis``."""
     model = models.get(specimen.model)
-    effects = [suspect_of(effect.name) for effect in diagnosis.effects]
+    effects = [suspect_of(effect.name, diagnosis.provenance["model"]) for effect in diagnosis.effects]
     return (
         _environment()
         .get_template("report.html.j2")
@@ -104,7 +104,7 @@ def _rivals(diagnosis: Diagnosis) -> list[tuple[Rival, Suspect, str]]:
     refitted = {tried.name: tried.estimate or {} for tried in diagnosis.screen}
     found = []
     for rival in diagnosis.rivals:
-        entry = suspect_of(rival.name)
+        entry = suspect_of(rival.name, diagnosis.provenance["model"])
         found.append((rival, entry, entry.says(refitted.get(rival.name, {}))))
     return found
 
@@ -134,7 +134,7 @@ def _parameters(diagnosis: Diagnosis, specimen: Specimen) -> list[Mapping[str, A
     """Effects first, then the base: estimate and interval as texts, what was stated, bounds hit."""
     rows: list[Mapping[str, Any]] = []
     for effect in diagnosis.effects:
-        declared = suspect_of(effect.name).meanings
+        declared = suspect_of(effect.name, diagnosis.provenance["model"]).meanings
         for name, value in effect.parameters.items():
             rows.append(
                 {

@@ -34,12 +34,12 @@ class Suspect:
         return self.sentence.format(**values) if estimates else self.equation or self.sentence
 
 
-def suspect_of(name: str) -> Suspect:
-    """The entry of the library, or of another base model, by name."""
+def suspect_of(name: str, model: str) -> Suspect:
+    """The entry of the library as it acts on ``model``, or of another base model, by name."""
+    import models
     from diagnosis.sensors import SENSORS
-    from models.mechanisms import MECHANISMS
 
-    found: Mechanism | None = {**MECHANISMS, **SENSORS}.get(name)
+    found: Mechanism | None = {**models.get(model).mechanisms, **SENSORS}.get(name)
     if found is None:
         return Suspect(name, OTHER_BASES.get(name, name.replace("_", " ")))
     meanings = {p.name: p.meaning for p in found.parameters}

@@ -101,9 +101,10 @@ def fibre(w: Table, joint: int, f: int, i: int, node: float, shared: Any, laws: 
     if bouc_wen is not None:
         zeta = w[own + ZETA * W]
         loaded = min(max((zeta if change >= 0.0 else -zeta) * yielding, 0.0), 1.0)
-        # |zeta/u_y|^(n-1), n = 1, 2, 3, 4
+        # |zeta/u_y|^(n-1), n = 1, 2, 3, 4; 0 while unloading, where zeta follows u
+        first = 1.0 if loaded > 0.0 else 0.0
         second, third = loaded if order > 1.5 else 1.0, loaded if order > 2.5 else 1.0
-        lower = second * third * (loaded if order > 3.5 else 1.0)
+        lower = first * second * third * (loaded if order > 3.5 else 1.0)
         eased = order * yielding * lower * abs(change) + 1e-8
         part = (1.0 - lower * loaded) * (1.0 - exponential_decay(eased)) / eased
         zeta += change * part

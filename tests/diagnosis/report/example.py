@@ -212,5 +212,5 @@ def diagnosis(verdict: Verdict = "missing") -> Diagnosis:
         traces=tuple(t for t, _ in parts),
         prediction_horizon={r.name: (0.35, 1.9) for r in recordings()},
         missing_force=FORCE if verdict == "not_in_library" else None,
-        provenance={"commit": "0123abc", "seconds": 31.2, "versions": {"rocking-study": "0.1.0"}},
+        provenance={"model": "housner", "commit": "0123abc", "seconds": 31.2, "versions": {"rocking-study": "0.1.0"}},
     )
