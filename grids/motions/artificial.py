@@ -23,6 +23,7 @@ from grids.motions.base import Motion
 from grids.motions.eurocode8 import GROUNDS, ElasticSpectrum
 from grids.motions.matching import MATCHED, match
 from grids.motions.spectrum import response_spectrum
+from grids.motions.units import STANDARD_GRAVITY
 from grids.units import to_si
 from models.errors import InputError, nearest
 
@@ -35,7 +36,7 @@ DURATIONS = (12.0, 60.0)
 """s: shorter ones hold too few cycles of the longest period."""
 STEPS = (0.002, 0.01)
 """s: five samples in the shortest period at least."""
-DAMPINGS = (0.02, 0.30)
+DAMPINGS = (0.03, 0.30)
 
 
 class Artificial(Schema):
@@ -67,7 +68,7 @@ def one_by_one(table: Mapping[str, Any]) -> list[dict[str, Any]]:
 def make_artificial(table: Mapping[str, Any]) -> Motion:
     """The motion of one seed. Raises InputError.
 
-    ``type`` 1 or 2, ``ground`` A to E, ``pga`` (a_g S, the spectrum at zero period), ``damping`` (2 to 30 %),
+    ``type`` 1 or 2, ``ground`` A to E, ``pga`` (a_g S, the spectrum at zero period), ``damping`` (3 to 30 %),
     ``duration`` (12 to 60 s; half of it is stationary: 20 s hold the 10 s of EN 1998-1, 3.2.3.1.2),
     ``step`` (2 to 10 ms), ``seed``, ``name``.
     """
@@ -92,9 +93,9 @@ def make_artificial(table: Mapping[str, Any]) -> Motion:
     if abs(count * step - duration) > 1e-6 * step:
         raise InputError(f"artificial: step {step:g} s does not divide the duration of {duration:g} s")
     shape, departure = _shape(asked.type, asked.ground, damping, step, count + 1, asked.seed)
-    name = f"EC8 type {asked.type} {asked.ground}" if asked.name is None else asked.name
+    name = asked.name or f"EC8 type {asked.type} {asked.ground}, {pga / STANDARD_GRAVITY:.4g} g"
     return Motion(
-        f"{name}, {pga / 9.80665:.4g} g, seed {asked.seed}" if asked.name is None else f"{name}, seed {asked.seed}",
+        f"{name}, seed {asked.seed}",
         step,
         pga * shape,
         components={"horizontal": "artificial"},

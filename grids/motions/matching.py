@@ -28,9 +28,9 @@ CLOSE = 0.05
 """Share of the duration over which the end is brought to zero."""
 LOW_CUT, FLOOR = (0.08, 0.2), 1e-3
 """Hz over which a change of the motion fades out towards low frequencies, and what is left of it below."""
-SHORTEST, LONGEST, SPACING = 0.02, 5.0, 0.0213
-"""Control periods, s (four samples at least), and the logarithm of the ratio of neighbours: the
-half-power width of a 5 % oscillator, 2 zeta, is five times that."""
+SHORTEST, LONGEST, SPACING = 0.02, 5.0, 0.43
+"""Control periods, s (four samples at least), and the logarithm of the ratio of neighbours over the damping
+(5 % at most): a fifth of an oscillator's half-power width 2 zeta."""
 FOURIER_ROUNDS, TIME_ROUNDS, STALLED, DRAWS = 6, 25, 5, 12
 """Some draws of phases end with two peaks that take turns, no better for `STALLED` rounds; another one is drawn."""
 CLOSE_ENOUGH = 0.05
@@ -121,7 +121,7 @@ def match(target: Target, damping: float, step: float, size: int, seed: int) -> 
     ``target`` gives the pseudo-acceleration over the peak ground acceleration at periods (s).
     """
     shortest = max(SHORTEST, 4.0 * step)
-    periods = np.geomspace(shortest, LONGEST, round(np.log(LONGEST / shortest) / SPACING))
+    periods = np.geomspace(shortest, LONGEST, round(np.log(LONGEST / shortest) / (SPACING * min(damping, 0.05))))
     wanted = target(periods)
     oscillators = _Oscillators.of(periods, damping, step, size)
     process = _Process.of(step, size)
