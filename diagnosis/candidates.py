@@ -57,13 +57,15 @@ class Candidate:
         """Coordinates (d,) spread over the range, on both sides of the null; finely for a ``by_threshold`` effect."""
         null = self.null
         shapes = [_spread(u) for u in self.unknowns[1:]]
-        for bound in self.unknowns[0].bounds:
-            reach = bound - null[0]
+        low, high = self.unknowns[0].bounds
+        inner = float(np.clip(null[0], low, high))
+        for bound in (low, high):
+            reach = bound - inner
             if reach == 0.0:
                 continue
             for share in FINE_GRID if by_threshold else GRID:
                 for rest in product(*shapes):
-                    yield np.array([null[0] + share * reach, *rest])
+                    yield np.array([inner + share * reach, *rest])
 
 
 def _spread(unknown: Unknown) -> FloatArray:

@@ -1,7 +1,8 @@
 """What a search has found, and what counts in it: gains, thresholds, adequacy, rivals.
 
 An effect counts when its gain in 2 log likelihood passes the threshold and still does without
-the window that speaks loudest for it (and, with more than two recordings, without any one of them).
+the window that speaks loudest for it (and, with more than two recordings, without any one of them),
+or when it alone makes that window fit (`settles`).
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import numpy as np
 
 from diagnosis.candidates import Candidate
 from diagnosis.null import Null
-from diagnosis.refit import Explanation, gain_by_window, without
+from diagnosis.refit import Explanation, from_other, gain_by_window, without
 from diagnosis.result import Constancy
 from diagnosis.screen import Score
 from models.base import FloatArray
@@ -27,6 +28,8 @@ PER_SHAPE = 2.0
 """What every unknown beyond the first costs a mechanism."""
 ADEQUATE = 1.08
 """Misfit per sample under which an explanation is adequate."""
+ALONE, SETTLED, BADLY = 4.0, 1.3, 3.0
+"""When one window may decide: its gain in thresholds, its misfit per sample with the mechanism and without."""
 
 
 @dataclass
@@ -68,7 +71,7 @@ def survives(before: Explanation, after: Explanation, threshold: float = MISSING
     total = before.loss - adjusted(after) + (adjusted(before) - before.loss)
     loudest = float(gains.max(initial=0.0))
     if total - loudest < threshold:
-        return False
+        return loudest >= ALONE * threshold and total - loudest > -threshold and settles(before, after)
     measured = after.fitted.misfit.predictor.measured
     if len(measured.recordings) > 2:
         each = [float(gains[measured.recording_of == r].sum()) for r in range(len(measured.recordings))]
@@ -76,11 +79,27 @@ def survives(before: Explanation, after: Explanation, threshold: float = MISSING
     return True
 
 
-def misfit_per_sample(explanation: Explanation) -> float:
-    """Squared whitened residual per sample, without the worst tenth (at least one) of the windows."""
+def settles(before: Explanation, after: Explanation) -> bool:
+    """Whether one window, rightly fitted, decides: a peak that was clipped may be the only one.
+
+    The window with the largest gain fits to the noise with the mechanism, and badly without it even from
+    the states found with it: it was not stuck.
+    """
+    window = int(np.argmax(gain_by_window(before, after)))
+    alone = from_other(before, after)
+    return bool(by_window(after)[window] < SETTLED and by_window(alone)[window] > BADLY)
+
+
+def by_window(explanation: Explanation) -> FloatArray:
+    """Squared whitened residual per sample of each window (W,)."""
     misfit = explanation.fitted.misfit
     residual = misfit.residuals([misfit.point(explanation.fitted.u, explanation.fitted.states)])[0]
-    each = np.sort(np.sum(residual**2, axis=1) / misfit.predictor.measured.count)
+    return np.asarray(np.sum(residual**2, axis=1) / misfit.predictor.measured.count)
+
+
+def misfit_per_sample(explanation: Explanation) -> float:
+    """Squared whitened residual per sample, without the worst tenth (at least one) of the windows."""
+    each = np.sort(by_window(explanation))
     return float(np.mean(each[: max(1, int(0.9 * each.size))]))
 
 

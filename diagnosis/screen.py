@@ -104,7 +104,7 @@ def _score_one(screen: Screen, base: Point, candidate: Candidate) -> Score:
     null = candidate.null
     low, high = candidate.unknowns[0].bounds
     near = [null.copy(), null.copy()]
-    near[0][0], near[1][0] = max(null[0] - STEP, low), min(null[0] + STEP, high)
+    near[0][0], near[1][0] = min(max(null[0] - STEP, low), null[0]), min(max(null[0] + STEP, low), high)
     off, _ = screen.reduced(misfit.residuals([at(base, candidate, u) for u in near]))
     derivative = (off[1] - off[0]) / (near[1][0] - near[0][0])
     information = screen.product(derivative, derivative)
@@ -113,7 +113,7 @@ def _score_one(screen: Screen, base: Point, candidate: Candidate) -> Score:
     best, start = 0.0, null
     if information > 1e-12:
         step = -screen.scores_with_residual(derivative) / information
-        if low - 1e-12 <= null[0] + np.sign(step) * 1e-9 <= high + 1e-12:
+        if null[0] < high if step > 0.0 else null[0] > low:
             best = step**2 * information
             start = null.copy()
             start[0] = np.clip(null[0] + step, low, high)

@@ -24,7 +24,8 @@ class Unknown:
     """One fitted number. The fit works with a coordinate of order one:
 
     linear: value = scale u;  log: value = exp(scale u);  inverse: value = 1/(scale u), infinite at u = 0.
-    ``prior`` is (mean, standard deviation) of the value, for linear ones.
+    ``prior`` is (mean, standard deviation) of the value, for linear ones. ``stiff``: an inverse one
+    that stays within its range, its null apart.
     """
 
     name: str
@@ -35,6 +36,7 @@ class Unknown:
     scale: float
     kind: Literal["linear", "log", "inverse"] = "linear"
     prior: tuple[float, float] | None = None
+    stiff: bool = False
 
     def value(self, u: float) -> float:
         if self.kind == "linear":
@@ -52,9 +54,9 @@ class Unknown:
 
     @property
     def bounds(self) -> tuple[float, float]:
-        """Of the coordinate, low first. An inverse one may reach its null."""
+        """Of the coordinate, low first. An inverse one may reach its null, unless it is stiff there."""
         if self.kind == "inverse":
-            return 0.0, self.coordinate(self.low)
+            return self.coordinate(self.high) if self.stiff else 0.0, self.coordinate(self.low)
         return self.coordinate(self.low), self.coordinate(self.high)
 
 
@@ -93,7 +95,7 @@ def of_parameter(mechanism: Mechanism, parameter: MechanismParameter, start: flo
     at = parameter.null if start is None else start
     if parameter.fit_inverse:
         scale = 1.0 / (parameter.low * STEPS_OF_RANGE)
-        return Unknown(name, parameter.unit, parameter.low, parameter.high, at, scale, "inverse")
+        return Unknown(name, parameter.unit, parameter.low, parameter.high, at, scale, "inverse", stiff=parameter.stiff)
     low, high = min(parameter.low, parameter.null), max(parameter.high, parameter.null)
     return Unknown(name, parameter.unit, low, high, at, (high - low) / STEPS_OF_RANGE)
 

@@ -18,7 +18,7 @@ MECHANISM = Mechanism(
     parameters=(
         MechanismParameter(
             "first_frequency", "f_1", "Hz", "first frequency of the wall clamped at its base", 3.0, 100.0,
-            null=np.inf, fit_inverse=True,
+            null=np.inf, fit_inverse=True, stiff=True,
         ),
     ),
     equation="Lagrange's equations of theta and of the mode's amplitude: models/housner/flexure.py",

@@ -78,11 +78,13 @@ def records(shaking: Shaking, n: int, tail: float, pitch: float | None) -> tuple
             record[row, : shaken + 1] = refine(samples, n)
     if quiet:
         record[:, shaken + 1 :] = 0.0
-    padded = record[:, : (record.shape[1] // CHUNK) * CHUNK + 1]
-    count = padded.shape[1] // CHUNK
+    count = record.shape[1] // CHUNK
     chunk = np.zeros((4, max(count, 1)))
-    for c in range(count):
-        chunk[:, c] = np.max(np.abs(padded[:4, c * CHUNK : (c + 1) * CHUNK + 1]), axis=1)
+    if count:
+        size = np.abs(record[:4])
+        chunk[:] = size[:, : count * CHUNK].reshape(4, count, CHUNK).max(axis=2)
+        ends = size[:, CHUNK : count * CHUNK + 1 : CHUNK]
+        chunk[:, : ends.shape[1]] = np.maximum(chunk[:, : ends.shape[1]], ends)
     return record, chunk, shaken
 
 
