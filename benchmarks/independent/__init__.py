@@ -1,0 +1,1 @@
+"""Independent programs on the same walls: ``make independent`` prints tables, writes results/bench/independent.json."""
