@@ -6,7 +6,7 @@ READY := .venv/.ready
 STUDY := results/rubber_interface
 HEAVY := --select "top_mass=5 t" --select damping_ratio=0.0544
 
-.PHONY: study test lint types bench kill-test agreement diagnosis-bench gallery docs clean
+.PHONY: study test lint types bench independent kill-test agreement diagnosis-bench gallery docs clean
 
 study: $(READY)
 	$(BIN)/rocking run studies/rubber_interface.toml
@@ -25,7 +25,13 @@ types: $(READY)
 	$(BIN)/mypy
 
 bench: $(READY)
+	-$(BIN)/pip install --quiet -e ".[proof]"
 	$(BIN)/python -m benchmarks.one_block
+	$(BIN)/python -m benchmarks.two_blocks
+
+independent: $(READY)
+	-$(BIN)/pip install --quiet -e ".[proof]"
+	$(BIN)/python -m benchmarks.independent
 
 kill-test: $(READY)
 	$(BIN)/python -m benchmarks.kill_test
