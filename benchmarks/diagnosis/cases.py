@@ -164,7 +164,8 @@ class _Draft:
                 end = max(end, self.block.true["width"] / self.block.true["height"])
             shapes = row.shapes(self.rng, peak)
 
-            share, reached = self._nominal(lambda x: _alone(row, row.at(x, end), shapes), peak)  # noqa: B023
+            shares = SHARES[SHARES >= row.smallest]
+            share, reached = self._nominal(lambda x: _alone(row, row.at(x, end), shapes), peak, shares)  # noqa: B023
             value = row.at(share, end)
             if self.wish.relative_size == 0.5:
                 value = row.half(value)
@@ -189,11 +190,11 @@ class _Draft:
         def with_size(share: float) -> Effects:
             return Effects({}, {}, truth.Applied(law, share * end, numbers, active[0], peak), tuple(active))
 
-        share, reached = self._nominal(with_size, peak)
+        share, reached = self._nominal(with_size, peak, SHARES)
         share *= self.wish.relative_size
         return with_size(share), [{"name": law.name, "class": "open", "parameters": {"size": share * end}}], not reached
 
-    def _nominal(self, effects_at: Callable[[float], Effects], peak: float) -> tuple[float, bool]:
+    def _nominal(self, effects_at: Callable[[float], Effects], peak: float, shares: FloatArray) -> tuple[float, bool]:
         """Share (0-1) of the way to the end of the range that has nominal size, and whether one has.
 
         Rocking from rest is chaotic: the peak, hence the noise, jumps with the parameter. So shares are
@@ -201,7 +202,7 @@ class _Draft:
         no longer rocks, before nominal size; the share is then the largest possible.
         """
         below, size_below, jumps = 0.0, 0.0, 0
-        for share in SHARES.tolist():
+        for share in shares.tolist():
             found = self.scene.size(effects_at(share), peak)
             if found < (1.0 - WITHIN) * size.NOMINAL:
                 below, size_below, jumps = share, found, 0

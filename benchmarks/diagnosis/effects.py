@@ -25,7 +25,7 @@ class Hidden:
 
     ``inverse``: the effect grows with 1/parameter, from an infinite null. ``shapes`` draws the
     remaining parameters, given the largest rotation (rad) without the effect. ``sensor``: it belongs to an
-    instrument, not to the block.
+    instrument, not to the block. ``smallest``: size under which the parameter is beyond the catalogue's range.
     """
 
     name: str
@@ -36,6 +36,7 @@ class Hidden:
     inverse: bool = False
     sensor: bool = False
     shapes: Shapes = field(default=_none)
+    smallest: float = 0.0
 
     def at(self, size: float, end: float) -> float:
         """The parameter at ``size`` (0: null, 1: at ``end``) of the way, in its inverse if need be."""
@@ -84,7 +85,7 @@ ROWS = (
     Hidden("coulomb_damping", "coulomb_damping", "over_m_g_b", (0.1,)),
     Hidden("quadratic_damping", "quadratic_damping", "coefficient", (5.0,)),
     Hidden("degradation", "degradation", "loss_of_restitution_per_impact", (0.03,), shapes=_floor),
-    Hidden("wall_flexibility", "wall_flexibility", "first_frequency", (3.0,), math.inf, inverse=True),
+    Hidden("wall_flexibility", "wall_flexibility", "first_frequency", (3.0,), math.inf, inverse=True, smallest=0.03),
     Hidden("accelerometer_offset", "tilt", "offset", (-0.5, 0.5), sensor=True),
     Hidden("gain", "gain", "gain", (-0.12, 0.12), sensor=True),
     Hidden("offset", "offset", "offset_over_peak", (-0.15, 0.15), sensor=True),
