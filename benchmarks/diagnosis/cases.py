@@ -164,7 +164,7 @@ class _Draft:
                 end = max(end, self.block.true["width"] / self.block.true["height"])
             shapes = row.shapes(self.rng, peak)
 
-            shares = SHARES[SHARES >= row.smallest]
+            shares = SHARES[row.smallest <= SHARES]
             share, reached = self._nominal(lambda x: _alone(row, row.at(x, end), shapes), peak, shares)  # noqa: B023
             value = row.at(share, end)
             if self.wish.relative_size == 0.5:
