@@ -35,10 +35,10 @@ def swings(theta: Signal) -> list[tuple[int, float]]:
 
 
 def impact(theta: Signal, rate: Signal, step: float) -> tuple[float, float]:
-    """Time at which theta first changes its sign, and the largest rate of the swing that ends there."""
+    """Time at which theta first changes its sign, and the speed there, both from the last samples before."""
     end = next(end for end, peak in swings(theta) if peak > MOVED)
     past = theta[end - 1] / (theta[end - 1] - theta[end])
-    return (end - 1 + past) * step, float(np.max(np.abs(rate[:end])))
+    return (end - 1 + past) * step, float(abs(rate[end - 1] + past * (rate[end - 1] - rate[end - 2])))
 
 
 def restitution(before: float, after: float) -> float:
