@@ -11,7 +11,8 @@ from models.interface.lanes import run as lanes
 from models.interface.strip import strip
 from models.rubber import LAWS
 from models.shaking import Shaking
-from tests.models.interface.walls import MODEL, SHORT, wall
+from tests.models.interface.walls import MODEL, SHORT, random_wall, wall
+from tests.models.strategies import random_motion
 
 GIVEN = {
     "hardening": {"hardening.beta2": 20.0},
@@ -44,6 +45,23 @@ def test_lanes_agree_with_the_reference(name: str) -> None:
         fast = lanes.run(one, SHAKING, np.ones(1), samples=41, refinement=refinement).samples[0].T
         error = np.max(np.abs(fast - slow)[:4], axis=1) / np.max(np.abs(slow)[:4], axis=1)
         assert np.max(error) < share
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_lanes_agree_with_the_reference_on_random_walls_and_values(name: str) -> None:
+    rng = np.random.default_rng([7, list(LAWS).index(name)])
+    law = MODEL.mechanisms[name]
+    drawn = {f"{name}.{p.name}": p.low + float(rng.uniform(0.2, 0.8)) * (p.high - p.low) for p in law.parameters}
+    if name == "bouc_wen":  # its exponent is a whole number
+        drawn["bouc_wen.exponent"] = float(rng.integers(1, 5))
+    values, shaking = {**random_wall(rng), **drawn}, random_motion(rng, duration=0.8)
+    one = wall(values)
+    scale = 9.81 * values["aspect_ratio"] * float(rng.uniform(0.5, 1.2))
+    slow = reference.run(one, shaking, scale, duration=0.8, rtol=1e-6).state
+    assert np.max(np.abs(slow[0])) > 1e-3  # it opens
+    fast = lanes.run(one, shaking, np.array([scale]), samples=slow.shape[1]).samples[0].T
+    error = np.max(np.abs(fast - slow)[:4], axis=1) / np.max(np.abs(slow)[:4], axis=1)
+    assert np.max(error) < 4e-3
 
 
 @pytest.mark.parametrize("name", LAWS)
