@@ -21,6 +21,7 @@ from benchmarks.diagnosis.effects import CATALOGUE, Hidden
 from benchmarks.diagnosis.open_laws import LAWS, Law
 from benchmarks.diagnosis.scene import FEWEST_IMPACTS, Effects, FloatArray, Scene, Track, Unsuitable
 from benchmarks.diagnosis.suite import Wish
+from benchmarks.diagnosis.unseen_laws import UNSEEN
 from models.housner.block import build
 from models.housner.lanes import run as lanes
 from models.shaking import Shaking
@@ -155,7 +156,7 @@ class _Draft:
     def _effects(self, peak: float) -> tuple[Effects, list[dict[str, Any]], bool]:
         """The effects at their sizes, as the key tells them, and whether one could not reach its size."""
         if self.wish.kind == "open":
-            return self._open(LAWS[self.wish.names[0]], peak)
+            return self._open({**LAWS, **UNSEEN}[self.wish.names[0]], peak)
         both, told, weak = Effects({}, {}), [], False
         for name in self.wish.names:
             row = CATALOGUE[name]

@@ -1,4 +1,6 @@
-"""Laws that no catalogue lists, invented for this benchmark: read them after the last run, not before.
+"""Laws that no catalogue lists, invented for this benchmark: those of the development seeds.
+
+The evaluation has laws of its own, `unseen_laws`.
 
 A law adds an angular acceleration to theta'', may change the restitution of single impacts, and may
 carry a hidden freedom u (rate v). Its functions get
@@ -54,11 +56,11 @@ class Law:
     lever: int = 0
 
 
-def _no_numbers(rng: np.random.Generator) -> tuple[float, float, float]:
+def no_numbers(rng: np.random.Generator) -> tuple[float, float, float]:
     return 0.0, 0.0, 0.0
 
 
-def _uniform(low: float, high: float) -> Draw:
+def uniform(low: float, high: float) -> Draw:
     return lambda rng: (float(rng.uniform(low, high)), 0.0, 0.0)
 
 
@@ -151,21 +153,21 @@ def _soil(rng: np.random.Generator) -> tuple[float, float, float]:
 LAWS = {
     law.name: law
     for law in (
-        Law("right_damping", "a dashpot works for theta > 0 only", 4.0, _no_numbers, _right_damping),
-        Law("right_restitution", "landings on the right corner lose more", 0.5, _no_numbers, ratio=_right_ratio),
-        Law("passing_stiffness", "a spring holds for part of the time", 0.8, _no_numbers, _passing_stiffness,
+        Law("right_damping", "a dashpot works for theta > 0 only", 4.0, no_numbers, _right_damping),
+        Law("right_restitution", "landings on the right corner lose more", 0.5, no_numbers, ratio=_right_ratio),
+        Law("passing_stiffness", "a spring holds for part of the time", 0.8, no_numbers, _passing_stiffness,
             either=True),
-        Law("stribeck_guide", "a guide whose friction fades with speed", 0.4, _uniform(0.1, 0.3), _stribeck),
-        Law("magnet", "an attraction near the upright position", 0.8, _uniform(0.1, 0.3), _magnet),
-        Law("right_stop", "a spring stop on one side", 6.0, _uniform(0.2, 0.45), _right_stop),
+        Law("stribeck_guide", "a guide whose friction fades with speed", 0.4, uniform(0.1, 0.3), _stribeck),
+        Law("magnet", "an attraction near the upright position", 0.8, uniform(0.1, 0.3), _magnet),
+        Law("right_stop", "a spring stop on one side", 6.0, uniform(0.2, 0.45), _right_stop),
         Law("sloshing", "a mass swings on top", 0.3, _sloshing, _slosh_force, _slosh, lever=2),
-        Law("breathing_restitution", "restitution comes and goes", 0.5, _uniform(4.0, 8.0),
+        Law("breathing_restitution", "restitution comes and goes", 0.5, uniform(4.0, 8.0),
             ratio=_breathing_ratio),
         Law("foundation", "the foundation rocks with a frequency of its own", 6.0, _soil, _on_foundation,
             _foundation, either=True),
-        Law("gust", "a steady couple for part of the time", 0.6, _no_numbers, _gust, either=True),
-        Law("grinding", "damping only near the upright position", 8.0, _uniform(0.15, 0.35), _grinding),
-        Law("late_damping", "a dashpot from some instant on", 4.0, _no_numbers, _late_damping),
-        Law("snubber", "damping on the way out beyond a gap", 10.0, _uniform(0.25, 0.5), _snubber),
+        Law("gust", "a steady couple for part of the time", 0.6, no_numbers, _gust, either=True),
+        Law("grinding", "damping only near the upright position", 8.0, uniform(0.15, 0.35), _grinding),
+        Law("late_damping", "a dashpot from some instant on", 4.0, no_numbers, _late_damping),
+        Law("snubber", "damping on the way out beyond a gap", 10.0, uniform(0.25, 0.5), _snubber),
     )
 }  # fmt: skip

@@ -11,6 +11,7 @@ import numpy as np
 
 from benchmarks.diagnosis.effects import CATALOGUE
 from benchmarks.diagnosis.open_laws import LAWS
+from benchmarks.diagnosis.unseen_laws import UNSEEN
 
 Kind = Literal["null", "single", "pair", "open"]
 
@@ -58,6 +59,7 @@ GROUPS = (
 
 MAKERS = (
     "cases", "effects", "instruments", "open_laws", "scene", "shakings", "size", "specimens", "suite", "truth",
+    "unseen_laws",
 )  # fmt: skip
 """Files that the cases of a seed depend on."""
 
@@ -71,12 +73,16 @@ def place(folder: Path, seed: int) -> Path:
 
 
 def suite(seed: int) -> list[Wish]:
-    """All cases, numbered in the order in which they are run; ``seed`` draws the pairs and the order."""
+    """All cases, numbered in the order in which they are run; ``seed`` draws the pairs and the order.
+
+    Laws outside the catalogue are those kept for the evaluation at its seed, the others at any other.
+    """
+    laws = list(UNSEEN if seed == EVALUATION_SEED else LAWS)
     rng = np.random.default_rng(seed)
     placed: list[tuple[float, Kind, tuple[str, ...], Group]] = []
     for group in GROUPS:
         for kind, count in group.counts.items():
-            for k, names in enumerate(_names(kind, count, group.relative_size, rng)):
+            for k, names in enumerate(_names(kind, count, group.relative_size, laws, rng)):
                 placed.append(((k + float(rng.uniform())) / count, kind, names, group))
     placed.sort(key=lambda item: item[0])
     return [
@@ -85,7 +91,9 @@ def suite(seed: int) -> list[Wish]:
     ]
 
 
-def _names(kind: Kind, count: int, relative_size: float, rng: np.random.Generator) -> list[tuple[str, ...]]:
+def _names(
+    kind: Kind, count: int, relative_size: float, laws: list[str], rng: np.random.Generator
+) -> list[tuple[str, ...]]:
     """Every effect as often as every other one; pairs of two classes at random."""
     if kind == "null":
         return [()] * count
@@ -98,7 +106,7 @@ def _names(kind: Kind, count: int, relative_size: float, rng: np.random.Generato
             if CATALOGUE[first].effect_class != CATALOGUE[second].effect_class:
                 pairs.append((first, second))
         return pairs
-    known = known if kind == "single" else list(LAWS)
+    known = known if kind == "single" else laws
     drawn: list[tuple[str, ...]] = []
     while len(drawn) < count:
         drawn += [(known[i],) for i in rng.permutation(len(known))]

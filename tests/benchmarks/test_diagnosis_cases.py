@@ -14,6 +14,7 @@ from benchmarks.diagnosis.files import write_case
 from benchmarks.diagnosis.open_laws import LAWS
 from benchmarks.diagnosis.size import NOMINAL
 from benchmarks.diagnosis.suite import EVALUATION_SEED, GROUPS, TOO_SMALL, Wish, suite
+from benchmarks.diagnosis.unseen_laws import UNSEEN
 from diagnosis.sensors import SENSORS
 from grids.recordings import noise_of, read_recording
 from grids.specimen import read_specimen
@@ -119,12 +120,12 @@ def test_fine_samples_lie_exactly_on_lines() -> None:
     assert np.all(kinks % shakings.FINE == 0) and kinks.size > 190
 
 
-@pytest.mark.parametrize("name", ["sloshing", "right_restitution"])
+@pytest.mark.parametrize("name", ["sloshing", "right_restitution", "swinging_lamp"])
 def test_own_program_without_its_law_equals_the_reference(name: str) -> None:
     time = shakings.STEP * np.arange(801)
     shaking = shakings.scaled(Shaking(shakings.STEP, np.sin(2 * np.pi * 1.2 * time) * np.exp(-0.3 * time)), 2.1, False)
     fine = shakings.on_fine_grid(shaking)
-    law = LAWS[name]
+    law = {**LAWS, **UNSEEN}[name]
     nothing = truth.Applied(law, 0.0, law.draw(np.random.default_rng(0)), (1.0, 2.0), 0.02)
     own = truth.run(0.3, 1.7, 9.80665, fine.horizontal, fine.time_step, nothing)
     block = build({"width": 0.3, "height": 1.7, "mass": 500.0}, False)
@@ -147,3 +148,6 @@ def test_suite_is_balanced_and_deterministic() -> None:
     assert 0.15 < sum(w.kind == "null" for w in quarter) / sum(w.kind == "null" for w in wishes) < 0.35
     assert len(wishes) == sum(sum(g.counts.values()) for g in GROUPS)
     assert EVALUATION_SEED not in range(1000, 100_000)
+    assert {w.names[0] for w in wishes if w.kind == "open"} == set(LAWS)
+    assert {w.names[0] for w in suite(EVALUATION_SEED) if w.kind == "open"} == set(UNSEEN)
+    assert not set(LAWS) & set(UNSEEN)
