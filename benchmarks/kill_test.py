@@ -105,11 +105,17 @@ def _environment() -> dict[str, str]:
 
 
 def start_run(plan: Path, results: Path, scheduler: str) -> subprocess.Popen[bytes]:
-    """``rocking run`` in a process group of its own."""
+    """``rocking run`` in a process group of its own; it hears Ctrl-C even if this program does not."""
     command = [sys.executable, "-m", "rocking", "run", str(plan), "--results", str(results)]
     command += ["--scheduler", scheduler, *(["--workers", "2"] if "://" not in scheduler else [])]
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE}
-    return subprocess.Popen(command, start_new_session=True, env=_environment(), **quiet)
+    return subprocess.Popen(
+        command,
+        start_new_session=True,
+        env=_environment(),
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+        **quiet,
+    )
 
 
 def finish(plan: Path, results: Path, scheduler: str) -> None:
