@@ -215,25 +215,10 @@ def assemble(values: Values, vertical: bool, size: int | None = None) -> Block:
     )
 
 
-def mechanism_values(values: Values) -> dict[str, dict[str, Any]]:
-    """The values addressed as ``mechanism.parameter``, by mechanism and parameter."""
-    found: dict[str, dict[str, Any]] = {}
-    for key, value in values.items():
-        mechanism, dot, parameter = key.partition(".")
-        if dot:
-            found.setdefault(mechanism, {})[parameter] = value
-    return found
-
-
 def build(values: Values, vertical: bool, size: int | None = None) -> Block:
     """The block with the mechanisms that ``values`` switch on, in the order of the catalogue."""
-    from models.mechanisms import MECHANISMS
+    from models.mechanisms import applied
 
     plain: Mapping[str, Any] = {k: v for k, v in values.items() if "." not in k}
-    switched = mechanism_values(values)
     shape = np.broadcast_shapes(*(np.shape(v) for v in values.values()), (size or 1,))
-    block = assemble(plain, vertical, int(np.prod(shape)))
-    for name, mechanism in MECHANISMS.items():
-        if name in switched:
-            block = mechanism.acts["housner"](block, {**mechanism.nulls, **switched[name]})
-    return block
+    return applied("housner", assemble(plain, vertical, int(np.prod(shape))), values)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
 from models.base import FloatArray
+from models.ground import straight
 from models.housner.block import Block
 from models.housner.pitch import pitch
 from models.shaking import Shaking
@@ -53,7 +53,7 @@ def pieces(block: Block, shaking: Shaking, scale: float, until: float) -> Iterat
             factor * second,
         ]
     )
-    for low, high in _straight(samples):
+    for low, high in straight(samples):
         start, end = low * step, high * step
         if start >= until:
             return
@@ -66,11 +66,3 @@ def pieces(block: Block, shaking: Shaking, scale: float, until: float) -> Iterat
 def _four(values: FloatArray) -> tuple[float, float, float, float]:
     a, gravity, psi, second = values.tolist()
     return a, gravity, psi, second
-
-
-def _straight(samples: FloatArray) -> Iterator[tuple[int, int]]:
-    """Index pairs of the longest runs of constant first difference."""
-    count = samples.shape[1]
-    kinks = np.flatnonzero(np.any(np.diff(samples, n=2, axis=1) != 0.0, axis=0)) + 1
-    knots = [0, *kinks.tolist(), count - 1]
-    yield from ((low, high) for low, high in pairwise(knots) if high > low)

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from models import choices
 from models.base import Event, FloatArray, History, Mechanism, Parameter, Quantity, Values
-from models.errors import InputError, nearest
+from models.errors import InputError
 from models.housner import declaration
 from models.housner.block import Block, build
 from models.shaking import Shaking
@@ -46,9 +47,9 @@ class Housner:
 
     @property
     def mechanisms(self) -> Mapping[str, Mechanism]:
-        from models.mechanisms import MECHANISMS
+        from models.mechanisms import acting_on
 
-        return {name: m for name, m in MECHANISMS.items() if self.name in m.acts}
+        return acting_on(self.name)
 
     def check(self, values: Values) -> list[str]:
         """What has no meaning together: no mass at all, impacts after which the block does not rock, mechanisms
@@ -96,17 +97,8 @@ class Housner:
 
     def _integrator(self, integrator: str, block: Block, options: Mapping[str, str] | None) -> bool:
         """Whether the formulation is linear, after checking that integrator and options go together."""
-        words = dict(options or {})
-        formulation = words.pop("formulation", "nonlinear")
-        if words:
-            name = next(iter(words))
-            raise InputError(f"housner has no option '{name}'; {nearest(name, declaration.OPTIONS)}")
-        if formulation not in declaration.OPTIONS["formulation"]:
-            known = declaration.OPTIONS["formulation"]
-            raise InputError(f"formulation is '{formulation}'; {nearest(formulation, known)}")
-        if integrator not in self.integrators:
-            raise InputError(f"integrator is '{integrator}'; {nearest(integrator, self.integrators)}")
-        linear = formulation == "linear"
+        choices.check_integrator(self, integrator)
+        linear = choices.words(self, options)["formulation"] == "linear"
         if not block.plain and (linear or integrator == "newmark"):
             which = "the linear formulation" if linear else "the integrator newmark"
             raise InputError(
@@ -223,9 +215,7 @@ class Housner:
         count = round(end / shaking.time_step) + 1
         time: FloatArray = np.arange(count, dtype=np.float64) * shaking.time_step
         start = dict(initial or {})
-        for name in start:
-            if name not in self.states:
-                raise InputError(f"[initial] has no state '{name}'; {nearest(name, self.states)}")
+        choices.check_states(self, start)
         if integrator == "lanes":
             from models.housner.lanes import run as lanes
 

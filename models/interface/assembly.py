@@ -99,18 +99,10 @@ def build(
     values: Values, options: Mapping[str, str], vertical: bool, size: int | None = None, model: str = "interface"
 ) -> LayeredWall:
     """The walls with the mechanisms of ``model`` that ``values`` switch on, in the order of the catalogue."""
-    from models.mechanisms import MECHANISMS
+    from models.mechanisms import applied
 
     plain = {k: v for k, v in values.items() if "." not in k}
-    switched: dict[str, dict[str, Any]] = {}
-    for key, value in values.items():
-        mechanism, dot, parameter = key.partition(".")
-        if dot:
-            switched.setdefault(mechanism, {})[parameter] = value
-    wall = assemble(plain, options, vertical, int(np.prod(lanes_shape(values, size))))
-    for name, mechanism_ in MECHANISMS.items():
-        if name in switched:
-            wall = mechanism_.acts[model](wall, {**mechanism_.nulls, **switched[name]})
+    wall = applied(model, assemble(plain, options, vertical, int(np.prod(lanes_shape(values, size)))), values)
     for joint in wall.rubber_joints:
         option = f"{joint}_rubber_law"
         word = options["rubber_law"] if options[option] == "same" else options[option]

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from models import choices
 from models.base import Event, FloatArray, History, Mechanism, Parameter, Quantity, Values
-from models.errors import InputError, nearest
 from models.interface import declaration, modes
 from models.interface.assembly import build
 from models.interface.layered import LayeredWall
@@ -49,20 +49,13 @@ class Interface:
 
     @property
     def mechanisms(self) -> Mapping[str, Mechanism]:
-        from models.mechanisms import MECHANISMS
+        from models.mechanisms import acting_on
 
-        return {name: m for name, m in MECHANISMS.items() if self.name in m.acts}
+        return acting_on(self.name)
 
     def words(self, options: Mapping[str, str] | None) -> dict[str, str]:
         """Every option with its word, the default where none is given."""
-        chosen = {name: known[0] for name, known in self.options.items()}
-        for name, word in (options or {}).items():
-            if name not in chosen:
-                raise InputError(f"{self.name} has no option '{name}'; {nearest(name, chosen)}")
-            if word not in self.options[name]:
-                raise InputError(f"{name} is '{word}'; {nearest(word, self.options[name])}")
-            chosen[name] = word
-        return chosen
+        return choices.words(self, options)
 
     def _part(self, name: str) -> Any:
         """A module of this model's folder: ``lanes.run``, ``reference``, ``observe``."""
@@ -117,10 +110,6 @@ class Interface:
             raise ValueError(f"values broadcast to {wall.size} lanes, {size} are asked for")
         return wall
 
-    def _integrator(self, integrator: str) -> None:
-        if integrator not in self.integrators:
-            raise InputError(f"integrator is '{integrator}'; {nearest(integrator, self.integrators)}")
-
     def evaluate(
         self,
         values: Values,
@@ -135,7 +124,7 @@ class Interface:
         """Outputs ``(n,)`` of n lanes under ``scale`` (n,) times the shaking; see `Model.evaluate`."""
         scale = np.atleast_1d(np.asarray(scale, float))
         wall = self._shaken(values, options, shaking, scale.size)
-        self._integrator(integrator)
+        choices.check_integrator(self, integrator)
         if integrator == "lanes":
             lanes = self._part("lanes.run")
             found = lanes.outputs(wall, lanes.run(wall, shaking, scale, tail=tail).result)
@@ -195,13 +184,11 @@ class Interface:
         overturns stay where a body reached pi/2.
         """
         wall = self._shaken(values, options, shaking, 1)
-        self._integrator(integrator)
+        choices.check_integrator(self, integrator)
         end = shaking.duration + tail if duration is None else duration
         count = round(end / shaking.time_step) + 1
         time: FloatArray = np.arange(count, dtype=np.float64) * shaking.time_step
-        for name in initial or {}:
-            if name not in self.states:
-                raise InputError(f"[initial] has no state '{name}'; {nearest(name, self.states)}")
+        choices.check_states(self, initial or {})
         if integrator == "lanes":
             lanes = self._part("lanes.run")
             ran = lanes.run(

@@ -10,11 +10,11 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from models.base import Event, FloatArray
+from models.ground import Piece, pieces
 from models.interface import modes, watch
 from models.interface.account import Account
 from models.interface.declaration import CALM, STATES
 from models.interface.equation import Equation, power
-from models.interface.ground import Piece, pieces
 from models.interface.layered import LayeredWall
 from models.shaking import Shaking
 

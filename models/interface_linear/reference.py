@@ -12,9 +12,9 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from models.base import FloatArray
+from models.ground import Piece, pieces
 from models.interface.account import Account
 from models.interface.declaration import CALM, STATES
-from models.interface.ground import Piece, pieces
 from models.interface.layered import LayeredWall
 from models.interface.modes import static_state
 from models.interface.reference import ReferenceResult

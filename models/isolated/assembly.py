@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
@@ -48,7 +47,7 @@ def complaints(values: Values) -> list[str]:
 
 def build(values: Values, options: Mapping[str, str], size: int | None = None) -> Chain:
     """The buildings with the mechanisms that ``values`` switch on; raises InputError."""
-    from models.mechanisms import acting_on
+    from models.mechanisms import applied
 
     for sentence in complaints(values):
         raise InputError(sentence)
@@ -72,14 +71,7 @@ def build(values: Values, options: Mapping[str, str], size: int | None = None) -
         damping=value("bearing_damping"),
         thickness=value("rubber_thickness"),
     )
-    switched: dict[str, dict[str, Any]] = {}
-    for key, given in values.items():
-        mechanism, dot, parameter = key.partition(".")
-        if dot:
-            switched.setdefault(mechanism, {})[parameter] = given
-    for name, acting in acting_on("isolated").items():
-        if name in switched:
-            chain = acting.acts["isolated"](chain, {**acting.nulls, **switched[name]})
+    chain = applied("isolated", chain, values)
     law = options["rubber_law"]
     if law == "as_given":
         return chain

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from models import choices
 from models.base import Event, FloatArray, History, Mechanism, Parameter, Quantity, Values
-from models.errors import InputError, nearest
 from models.isolated import declaration, modes
 from models.isolated.assembly import build, complaints
 from models.isolated.chain import Chain
@@ -52,14 +52,7 @@ class Isolated:
 
     def words(self, options: Mapping[str, str] | None) -> dict[str, str]:
         """Every option with its word, the default where none is given."""
-        chosen = {name: known[0] for name, known in declaration.OPTIONS.items()}
-        for name, word in (options or {}).items():
-            if name not in chosen:
-                raise InputError(f"isolated has no option '{name}'; {nearest(name, chosen)}")
-            if word not in declaration.OPTIONS[name]:
-                raise InputError(f"{name} is '{word}'; {nearest(word, declaration.OPTIONS[name])}")
-            chosen[name] = word
-        return chosen
+        return choices.words(self, options)
 
     def check(self, values: Values) -> list[str]:
         """Values that describe no building: levels without a mass, storeys without a stiffness, and so on."""
@@ -75,10 +68,6 @@ class Isolated:
             raise ValueError(f"values broadcast to {chain.size} lanes, {size} are asked for")
         return chain
 
-    def _integrator(self, integrator: str) -> None:
-        if integrator not in self.integrators:
-            raise InputError(f"integrator is '{integrator}'; {nearest(integrator, self.integrators)}")
-
     def evaluate(
         self,
         values: Values,
@@ -93,7 +82,7 @@ class Isolated:
         """Outputs ``(n,)`` of n lanes under ``scale`` (n,) times the shaking; see `Model.evaluate`."""
         scale = np.atleast_1d(np.asarray(scale, float))
         chain = self._chain(values, options, scale.size)
-        self._integrator(integrator)
+        choices.check_integrator(self, integrator)
         found: Mapping[str, FloatArray]
         if integrator == "lanes":
             from models.isolated.lanes import run as lanes
@@ -155,13 +144,11 @@ class Isolated:
         ``duration`` (s) cuts the run or lengthens it beyond the shaking. Channels by level are ``(levels, n_times)``.
         """
         chain = self._chain(values, options, 1)
-        self._integrator(integrator)
+        choices.check_integrator(self, integrator)
         end = shaking.duration + tail if duration is None else duration
         count = round(end / shaking.time_step) + 1
         time: FloatArray = np.arange(count, dtype=np.float64) * shaking.time_step
-        for name in initial or {}:
-            if name not in self.states:
-                raise InputError(f"[initial] has no state '{name}'; {nearest(name, self.states)}")
+        choices.check_states(self, initial or {})
         if integrator == "lanes":
             from models.isolated.lanes import run as lanes
 

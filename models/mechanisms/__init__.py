@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from models.base import Mechanism
+from typing import Any, TypeVar
+
+from models.base import Mechanism, Values
+from models.errors import InputError
 from models.mechanisms import (
     added_stiffness,
     bouc_wen,
@@ -61,8 +64,26 @@ MECHANISMS: dict[str, Mechanism] = {
 }
 """In the order in which they act on a model's coefficients."""
 
+Coefficients = TypeVar("Coefficients")
+
 
 def acting_on(model: str) -> dict[str, Mechanism]:
     """The mechanisms that act on ``model``, in the form that they have there."""
     found = {name: mechanism.on(model) for name, mechanism in MECHANISMS.items()}
     return {name: form for name, form in found.items() if form is not None}
+
+
+def applied(model: str, coefficients: Coefficients, values: Values) -> Coefficients:
+    """What the mechanisms that ``values`` switch on (as ``mechanism.parameter``) make of a model's coefficients."""
+    switched: dict[str, dict[str, Any]] = {}
+    for key, value in values.items():
+        mechanism, dot, parameter = key.partition(".")
+        if dot:
+            switched.setdefault(mechanism, {})[parameter] = value
+    for name in MECHANISMS:
+        if name in switched:
+            form = MECHANISMS[name].on(model)
+            if form is None:
+                raise InputError(f"the mechanism {name} does not act on the model {model}: leave it out")
+            coefficients = form.acts[model](coefficients, {**form.nulls, **switched[name]})
+    return coefficients

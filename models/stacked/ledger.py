@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from models.base import Event, FloatArray
+from models.ground import Piece
 from models.stacked import account as acc
 from models.stacked.configuration import State, index
 from models.stacked.equation import reactions, vectors
-from models.stacked.ground import Piece
 from models.stacked.stack import Stack
 
 

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from models import choices
 from models.base import Event, FloatArray, History, Mechanism, Parameter, Quantity, Values
-from models.errors import InputError, nearest
 from models.shaking import Shaking
 from models.stacked import account, declaration
 from models.stacked.observe import initial_state, observe, settled_history
@@ -49,9 +49,9 @@ class Stacked:
 
     @property
     def mechanisms(self) -> Mapping[str, Mechanism]:
-        from models.mechanisms import MECHANISMS
+        from models.mechanisms import acting_on
 
-        return {name: m for name, m in MECHANISMS.items() if self.name in m.acts}
+        return acting_on(self.name)
 
     def check(self, values: Values) -> list[str]:
         """What has no meaning together: a density without thickness, a stack that does not stand by itself."""
@@ -101,14 +101,8 @@ class Stacked:
 
     def _linear(self, integrator: str, options: Mapping[str, str] | None) -> bool:
         """Whether the formulation is linear, after checking the words."""
-        for name, word in (options or {}).items():
-            if name not in self.options:
-                raise InputError(f"stacked has no option '{name}'; {nearest(name, self.options)}")
-            if word not in self.options[name]:
-                raise InputError(f"{name} is '{word}'; {nearest(word, self.options[name])}")
-        if integrator not in self.integrators:
-            raise InputError(f"integrator is '{integrator}'; {nearest(integrator, self.integrators)}")
-        return dict(options or {}).get("formulation") == "linear"
+        choices.check_integrator(self, integrator)
+        return choices.words(self, options)["formulation"] == "linear"
 
     def evaluate(
         self,
@@ -190,9 +184,7 @@ class Stacked:
         quiet = tail if duration is None else max(0.0, duration - shaking.duration)
         end = shaking.duration + quiet if duration is None else duration
         count = round(end / shaking.time_step) + 1
-        for name in initial or {}:
-            if name not in self.states:
-                raise InputError(f"[initial] has no state '{name}'; {nearest(name, self.states)}")
+        choices.check_states(self, initial or {})
         start = initial_state(initial or {}, 1)
         if integrator == "lanes":
             from models.stacked.lanes import run as lanes

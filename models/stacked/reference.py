@@ -15,12 +15,12 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from models.base import Event, FloatArray
+from models.ground import Piece, pieces
 from models.shaking import Shaking
 from models.stacked import account as acc
 from models.stacked.configuration import BASE, JOINTS, TOP, State
 from models.stacked.declaration import MOST_EVENTS_PER_STEP
 from models.stacked.equation import held
-from models.stacked.ground import Piece, pieces
 from models.stacked.joints import Joints
 from models.stacked.ledger import Ledger
 from models.stacked.overturning import margins
@@ -65,7 +65,7 @@ def run(
     grid = shaking.time_step * np.arange(math.floor(until / shaking.time_step + 1e-9) + 1, dtype=np.float64)
     wall = _Run(stack, linear, grid, rtol, follow)
     before: tuple[float, float] | None = None
-    for piece in pieces(stack.one(), shaking, scale, until):
+    for piece in pieces(stack, shaking, scale, until):
         if before is None:
             wall.begin(dict(initial or {}), piece)
         elif before != piece.first and any(wall.joints.state.sides):

@@ -180,16 +180,7 @@ def at_joint(values: Values, name: str, joint: str) -> Any:
 
 def build(values: Values, vertical: bool, size: int | None = None) -> Stack:
     """The stack with the mechanisms that ``values`` switch on, in the order of the catalogue."""
-    from models.mechanisms import MECHANISMS
+    from models.mechanisms import applied
 
     plain: Mapping[str, Any] = {k: v for k, v in values.items() if "." not in k}
-    switched: dict[str, dict[str, Any]] = {}
-    for key, value in values.items():
-        mechanism, dot, parameter = key.partition(".")
-        if dot:
-            switched.setdefault(mechanism, {})[parameter] = value
-    stack = assemble(plain, vertical, int(np.prod(lanes_shape(values, size))))
-    for name, acting in MECHANISMS.items():
-        if name in switched:
-            stack = acting.acts["stacked"](stack, {**acting.nulls, **switched[name]})
-    return stack
+    return applied("stacked", assemble(plain, vertical, int(np.prod(lanes_shape(values, size)))), values)
