@@ -50,7 +50,7 @@ def statement(
         if located:
             parts.append(_where(located))
     if effects:
-        told = [_effect(effect, known[effect.name]) for effect in effects]
+        told = [effect_told(effect, known[effect.name]) for effect in effects]
         opening = "Best explanation" if verdict in ("missing", "cannot_tell_apart") else "What the library can say"
         parts.append(f"{opening}: {'; and '.join(told)}.")
     if verdict == "not_in_library":
@@ -96,21 +96,23 @@ def _where(located: Sequence[Located]) -> str:
     )
 
 
-def _effect(effect: Effect, mechanism: Mechanism) -> str:
+def effect_told(effect: Effect, mechanism: Mechanism) -> str:
+    """An effect in the library's sentence, with its interval and evidence."""
     values = {name: e.estimate for name, e in effect.parameters.items()}
-    sentence = mechanism.sentence.format_map({**mechanism.nulls, **values})
-    main = effect.parameters[next(iter(effect.parameters))]
-    form = _form(mechanism, next(iter(effect.parameters)))
+    sentence = mechanism.sentence_for(values)
+    name, main = next(iter(effect.parameters.items()))
+    form = _form(sentence, name)
     low, high = (format(end, form or ".4g") for end in (main.low95, main.high95))
     unit = "" if main.unit == "1" or form else f" {main.unit}"
-    name = effect.name.replace("_", " ")
     bound = ", at the end of its range" if main.at_bound else ""
-    return f"{name}: {sentence} (95 % interval {low} to {high}{unit}{bound}; evidence {effect.evidence:.0f})"
+    said = sentence.format_map({**mechanism.nulls, **values})
+    interval = f"95 % interval {low} to {high}{unit}{bound}"
+    return f"{effect.name.replace('_', ' ')}: {said} ({interval}; evidence {effect.evidence:.0f})"
 
 
-def _form(mechanism: Mechanism, parameter: str) -> str:
+def _form(sentence: str, parameter: str) -> str:
     """How the sentence writes the parameter where it writes it in percent, else empty."""
-    forms = (form or "" for _, name, form, _ in Formatter().parse(mechanism.sentence) if name == parameter)
+    forms = (form or "" for _, name, form, _ in Formatter().parse(sentence) if name == parameter)
     return next((form for form in forms if form.endswith("%")), "")
 
 

@@ -90,6 +90,8 @@ class Mechanism:
     source: str = ""
     at_joints: tuple[str, ...] = ()
     """Models on which ``parameter_base`` and ``parameter_top`` address one joint alone."""
+    sentences: Mapping[str, str] = field(default_factory=dict)
+    """By parameter: the sentence where the mechanism acts through that one alone, instead of its first."""
     forms: tuple[Mechanism, ...] = ()
     """The same mechanism on models where its equation has other parameters."""
 
@@ -114,6 +116,14 @@ class Mechanism:
             for p in self.parameters
             for joint, where in places
         )
+
+    def sentence_for(self, given: Mapping[str, float]) -> str:
+        """The sentence, still with its braces, for the parameters that are ``given`` a value off their null."""
+        nulls = self.nulls
+        off = [name for name, value in given.items() if value != nulls.get(name)]
+        if self.parameters[0].name in off:
+            return self.sentence
+        return next((self.sentences[name] for name in off if name in self.sentences), self.sentence)
 
     @property
     def nulls(self) -> dict[str, float]:

@@ -33,7 +33,7 @@ def extend(specimen: Specimen, diagnosis: Diagnosis) -> Specimen:
             parameters |= {name: value.estimate for name, value in effect.parameters.items()}
         else:
             fitted = {name: value.estimate for name, value in effect.parameters.items()}
-            mechanisms[effect.name] = {**mechanisms.get(effect.name, {}), **fitted}
+            mechanisms[effect.name] = {**_off(effect.name, model), **mechanisms.get(effect.name, {}), **fitted}
     unknown = {name: ends for name, ends in specimen.calibrate.items() if name not in diagnosis.base}
     return replace(
         specimen,
@@ -44,3 +44,12 @@ def extend(specimen: Specimen, diagnosis: Diagnosis) -> Specimen:
         tolerance={name: value for name, value in specimen.tolerance.items() if name in parameters},
         mechanisms=mechanisms,
     )
+
+
+def _off(name: str, model: str) -> dict[str, float]:
+    """The null of a mechanism's own parameters: what acts through a shape alone (a high-pass) names them too."""
+    import models
+    from diagnosis.sensors import SENSORS
+
+    mechanism = {**models.get(model).mechanisms, **SENSORS}[name]
+    return {p.name: p.null for p in mechanism.parameters if not p.shape}

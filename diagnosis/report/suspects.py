@@ -23,15 +23,19 @@ class Suspect:
     signature: str = ""
     source: str = ""
     meanings: Mapping[str, str] = field(default_factory=dict)
-    nulls: Mapping[str, float] = field(default_factory=dict)
+    mechanism: Mechanism | None = None
 
     def says(self, estimates: Mapping[str, float]) -> str:
         """The library's sentence with the estimates in place; shapes that were not fitted at their default.
 
         The equation where there is nothing to put in place.
         """
-        values = {**self.nulls, **{name.rpartition(".")[2]: value for name, value in estimates.items()}}
-        return self.sentence.format(**values) if estimates else self.equation or self.sentence
+        given = {name.rpartition(".")[2]: value for name, value in estimates.items()}
+        if not given:
+            return self.equation or self.sentence
+        if self.mechanism is None:
+            return self.sentence
+        return self.mechanism.sentence_for(given).format_map({**self.mechanism.nulls, **given})
 
 
 def suspect_of(name: str, model: str) -> Suspect:
@@ -43,4 +47,4 @@ def suspect_of(name: str, model: str) -> Suspect:
     if found is None:
         return Suspect(name, OTHER_BASES.get(name, name.replace("_", " ")))
     meanings = {p.name: p.meaning for p in found.parameters}
-    return Suspect(name, found.sentence, found.equation, found.signature, found.source, meanings, found.nulls)
+    return Suspect(name, found.sentence, found.equation, found.signature, found.source, meanings, found)

@@ -113,6 +113,10 @@ MECHANISM = Mechanism(
     equation="recorded = causal Butterworth low-pass (corner_hz, order) of true, every response channel",
     signature="at impacts and above the corner; a lag of all channels",
     sentence="the response channels went through a causal low-pass of order {order:.0f} at {corner_hz:.3g} Hz",
+    sentences={
+        "high_pass_hz": "the response channels went through a causal high-pass of order {order:.0f} at "
+        "{high_pass_hz:.3g} Hz"
+    },
     acts={"response": respond, "lag": delay, "windowed": respond_in_windows},
     source="anti-alias and display filters of loggers",
 )  # fmt: skip

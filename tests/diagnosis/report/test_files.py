@@ -13,7 +13,10 @@ import xarray as xr
 
 from diagnosis.report import diagnosis_json, extend
 from diagnosis.result import Effect, Estimate, Verdict
+from grids.write_specimen import write_specimen
+from models.shaking import Shaking
 from rocking import read_specimen
+from rocking.instruments import simulate_recorded
 from tests.diagnosis.report.example import diagnosis, recordings, specimen
 from tests.diagnosis.report.schema import AnswerFile
 
@@ -59,6 +62,18 @@ def test_extended_specimen_holds_what_was_calibrated() -> None:
     found = extend(unsure, replace(diagnosis(), base=fitted))
     assert found.calibrate == {} and found.parameters["restitution"] == 0.91
     assert found.mechanisms["viscous_damping"] == {"rate": 0.1}
+
+
+def test_a_high_pass_reads_back_and_is_simulated(tmp_path: Path) -> None:
+    """The only mechanism that may act through a parameter other than its first."""
+    pole = {"high_pass_hz": Estimate(3.6, 3.0, 4.4, "Hz"), "order": Estimate(1.0, 1.0, 1.0, "1")}
+    found = replace(diagnosis(), effects=(Effect("filter", "filter", pole, 80.0, 1e-6),))
+    write_specimen(extend(specimen(), found), tmp_path / "extended.toml")
+    block = read_specimen(tmp_path / "extended.toml")
+    assert block.mechanisms["filter"] == {"corner_hz": np.inf, "high_pass_hz": 3.6, "order": 1.0}
+    shaking = Shaking(0.005, 3.0 * np.sin(np.arange(600) * 0.04))
+    plain, seen = (simulate_recorded(b, shaking, 1.0)["rotation_1"] for b in (specimen(), block))
+    assert float(abs(seen - plain).max()) > 0.1 * float(abs(plain).max())
 
 
 def test_nothing_missing_leaves_the_specimen_its_name_and_mechanisms() -> None:
