@@ -17,8 +17,9 @@ import models
 from grids.netcdf_lock import NETCDF_LOCK
 from grids.plan import Plan
 from models.base import Quantity
+from study.derived import derived_coordinates
 from study.keys import Setting
-from study.labels import Coordinate, axis_coordinates, derived_coordinates, describe, motion_coordinates
+from study.labels import Coordinate, axis_coordinates, describe, motion_coordinates
 from study.manifest import Manifest
 from study.provenance import as_json, attribute, commit, machine, now, sha256, versions
 from study.status import FAILED, NOT_RUN

@@ -35,7 +35,7 @@ def evaluate(setting: Setting, motions: Mapping[str, Motion], cells: Coordinates
     model = models.get(setting.model)
     size = len(next(iter(cells.values()))) if cells else 1
     results: dict[str, NDArray[Any]] = {}
-    for key, index in _groups(model, cells, size):
+    for key, index in like_cells(model, cells, size):
         values, scaling = _split({**setting.fixed, **{k: v[index] for k, v in cells.items() if k not in key}})
         words = {k: str(v) for k, v in key.items() if k in model.options}
         motion = motions[key[MOTION]] if MOTION in key else next(iter(motions.values()))
@@ -64,8 +64,8 @@ def lane_groups(model: Model, name: str) -> bool:
     return name in (MOTION, "time_scale") or name in model.options
 
 
-def _groups(model: Model, cells: Coordinates, size: int) -> Iterator[tuple[dict[str, Any], NDArray[np.intp]]]:
-    """The values that a call takes once, and the indices of the cells that share them."""
+def like_cells(model: Model, cells: Coordinates, size: int) -> Iterator[tuple[dict[str, Any], NDArray[np.intp]]]:
+    """The values that a call of the model takes once, and the indices of the cells that share them."""
     names = [name for name in cells if lane_groups(model, name)]
     group = np.zeros(size, dtype=np.intp)
     levels: list[NDArray[Any]] = []

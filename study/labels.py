@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from itertools import product
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from grids.axes import Axis
 from grids.plan import Plan
 from grids.targets import MOTION, SCALES
 from models.base import STATUS, Model, Parameter, Quantity
-from study.evaluate import SCALING, lane_groups
 from study.keys import motions_by_name
 
 
@@ -90,59 +87,3 @@ def motion_coordinates(plan: Plan) -> list[Coordinate]:
         ]
     peaks = np.array([motions[value].pga for value in along.sets[MOTION].tolist()])
     return [Coordinate("record_pga", (along.name,), peaks, peak)]
-
-
-def derived_coordinates(plan: Plan, model: Model) -> list[Coordinate]:
-    """The model's constants (alpha, R, p ...), each over only the axes on which it depends."""
-    axes = [axis for axis in plan.axes if any(_physical(model, n) or n in model.options for n in axis.sets)]
-    corners = [np.unique([0, axis.size // 2, axis.size - 1]) for axis in axes]
-    trial = _derive(plan, model, axes, corners)
-    found = []
-    for quantity in model.derived:
-        values = trial[quantity.name]
-        used = [k for k in range(len(axes)) if not _constant(values, k)]
-        positions = [np.arange(axis.size) if k in used else np.array([0]) for k, axis in enumerate(axes)]
-        dims = tuple(axes[k].name for k in used)
-        whole = _derive(plan, model, axes, positions)[quantity.name]
-        shape = [axes[k].size for k in used]
-        found.append(Coordinate(quantity.name, dims, whole.reshape(shape), describe(quantity)))
-    return found
-
-
-def _physical(model: Model, name: str) -> bool:
-    return name not in SCALING and not lane_groups(model, name)
-
-
-def _constant(values: NDArray[Any], axis: int) -> bool:
-    first = np.take(values, [0], axis=axis)
-    return bool(np.all((values == first) | (np.isnan(values) & np.isnan(first))))
-
-
-def _derive(plan: Plan, model: Model, axes: list[Axis], positions: list[NDArray[np.intp]]) -> dict[str, NDArray[Any]]:
-    """Derived constants over the product of some positions of each axis."""
-    shape = tuple(p.size for p in positions)
-    index = np.array(list(product(*positions)), dtype=np.intp).reshape(-1, len(axes))
-    values: dict[str, Any] = {
-        name: np.full(len(index), value) for name, value in plan.fixed.items() if _physical(model, name)
-    }
-    words: dict[str, NDArray[Any]] = {}
-    for k, axis in enumerate(axes):
-        for name, points in axis.sets.items():
-            if _physical(model, name):
-                values[name] = np.asarray(points)[index[:, k]]
-            elif name in model.options:
-                words[name] = np.asarray(points)[index[:, k]]
-    found = {quantity.name: np.empty(len(index)) for quantity in model.derived}
-    for rows, chosen in _by_words(words, len(index)):
-        derived = model.derive({name: v[rows] for name, v in values.items()}, {**plan.options, **chosen})
-        for name, v in derived.items():
-            found[name][rows] = v
-    return {name: v.reshape(shape) for name, v in found.items()}
-
-
-def _by_words(words: dict[str, NDArray[Any]], count: int) -> Iterator[tuple[NDArray[np.intp], dict[str, str]]]:
-    """The rows that share their option words, with these: a model takes them once a call."""
-    each = list(zip(*(w.tolist() for w in words.values()), strict=True)) if words else [()] * count
-    for chosen in dict.fromkeys(each):
-        rows = np.array([k for k, own in enumerate(each) if own == chosen], dtype=np.intp)
-        yield rows, dict(zip(words, map(str, chosen), strict=True))

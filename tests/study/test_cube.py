@@ -16,8 +16,8 @@ import models
 from grids.plan import read_plan
 from models.base import STATUS
 from models.errors import InputError
+from study.derived import derived_coordinates
 from study.export import export
-from study.labels import derived_coordinates
 from study.open import open_study
 from study.provenance import attribute, sha256
 from study.run import run
