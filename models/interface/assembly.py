@@ -91,7 +91,11 @@ def assemble(values: Values, options: Mapping[str, str], vertical: bool, size: i
 
 def _needed(found: FloatArray | None, joint: str, name: str) -> FloatArray:
     if found is None:
-        raise InputError(f"the {joint} layer has no {name}: give {name} (both layers) or {joint}_{name}")
+        other = "top" if joint == "base" else "base"
+        raise InputError(
+            f"the {joint} layer has no {name}: give {name} (both layers) or {joint}_{name}; "
+            f"if there is no rubber at the {joint}, set joints = '{other}' in [options]"
+        )
     return found
 
 
