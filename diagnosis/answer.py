@@ -22,7 +22,7 @@ from diagnosis.rescale import to_true_peak
 from diagnosis.result import Diagnosis, Effect, Estimate, Rival, Screened, Verdict
 from diagnosis.select import Progress, search, take_best_single
 from diagnosis.sensors import SENSORS
-from diagnosis.setup import base_fit, measure
+from diagnosis.setup import base_fit, measure, silent
 from diagnosis.statement import statement
 from diagnosis.whole_runs import with_runs_from_rest
 from grids.recordings.base import Recording
@@ -32,17 +32,13 @@ INADEQUATE = 1.35
 """Misfit per sample of the final model beyond which no mechanism of the library is adequate."""
 
 
-def _silent(text: str, share: float) -> None:
-    """No progress shown."""
-
-
 def diagnose(
     specimen: Specimen,
     training: Sequence[Recording],
     holdout: Sequence[Recording] = (),
     *,
     bootstrap: int = 0,
-    progress: Progress = _silent,
+    progress: Progress = silent,
     seed: int = 0,
 ) -> Diagnosis:
     """What the model leaves out, from ``training``, shown on ``holdout``.
@@ -103,7 +99,8 @@ def _assemble(
     train = fit_figures(shown[0], missing)
     held_fit = fit_figures(held, missing) if held else None
     sensors_only = bool(effects) and all(e.name in SENSORS for e in effects)
-    located = locate(shown[0], at_base, sensors_only, seed) if missing else ()
+    explained = found.best is not None and verdict != "not_in_library"
+    located = locate(shown[0], at_base, sensors_only, explained, seed) if missing else ()
     rivals_told = tuple(Rival(c.name, c.effect_class, gap) for _, c, gap in near)
     experiment = next_experiment(found, near) if finished and verdict == "cannot_tell_apart" else None
     known = {**measured.model.mechanisms, **SENSORS}

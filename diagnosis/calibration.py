@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from diagnosis.fit import Fitted
-from diagnosis.heldout import relative_misfit
+from diagnosis.heldout import frozen, relative_misfit
 from diagnosis.intervals import correlation, estimates, profile_rise
 from diagnosis.measured import Measured
+from diagnosis.refit import Explanation
 from diagnosis.result import Estimate
-from diagnosis.setup import base_fit, measure
+from diagnosis.select import Progress
+from diagnosis.setup import base_fit, measure, silent
 from grids.recordings.base import Recording
 from grids.specimen import Specimen
 from models.base import FloatArray
+from models.errors import InputError
 
 PROFILE_POINTS = (-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0)
 """Half widths of the interval at which a profile is evaluated, over 1.96."""
@@ -25,9 +28,10 @@ PROFILE_POINTS = (-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0)
 class Calibration:
     """Fitted base parameters.
 
-    ``correlation`` (k, k) in the order of ``parameters``; ``misfit`` relative rms, ``noise_floor`` the same
-    of the noise; ``profiles``: by parameter, values and the rise of 2 log likelihood below the optimum;
-    ``by_recording``: the same estimates from each recording alone (the drift), with several recordings.
+    ``correlation`` (k, k) in the order of ``parameters``; ``misfit`` relative rms, states estimated as
+    `diagnose` does for its "before", ``noise_floor`` the same of the noise; ``profiles``: by parameter,
+    values and the rise of the loss (-2 log likelihood) over the optimum; ``by_recording``: the same
+    estimates from each recording alone (the drift), with several recordings.
     """
 
     parameters: Mapping[str, Estimate]
@@ -54,31 +58,65 @@ class Calibration:
 
 
 def calibrate(
-    specimen: Specimen, recordings: Sequence[Recording], *, profile: bool = True, seed: int = 0
+    specimen: Specimen,
+    recordings: Sequence[Recording],
+    *,
+    profile: bool = True,
+    seed: int = 0,
+    progress: Progress = silent,
 ) -> Calibration:
     """Fit the toleranced parameters and those of [calibrate]; no mechanism is looked for.
 
-    Raises InputError when nothing can be compared.
+    ``progress`` is called with (what is being done, share done). Raises InputError when nothing is
+    uncertain or nothing can be compared.
     """
+    if not specimen.tolerance and not specimen.calibrate:
+        raise InputError(
+            f"nothing to calibrate in '{specimen.title}': no parameter has a [tolerance] or a range in [calibrate]; "
+            "give one, for instance [tolerance] width = 0.005 (one sigma, relative)."
+        )
     measured = measure(specimen, recordings)
+    alone = list(recordings) if len(recordings) > 1 else []
+    profiles = len(specimen.tolerance) + len(specimen.calibrate) if profile else 0
+    steps = _steps(progress, 1 + len(alone) + 2 * profiles)
+    steps("fitting all recordings together")
     fitted = base_fit(specimen, measured, seed)
     by_recording = {}
-    if len(recordings) > 1:
-        for recording in recordings:
-            alone = measure(specimen, [recording], measured.reference_peak)
-            by_recording[recording.name] = estimates(base_fit(specimen, alone, seed))
-    return summary(fitted, measured, profile, by_recording)
+    for recording in alone:
+        steps(f"fitting {recording.name} alone")
+        by_recording[recording.name] = estimates(
+            base_fit(specimen, measure(specimen, [recording], measured.reference_peak), seed)
+        )
+    return _summary(fitted, measured, profile, by_recording, steps)
 
 
-def summary(
-    fitted: Fitted, measured: Measured, profile: bool, by_recording: Mapping[str, Mapping[str, Estimate]]
+def _steps(progress: Progress, count: int) -> Callable[[str], None]:
+    """Tells ``progress`` of ``count`` steps of about the same length, as each begins."""
+    begun = iter(range(count))
+    return lambda text: progress(text, next(begun) / count)
+
+
+def _summary(
+    fitted: Fitted,
+    measured: Measured,
+    profile: bool,
+    by_recording: Mapping[str, Mapping[str, Estimate]],
+    steps: Callable[[str], None],
 ) -> Calibration:
     misfit = fitted.misfit
     names = [x.name for x in misfit.unknowns]
     point = misfit.point(fitted.u, fitted.states)
-    predicted = misfit.predictor.predict([point])[0]
     residual = misfit.residuals([point])[0]
-    found = estimates(fitted, names if profile else ())
+    found = estimates(fitted)
+    profiles = {}
+    if profile:
+        for name in names:
+            steps(f"interval of {name} by profile likelihood")
+            found[name] = estimates(fitted, [name])[name]
+        for i, name in enumerate(names):
+            steps(f"profile of {name}")
+            profiles[name] = _profile(fitted, i, found[name])
+    _, predicted = frozen(Explanation((), fitted), measured)
     return Calibration(
         parameters=found,
         correlation=correlation(fitted),
@@ -86,7 +124,7 @@ def summary(
         noise_floor=relative_misfit(measured, None),
         misfit_per_sample=float(np.sum(residual**2) / measured.count.sum()),
         windows=len(measured.windows),
-        profiles={n: _profile(fitted, i, found[n]) for i, n in enumerate(names)} if profile else {},
+        profiles=profiles,
         by_recording=by_recording,
     )
 

@@ -20,6 +20,10 @@ from models.base import Model
 from models.errors import InputError
 
 
+def silent(text: str, share: float) -> None:
+    """No progress shown."""
+
+
 def vertical_acts(specimen: Specimen, model: Model, recordings: Sequence[Recording]) -> bool:
     """Whether the base model feels the measured vertical motion."""
     if specimen.vertical is not None:

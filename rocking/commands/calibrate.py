@@ -22,8 +22,8 @@ def calibrate(
 ) -> None:
     """Fit the specimen's uncertain parameters to recordings; nothing missing is looked for.
 
-    Prints estimates, 95 % intervals (by profile likelihood), bounds hit and correlations; with several
-    recordings also what each of them says alone (the drift).
+    Prints estimates, 95 % intervals (by profile likelihood), bounds hit, correlations and the profiles; with
+    several recordings also what each of them says alone (the drift).
     """
     from rich.console import Console
 
@@ -32,16 +32,16 @@ def calibrate(
     wall = read_specimen(specimen)
     read = read_recordings(recordings)
     with stages("stopped") as progress:
-        progress("calibrating", 0.1)
         from diagnosis import calibrate as calibrate_recordings
 
-        found = calibrate_recordings(wall, read)
+        found = calibrate_recordings(wall, read, progress=progress)
     console = Console()
     console.print(parameter_table(wall.title, found))
     if len(found.parameters) > 1:
         console.print(correlation_table(found))
     if found.by_recording:
         console.print(drift_table(found))
+    console.print(profile_table(found))
     console.print(
         f"misfit {100 * found.misfit:.3g} % of the signal, noise {100 * found.noise_floor:.3g} %, "
         f"{found.windows} windows",
@@ -86,6 +86,25 @@ def drift_table(found: Calibration) -> Table:
     for name in found.parameters:
         for k, (recording, alone) in enumerate(found.by_recording.items()):
             table.add_row("" if k else name, recording, *_numbers(alone[name]), alone[name].unit)
+    return table
+
+
+def profile_table(found: Calibration) -> Table:
+    """By how much twice the log likelihood falls when a parameter is held beside its estimate, all others refitted."""
+    from rich.table import Table
+
+    points = max((at.size for at, _ in found.profiles.values()), default=0)
+    caption = (
+        "fall of 2 log likelihood, all others refitted: 3.84 marks 95 % where the model fits to the noise; "
+        "the intervals are widened by what it leaves besides"
+    )
+    table = Table("profile", "", caption=caption, caption_justify="left")
+    for _ in range(points):
+        table.add_column(justify="right")
+    for name, (at, fall) in found.profiles.items():
+        unit = found.parameters[name].unit
+        table.add_row(name, "held at" if unit == "1" else f"held at, {unit}", *(f"{value:.5g}" for value in at))
+        table.add_row("", "fall", *(f"{max(value, 0.0):.3g}" for value in fall), end_section=True)
     return table
 
 

@@ -21,6 +21,8 @@ def told(effect: dict[str, dict[str, float]] | None, **options: object) -> Diagn
 def test_nothing_missing() -> None:
     found = told(None)
     assert found.verdict == "nothing_missing", found.statement
+    alone = calibrate(SPECIMEN, [recording("train_1", 1), recording("train_2", 2)], profile=False)
+    assert alone.misfit == pytest.approx(found.train.before, rel=1e-9)
     assert not found.effects and not found.rivals
     assert found.p_value > 0.001
     assert found.holdout is not None and found.holdout.share_of_achievable is None
@@ -61,6 +63,23 @@ def test_priors_hold_what_the_recordings_do_not_tell() -> None:
     mass = found.parameters["mass"]
     assert mass.estimate == pytest.approx(540.0, rel=1e-6)
     assert mass.high95 - mass.low95 == pytest.approx(2 * 1.96 * 5.4, rel=0.05)
+
+
+def test_the_profile_rises_from_the_estimate_and_the_bar_moves_on() -> None:
+    shares: list[float] = []
+    found = calibrate(SPECIMEN, [recording("train_1", 1)], progress=lambda text, share: shares.append(share))
+    assert shares == sorted(shares) and len(set(shares)) == len(shares) >= 5 and shares[0] >= 0.0 and shares[-1] < 1.0
+    for name, (at, rise) in found.profiles.items():
+        value = found.parameters[name]
+        assert at[0] <= value.low95 and at[-1] >= value.high95
+        near = int(np.argmin(np.abs(at - value.estimate)))
+        assert rise[near] == pytest.approx(0.0, abs=0.1)
+        assert np.all(np.diff(rise[near:]) > 0.0) and np.all(np.diff(rise[: near + 1]) < 0.0)
+
+
+def test_calibrating_what_is_known_exactly_is_refused() -> None:
+    with pytest.raises(InputError, match=r"nothing to calibrate.*\[tolerance\]"):
+        calibrate(replace(SPECIMEN, tolerance={}), [recording("train_1", 1)])
 
 
 def test_a_range_is_searched_globally() -> None:
