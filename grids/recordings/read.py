@@ -9,17 +9,19 @@ import numpy as np
 
 from grids.recordings import csv_toml, netcdf
 from grids.recordings.base import CHANNELS, REQUIRED, FloatArray, Raw, Recording
+from grids.recordings.overturned import cut_before_fall
 from grids.recordings.suspicions import suspicions_of
 from models.errors import InputError, nearest
 
 READERS = (netcdf, csv_toml)
 
 
-def read_recording(path: str | Path) -> Recording:
+def read_recording(path: str | Path, *, whole: bool = False) -> Recording:
     """Read and check a recording: netCDF, or CSV with a TOML beside it (either may be named).
 
     Samples without a value are cut off where they stand at the start or the end of the record;
-    inside it they are an error, because a filled gap is not a measurement. Nothing is filtered,
+    inside it they are an error, because a filled gap is not a measurement. A recording of a body that
+    overturned is cut before its fall, with a note, unless ``whole``. Nothing is filtered,
     interpolated or detrended. Raises InputError with one sentence: file, channel, place, cure.
     """
     path = Path(path)
@@ -34,13 +36,15 @@ def read_recording(path: str | Path) -> Recording:
     reader = next(r for r in READERS if table.suffix.lower() in r.SUFFIXES)
     try:
         recording = _checked(table.stem, reader.read(table))
+        if not whole:
+            recording = cut_before_fall(recording)
         return replace(
             recording,
             source={"file": table.name, **recording.source},
             suspicions=suspicions_of(recording),
         )
     except InputError as error:
-        raise InputError(f"recording {table.name}: {error}") from None
+        raise InputError(f"recording {table.name}: {str(error).removeprefix(f'{table.name}: ')}") from None
 
 
 def _checked(name: str, raw: Raw) -> Recording:
@@ -82,9 +86,10 @@ def _measured_span(raw: Raw) -> tuple[int, int]:
         if inside.size:
             begin = raw.start + float(inside[0]) * raw.time_step
             end = raw.start + float(inside[-1]) * raw.time_step
+            where = f"between {begin:.6g} s and {end:.6g} s" if inside.size > 1 else f"at {begin:.6g} s"
             raise InputError(
-                f"{channel} lacks {inside.size} value(s) between {begin:.6g} s and {end:.6g} s; cut the "
-                "recording there or leave the channel out (gaps are not filled)."
+                f"{channel} lacks {inside.size} value(s) {where}; cut the recording there or leave the channel "
+                "out (gaps are not filled)."
             )
     return first, last
 

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from grids.recordings import flat_tops
 from grids.recordings.base import REQUIRED, FloatArray, Recording
 
 GRAVITY = 9.80665
@@ -56,7 +57,7 @@ class Rocking:
 
 def suspicions_of(recording: Recording) -> tuple[str, ...]:
     """The sentences about a recording, possibly none."""
-    found = [*_of_base(recording), *_of_levels(recording)]
+    found = [*_of_base(recording), *_of_levels(recording), *flat_tops.suspected(recording)]
     for name in ("rotation_1", "rotation_2"):
         if name in recording.channels:
             found += _of_rotation(name, recording)
