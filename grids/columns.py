@@ -4,11 +4,14 @@
 
     time_step = "0.005 s"                  # or: time = { column = "t", unit = "s" }
     delimiter = ","                        # default; " " for any white space
+    decimal = "."                          # default; "," where the logger writes 0,25
     skip = 0                               # lines before the header
     header = true                          # one line with the columns' names; false: columns by number
     [columns]
     base_acceleration_x = { column = "acc_x", unit = "g", sign = -1 }
     base_acceleration_z = { column = 3, unit = "cm/s2" }       # number, from 1
+
+A cell that is empty or says ``nan``, ``#N/A``, ``-`` and the like (`MISSING`) is a sample without a value.
 """
 
 from __future__ import annotations
@@ -19,12 +22,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
+import numpy as np
 from pydantic import Field
 
 from grids.files import Schema, check, parse_toml, read_text
-from grids.sampling import FloatArray, check_step, parse_numbers, uniform_step
+from grids.sampling import FloatArray, check_step, uniform_step
 from grids.units import factor_to_si, to_si
 from models.errors import InputError, nearest
+
+MISSING = frozenset({"", "nan", "#n/a", "n/a", "#na", "na", "null", "none", "-", "--", "---"})
+"""What loggers and spreadsheets write, in any case, where nothing was measured."""
 
 
 class Column(Schema):
@@ -42,6 +49,7 @@ class Layout(Schema):
     time_step: str | float | None = None
     time: Column | None = None
     delimiter: str = Field(default=",", min_length=1, max_length=1)
+    decimal: Literal[".", ","] = "."
     skip: int = Field(default=0, ge=0)
     header: bool = True
     title: str = ""
@@ -70,11 +78,15 @@ def read_layout(path: Path, statement: Mapping[str, Any]) -> Layout:
     if (layout.time_step is None) == (layout.time is None):
         held = "neither is given" if layout.time is None else "both are given"
         raise InputError(f"{where}: give exactly one of time_step and time; {held}")
+    if layout.decimal == layout.delimiter:
+        raise InputError(
+            f"{where}: decimal and delimiter are both ','; state the delimiter of the columns, ';' for instance."
+        )
     return layout
 
 
 def read_columns(path: Path, layout: Layout, factor: Callable[[str, str, str], float]) -> Channels:
-    """The channels of a table, as ``layout`` states them; raises InputError.
+    """The channels of a table, as ``layout`` states them, nan where a cell holds no value; raises InputError.
 
     ``factor(channel, unit, where)`` gives SI units per unit.
     """
@@ -88,6 +100,9 @@ def read_columns(path: Path, layout: Layout, factor: Callable[[str, str, str], f
         where = f"{path.with_suffix('.toml').name}: time_step"
         return Channels(check_step(to_si(layout.time_step, "s", where), path.name), 0.0, values)
     times = _values(path, "time", layout.time, header, rows, layout)
+    if np.isnan(times).any():
+        line = rows[int(np.flatnonzero(np.isnan(times))[0])][0]
+        raise InputError(f"{path.name}: line {line} has no time; complete it, or state time_step instead of time.")
     times = times * factor_to_si(layout.time.unit, "s", f"{path.name}: time")
     cure = "resample to one step, or state time_step instead of time where the times are only rounded"
     return Channels(uniform_step(times, path.name, cure), float(times[0]), values)
@@ -101,12 +116,13 @@ def _rows(path: Path, layout: Layout) -> tuple[list[str], list[tuple[int, list[s
         split = [line.split() for _, line in numbered]
     else:
         split = list(csv.reader((line for _, line in numbered), delimiter=layout.delimiter))
-    rows = [(i, cells) for (i, _), cells in zip(numbered, split, strict=True)]
+    rows = [(i, [cell.strip() for cell in cells]) for (i, _), cells in zip(numbered, split, strict=True)]
+    while rows and not any(rows[-1][1]):
+        rows.pop()
     if not rows:
-        raise InputError(f"{path.name}: holds no lines of numbers: fetch it again")
-    if not layout.header:
-        return [], rows
-    return [cell.strip() for cell in rows[0][1]], rows[1:]
+        after = f" after the {layout.skip} that are skipped" if layout.skip else ""
+        raise InputError(f"{path.name}: holds no lines of numbers{after}; was it written to its end?")
+    return (rows[0][1], rows[1:]) if layout.header else ([], rows)
 
 
 def _values(
@@ -126,10 +142,33 @@ def _values(
     else:
         cure = nearest(column.column, header) if layout.header else "name it by its number, from 1"
         raise InputError(f"{path.name}: has no column {column.column!r} for {name}; {cure}")
-    for line, cells in rows:
+    found = np.empty(len(rows))
+    for i, (line, cells) in enumerate(rows):
         if index >= len(cells):
             raise InputError(
                 f"{path.name}: line {line} has {len(cells)} column(s), {name} wants number {index + 1}: "
                 "the file is damaged or the delimiter is another"
             )
-    return parse_numbers([cells[index].strip() for _, cells in rows], f"{path.name}: {name}")
+        number = _number(cells[index], layout.decimal)
+        if number is None:
+            other = {".": ",", ",": "."}[layout.decimal]
+            cure = (
+                f'state decimal = "{other}" if the file writes its numbers so'
+                if _number(cells[index], other) is not None
+                else "correct it, or leave the cell empty where nothing was measured"
+            )
+            raise InputError(f"{path.name}: line {line}: {name} is {cells[index]!r}, not a number; {cure}.")
+        found[i] = number
+    return found
+
+
+def _number(cell: str, decimal: str) -> float | None:
+    """The number in a cell, nan where it holds no value, None where it is no number."""
+    if cell.lower() in MISSING:
+        return float("nan")
+    if decimal == "," and "." in cell:
+        return None
+    try:
+        return float(cell.replace(decimal, "."))
+    except ValueError:
+        return None

@@ -131,6 +131,54 @@ def test_a_table_with_its_description(written: Callable[[str, str], Path]) -> No
         assert any("sign turned as stated: rotation_1" in note for note in found.notes)
 
 
+def logged(written: Callable[[str, str], Path], cells: dict[int, str], decimal: str = ".") -> Path:
+    """A logger's CSV in which the inclinometer wrote ``cells`` at some samples."""
+    written("test_3.toml", CSV.replace("title", f"delimiter = ';'\ndecimal = '{decimal}'\ntitle"))
+    rows = [[f"{t:.3f}", f"{a:.9f}", f"{r:.9f}"] for t, a, r in zip(TIME, BASE / GRAVITY, -1e3 * ROTATION, strict=True)]
+    for sample, cell in cells.items():
+        rows[sample][2] = cell
+    lines = [";".join(row).replace(".", decimal) for row in rows]
+    return written("test_3.csv", "\n".join(["t;acc;inc", *lines, ";;", ""]))
+
+
+@pytest.mark.parametrize("missing", ["", "#N/A", "-", "NaN", "null"])
+def test_cells_without_a_value_are_cut_at_the_ends_and_placed_inside(
+    missing: str, written: Callable[[str, str], Path]
+) -> None:
+    found = read_recording(logged(written, dict.fromkeys([0, 1, COUNT - 1], missing)))
+    assert np.allclose(found.channels["rotation_1"], ROTATION[2:-1], atol=1e-11)
+    assert any("2 samples at the start and 1 at the end" in note for note in found.notes)
+    with pytest.raises(InputError, match=r"rotation_1 lacks 3 value\(s\) between 2 s and 2.01 s; cut"):
+        read_recording(logged(written, dict.fromkeys(range(400, 403), missing)))
+
+
+def test_a_decimal_comma_is_stated_or_asked_for(written: Callable[[str, str], Path]) -> None:
+    path = logged(written, {}, ",")
+    found = read_recording(path)
+    assert np.allclose(found.channels["rotation_1"], ROTATION, atol=1e-11)
+    assert np.allclose(found.channels["base_acceleration_x"], BASE, atol=1e-7)
+    mapping = path.with_suffix(".toml")
+    mapping.write_text(mapping.read_text().replace("decimal = ','", "decimal = '.'"))
+    with pytest.raises(InputError, match=r'line 2: base_acceleration_x is .*state decimal = ","'):
+        read_recording(path)
+    with pytest.raises(InputError, match=r'line 2: base_acceleration_x is .*state decimal = "\."'):
+        path = logged(written, {})
+        mapping.write_text(mapping.read_text().replace("decimal = '.'", "decimal = ','"))
+        read_recording(path)
+
+
+def test_a_word_among_the_numbers_is_told_with_its_line_and_the_file_once(written: Callable[[str, str], Path]) -> None:
+    with pytest.raises(InputError, match="line 502: rotation_1 is 'ERR', not a number; correct it") as error:
+        read_recording(logged(written, {500: "ERR"}))
+    assert str(error.value).count("test_3.csv") == 1
+    path = logged(written, {})
+    lines = path.read_text().splitlines()
+    lines[500] = lines[500][lines[500].index(";") :]
+    path.write_text("\n".join(lines))
+    with pytest.raises(InputError, match="line 501 has no time"):
+        read_recording(path)
+
+
 def test_levels_of_a_table(written: Callable[[str, str], Path]) -> None:
     toml = CSV.replace("rotation_1", "level_acceleration_x_1").replace("'mrad', sign = -1", "'m/s2'")
     toml += "level_acceleration_x_0 = { column = 'acc', unit = 'g' }\n"
@@ -190,6 +238,8 @@ BAD_MAPS: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "sign of two": ("sign = -1", "sign = 2", ("sign", "2", "1 or -1")),
     "two clocks": ("title", "time_step = 0.005\ntitle", ("time_step and time", "both")),
     "no clock": ("time = { column = 't', unit = 's' }", "", ("time_step and time", "neither")),
+    "comma for decimals and columns": ("title", "decimal = ','\ntitle", ("decimal and delimiter", "';'")),
+    "another decimal": ("title", "decimal = ';'\ntitle", ("decimal", "';'")),
     "a level without number": (
         "rotation_1",
         "level_acceleration_x",
