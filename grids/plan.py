@@ -32,6 +32,7 @@ from typing import Any
 
 from pydantic import Field
 
+from grids.alike import taken_once
 from grids.axes import Axis, Request, read_axis
 from grids.consistency import check_laws, check_names, replaced
 from grids.files import Schema, check, parse_toml, read_text
@@ -40,7 +41,7 @@ from grids.motions import Motion
 from grids.plan_checks import check_cells, check_scales, check_size
 from grids.plan_motions import MotionTable, read_motions
 from grids.specimen import Specimen, read_specimen
-from grids.targets import MOTION, Targets, find_model
+from grids.targets import Targets, find_model
 from grids.units import to_si
 from models.base import Mechanism, Model
 from models.errors import InputError, nearest
@@ -99,8 +100,8 @@ class Plan:
         """The cells; records, time scales and formulations are kept in blocks apart."""
         import models
 
-        single = {MOTION, "time_scale", *models.get(self.model).options}
-        return Grid(self.axes, frozenset(axis.name for axis in self.axes if single & axis.sets.keys()))
+        model = models.get(self.model)
+        return Grid(self.axes, frozenset(a.name for a in self.axes if any(taken_once(model, n) for n in a.sets)))
 
 
 def read_plan(path: str | Path, *, sensors: Mapping[str, Mechanism] | None = None) -> Plan:
@@ -136,17 +137,18 @@ def parse_plan(text: str, folder: Path, *, sensors: Mapping[str, Mechanism] | No
             f"[study] specimen leaves {next(iter(unknown))} to calibration; "
             "fix it in [parameters] or vary it in [axes]."
         )
-    used = {n.split(".")[0]: targets.mechanism(n.split(".")[0], n) for n in [*fixed, *varied] if "." in n}
-    check_names(model, {*fixed, *varied}, used)
+    named = {*fixed, *varied}
+    used = {n.split(".")[0]: targets.mechanism(n.split(".")[0], n) for n in named if "." in n}
+    check_names(model, named, used)
     options = dict(specimen.options) if specimen else {}
     options |= {name: targets.option(name, word, f"[options] {name}") for name, word in file.options.items()}
     options = {name: word for name, word in options.items() if name not in varied}
     check_laws(options, varied, used)
     vertical = specimen.vertical if specimen else None
-    motions, axes = read_motions(file.motion, axes, folder, vertical, "vertical_acceleration" in used)
-    check_scales({*fixed, *varied}, motions)
+    motions, axes = read_motions(file.motion, axes, folder, model, vertical, "vertical_acceleration" in used)
+    check_scales(named, motions)
     check_size(axes)
-    check_cells(model, fixed, axes)
+    check_cells(model, fixed, axes, options)
     return Plan(
         name=file.study.name,
         model=model.name,

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from grids.alike import is_value, like_cells
 from grids.axes import Axis
 from grids.motions import Motion
-from grids.targets import SCALES
 from models.base import Model
 from models.errors import InputError
 
@@ -40,40 +40,51 @@ def check_scales(names: Collection[str], motions: Sequence[Motion]) -> None:
                 raise InputError(f"motion '{motion.name}' is zero throughout; pga cannot scale it, use another.")
 
 
-def check_cells(model: Model, fixed: Mapping[str, float], axes: Sequence[Axis]) -> None:
+def check_vertical(model: Model, vertical: bool | None) -> None:
+    """Raise InputError where a vertical motion is asked for that the model leaves out."""
+    if vertical and not model.takes_vertical:
+        raise InputError(
+            f"[motion] vertical = true, but model '{model.name}' is shaken horizontally only; "
+            "set vertical = false or leave it out."
+        )
+
+
+def check_cells(model: Model, fixed: Mapping[str, float], axes: Sequence[Axis], options: Mapping[str, str]) -> None:
     """Raise InputError with the model's first sentence about a cell that has no meaning.
 
-    All cells are looked at up to 200 000 combinations of the model's parameters; of more, evenly
-    spaced ones with all ends of the axes.
+    ``options``: the words that do not vary. All cells are looked at up to 200 000 combinations of
+    what reaches the model; of more, evenly spaced ones with all ends of the axes and every word.
     """
-    outside = {scale.name for scale in SCALES}
     along = [
-        {
-            name: values
-            for name, values in axis.sets.items()
-            if name not in outside and np.issubdtype(values.dtype, np.floating)
-        }
-        for axis in axes
+        {name: v for name, v in axis.sets.items() if is_value(model, name) or name in model.options} for axis in axes
     ]
-    picks = _picks([axis.size if names else 1 for axis, names in zip(axes, along, strict=True)])
-    mesh = np.meshgrid(*picks, indexing="ij") if picks else []
-    values: dict[str, Any] = {name: value for name, value in fixed.items() if name not in outside}
+    picks = _picks(
+        [axis.size if names else 1 for axis, names in zip(axes, along, strict=True)],
+        [axis.name in model.options for axis in axes],
+    )
+    mesh = [index.ravel() for index in np.meshgrid(*picks, indexing="ij")] if picks else []
+    size = math.prod(index.size for index in picks)
+    cells: dict[str, NDArray[Any]] = {}
     for names, index in zip(along, mesh, strict=True):
-        values |= {name: column[index.ravel()] for name, column in names.items()}
-    with np.errstate(all="ignore"):  # what is senseless may divide by zero before it is named
-        sentences = model.check(values)
-    for sentence in sentences:
-        raise InputError(sentence)
+        cells |= {name: column[index] for name, column in names.items()}
+    constant = {name: value for name, value in fixed.items() if is_value(model, name)}
+    for words, rows in like_cells(model, cells, size):
+        values = {**constant, **{name: column[rows] for name, column in cells.items() if name not in words}}
+        with np.errstate(all="ignore"):  # what is senseless may divide by zero before it is named
+            sentences = model.check(values, {**options, **words})
+        for sentence in sentences:
+            raise InputError(sentence)
 
 
-def _picks(sizes: list[int]) -> list[NDArray[np.int64]]:
-    """Indices along each axis whose product stays under the limit, ends included."""
+def _picks(sizes: list[int], whole: list[bool]) -> list[NDArray[np.int64]]:
+    """Indices along each axis whose product stays under the limit, ends included; those ``whole`` are not thinned."""
     kept = list(sizes)
+    thinned = [k for k, all_of_it in enumerate(whole) if not all_of_it]
     while math.prod(kept) > MOST_CHECKED:
-        longest = kept.index(max(kept))
-        kept[longest] = max(2, kept[longest] // 2)
-        if max(kept) == 2:
+        longest = max(thinned, key=kept.__getitem__, default=None)
+        if longest is None or kept[longest] <= 2:
             break
+        kept[longest] = max(2, kept[longest] // 2)
     return [
         np.unique(np.linspace(0, size - 1, count).round().astype(np.int64))
         for size, count in zip(sizes, kept, strict=True)

@@ -13,7 +13,9 @@ from grids.axes import Axis
 from grids.files import Schema
 from grids.motions import Motion, find, read_motion
 from grids.motions.made import MAKERS
+from grids.plan_checks import check_vertical
 from grids.targets import MOTION
+from models.base import Model
 from models.errors import InputError
 
 
@@ -29,12 +31,14 @@ def read_motions(
     table: MotionTable,
     axes: tuple[Axis, ...],
     folder: Path,
+    model: Model,
     vertical: bool | None,
     apart: bool,
 ) -> tuple[tuple[Motion, ...], tuple[Axis, ...]]:
     """The motions, and the axes with the motions' names where they vary.
 
-    ``vertical`` stands where the plan does not say. ``apart``: a mechanism applies the vertical
+    ``vertical`` stands where the plan does not say; a model that is shaken horizontally only gets no
+    vertical component. ``apart``: a mechanism applies the vertical
     component itself, so the record must have one and the plan may not feed it as well.
     """
     vertical = table.vertical if table.vertical is not None else vertical
@@ -43,7 +47,8 @@ def read_motions(
             "'vertical_acceleration.kappa' stands for a vertical motion that is left out; "
             "set [motion] vertical = false or leave the mechanism out."
         )
-    wanted = True if apart else vertical
+    check_vertical(model, vertical)
+    wanted = True if apart else vertical if model.takes_vertical else False
 
     def read(source: Any) -> Motion:
         return read_motion(source, component=table.component, vertical=wanted, near=folder)

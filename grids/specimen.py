@@ -27,9 +27,9 @@ from typing import Any
 
 from pydantic import Field
 
-from grids.consistency import check_names
+from grids.consistency import check_laws, check_names
 from grids.files import Schema, check, parse_toml, read_text
-from grids.plan_checks import check_cells
+from grids.plan_checks import check_cells, check_vertical
 from grids.targets import Targets, find_model
 from grids.units import to_si, with_unit
 from models.base import Mechanism
@@ -103,11 +103,13 @@ def parse_specimen(text: str, *, sensors: Mapping[str, Mechanism] | None = None)
         raise InputError(f"[calibrate] {twice[0]} has a fixed value too; leave that out, or the range.")
     used = {n.split(".")[0]: targets.mechanism(n.split(".")[0], n) for n in known | {*calibrate} if "." in n}
     check_names(model, known | calibrate.keys(), used)
+    options = {name: targets.option(name, word, f"[options] {name}") for name, word in file.options.items()}
+    check_laws(options, (), used)
+    check_vertical(model, file.motion.vertical)
     fixed = {**parameters, **{f"{m}.{p}": v for m, values in mechanisms.items() for p, v in values.items()}}
     if not calibrate:
         of_wall = {n: v for n, v in fixed.items() if n.partition(".")[0] not in targets.sensors}
-        check_cells(model, of_wall, ())
-    options = {name: targets.option(name, word, f"[options] {name}") for name, word in file.options.items()}
+        check_cells(model, of_wall, (), options)
     return Specimen(
         title=file.title,
         model=model.name,

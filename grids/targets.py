@@ -51,7 +51,8 @@ class Target:
         too_low = number <= self.low if self.low_open else number < self.low
         if too_low or number > self.high or math.isinf(number):
             raise InputError(
-                f"{where} = {with_unit(number, self.unit)} ({self.meaning}): it must be {self._allowed()}."
+                f"{where} = {with_unit(number, self.unit)} ({self.meaning}): it must be {self._allowed()}"
+                f"{self._per_cent(number)}."
             )
         return number
 
@@ -59,6 +60,12 @@ class Target:
         if value not in self.words:
             raise InputError(f"{where} = {value!r}: {nearest(str(value), self.words)}")
         return str(value)
+
+    def _per_cent(self, number: float) -> str:
+        """What a share was perhaps meant to be: 5.44 for 5.44 %."""
+        share = number / 100.0
+        meant = self.unit == "1" and self.high <= 1.0 and self.low < share <= self.high
+        return f" ({number:g} % is {share:g})" if meant else ""
 
     def _allowed(self) -> str:
         parts = []

@@ -158,6 +158,7 @@ class Model(Protocol):
     ``states``: the observables (and their rates) that a run starts from.
     ``chaotic``: whether neighbouring trajectories part quickly, so that recordings are compared
     window by window.
+    ``takes_vertical``: whether a vertical motion of the base enters the equations.
     """
 
     name: str
@@ -172,13 +173,18 @@ class Model(Protocol):
     states: tuple[str, ...]
     integrators: tuple[str, ...]
     chaotic: bool
+    takes_vertical: bool
     vertical_by_default: bool
 
     @property
     def mechanisms(self) -> Mapping[str, Mechanism]: ...
 
-    def check(self, values: Values) -> list[str]:
-        """Sentences about values that have no meaning together (for instance e <= 0); empty: fine."""
+    def words(self, options: Mapping[str, str] | None) -> dict[str, str]:
+        """Every word that chooses the formulation, the default where ``options`` gives none."""
+        ...
+
+    def check(self, values: Values, options: Mapping[str, str] | None = None) -> list[str]:
+        """Sentences about values that have no meaning together under ``options`` (e <= 0); empty: fine."""
         ...
 
     def derive(self, values: Values, options: Mapping[str, str] | None = None) -> dict[str, FloatArray]:

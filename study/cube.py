@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 import models
 from grids.netcdf_lock import NETCDF_LOCK
 from grids.plan import Plan
-from models.base import Quantity
+from models.base import Model, Quantity
 from study.derived import derived_coordinates
 from study.keys import Setting
 from study.labels import Coordinate, axis_coordinates, describe, motion_coordinates
@@ -165,6 +165,7 @@ def _attributes(plan: Plan, setting: Setting, path: Path, started: str, schedule
         "plan": plan.text,
         "plan_sha256": sha256(plan.text),
         "setting": setting.record(),
+        "options": _words(plan, model),
         "inputs": inputs,
         "versions": versions(),
         "commit": commit(),
@@ -181,6 +182,12 @@ def _attributes(plan: Plan, setting: Setting, path: Path, started: str, schedule
         "history": "\n".join([*_old_history(path), f"{now()} rocking run {plan.name}"]),
         "provenance": as_json(provenance),
     }
+
+
+def _words(plan: Plan, model: Model) -> dict[str, str]:
+    """Every word that holds for all cells, defaults too."""
+    varied = {name for axis in plan.axes for name in axis.sets}
+    return {name: word for name, word in model.words(plan.options).items() if name not in varied}
 
 
 def _old_history(path: Path) -> list[str]:

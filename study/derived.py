@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from grids.alike import is_value, like_cells
 from grids.axes import Axis
 from grids.plan import Plan
 from models.base import FloatArray, Model
-from study.evaluate import SCALING, lane_groups, like_cells
 from study.labels import Coordinate, describe
 
 MOST_AT_ONCE = 1 << 16
@@ -39,11 +39,7 @@ def derived_coordinates(plan: Plan, model: Model) -> list[Coordinate]:
 
 def _reaches(model: Model, name: str) -> bool:
     """Whether a name of a plan is a parameter or an option of the model, not of the motion."""
-    return _is_value(model, name) or name in model.options
-
-
-def _is_value(model: Model, name: str) -> bool:
-    return name not in SCALING and not lane_groups(model, name)
+    return is_value(model, name) or name in model.options
 
 
 def _folded(plan: Plan, model: Model, axes: Sequence[Axis], positions: list[NDArray[np.intp]]) -> dict[str, FloatArray]:
@@ -85,7 +81,7 @@ def _derive(
     size = math.prod(shape)
     mesh = [index.ravel() for index in np.meshgrid(*positions, indexing="ij")] if axes else []
     cells: dict[str, NDArray[Any]] = {
-        name: np.full(size, value) for name, value in plan.fixed.items() if _is_value(model, name)
+        name: np.full(size, value) for name, value in plan.fixed.items() if is_value(model, name)
     }
     for axis, index in zip(axes, mesh, strict=True):
         cells |= {name: points[index] for name, points in axis.sets.items() if _reaches(model, name)}

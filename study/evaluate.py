@@ -7,22 +7,17 @@ lanes of the call, and neither therefore on blocks or schedulers.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 import models
+from grids.alike import SCALING, Coordinates, like_cells
 from grids.motions import Motion
-from grids.targets import MOTION, SCALES
-from models.base import Model
+from grids.targets import MOTION
 from study.keys import Setting
-
-Coordinates = Mapping[str, NDArray[Any]]
-"""Values ``(n,)`` by name of everything that varies, one element a cell."""
-SCALING = tuple(parameter.name for parameter in SCALES)
-"""Names of a plan that act on the motion and not on the model."""
 
 
 def evaluate(setting: Setting, motions: Mapping[str, Motion], cells: Coordinates) -> dict[str, NDArray[Any]]:
@@ -57,29 +52,6 @@ def evaluate(setting: Setting, motions: Mapping[str, Motion], cells: Coordinates
                 column = column.astype(np.int8)
             results.setdefault(name, np.empty(size, column.dtype))[index] = column
     return results
-
-
-def lane_groups(model: Model, name: str) -> bool:
-    """Whether a call of the model takes one value of ``name`` for all its lanes."""
-    return name in (MOTION, "time_scale") or name in model.options
-
-
-def like_cells(model: Model, cells: Coordinates, size: int) -> Iterator[tuple[dict[str, Any], NDArray[np.intp]]]:
-    """The values that a call of the model takes once, and the indices of the cells that share them."""
-    names = [name for name in cells if lane_groups(model, name)]
-    group = np.zeros(size, dtype=np.intp)
-    levels: list[NDArray[Any]] = []
-    for name in names:
-        distinct, number = np.unique(cells[name], return_inverse=True)
-        group = group * distinct.size + number
-        levels.append(distinct)
-    for g in np.unique(group):
-        key: dict[str, Any] = {}
-        rest = int(g)
-        for name, distinct in zip(reversed(names), reversed(levels), strict=True):
-            rest, k = divmod(rest, distinct.size)
-            key[name] = distinct[k].item() if hasattr(distinct[k], "item") else distinct[k]
-        yield key, np.flatnonzero(group == g)
 
 
 def _split(given: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:

@@ -63,7 +63,14 @@ def simulate_specimen(
         "source": f"rocking-study {versions()['rocking-study']}, {model.name} {model.version}, {integrator}",
         "history": f"{now()} rocking simulate",
         "provenance": as_json(
-            {"values": values, "versions": versions(), "commit": commit(), "time": now(), **machine()}
+            {
+                "values": values,
+                "options": model.words(specimen.options),
+                "versions": versions(),
+                "commit": commit(),
+                "time": now(),
+                **machine(),
+            }
         ),
         "outputs": as_json(dict(history.outputs)),
     }

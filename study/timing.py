@@ -10,8 +10,9 @@ from math import ceil
 import numpy as np
 
 import models
+from grids.alike import taken_once
 from grids.plan import Plan
-from study.evaluate import evaluate, lane_groups
+from study.evaluate import evaluate
 from study.keys import Setting, motions_by_name
 
 SAMPLE_SECONDS = 0.2
@@ -81,7 +82,7 @@ def _choose(plan: Plan, shape: tuple[int, ...], cells: int) -> np.ndarray:
     group = random.integers(0, GROUPS, cells)
     model = models.get(plan.model)
     for k, axis in enumerate(plan.axes):
-        if any(lane_groups(model, name) for name in axis.sets):
+        if any(taken_once(model, name) for name in axis.sets):
             index[:, k] = groups[group, k]
     if not shape:
         return np.zeros(cells, dtype=np.intp)

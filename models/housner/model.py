@@ -39,6 +39,7 @@ class Housner:
     states: tuple[str, ...] = declaration.STATES
     integrators: tuple[str, ...] = ("lanes", "reference", "newmark")
     chaotic: bool = True
+    takes_vertical: bool = True
     vertical_by_default: bool = False
 
     @property
@@ -51,7 +52,11 @@ class Housner:
 
         return acting_on(self.name)
 
-    def check(self, values: Values) -> list[str]:
+    def words(self, options: Mapping[str, str] | None) -> dict[str, str]:
+        """Every option with its word, the default where none is given."""
+        return choices.words(self, options)
+
+    def check(self, values: Values, options: Mapping[str, str] | None = None) -> list[str]:
         """What has no meaning together: no mass at all, impacts after which the block does not rock, mechanisms
         that do not act together."""
         block = build(values, False)
@@ -98,7 +103,7 @@ class Housner:
     def _integrator(self, integrator: str, block: Block, options: Mapping[str, str] | None) -> bool:
         """Whether the formulation is linear, after checking that integrator and options go together."""
         choices.check_integrator(self, integrator)
-        linear = choices.words(self, options)["formulation"] == "linear"
+        linear = self.words(options)["formulation"] == "linear"
         if not block.plain and (linear or integrator == "newmark"):
             which = "the linear formulation" if linear else "the integrator newmark"
             raise InputError(

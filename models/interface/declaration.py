@@ -37,7 +37,7 @@ PARAMETERS = (
     ),
     Parameter("top_stiffness", "k_t", "N m-2", "force per metre of contact and compression, top", 0.0, low_open=True),
     *(
-        Parameter(p.name, p.symbol, p.unit, p.meaning, 0.0)
+        Parameter(p.name, p.symbol, p.unit, p.meaning, 0.0, 1.0)
         for p in _layer("damping_ratio", "xi", "1", "damping ratio at the lowest frequency, c = 2 xi k/omega_1,")
     ),
     Parameter("base_damping", "c_b", "N s m-2", "dashpot per metre of contact, base layer", 0.0),

@@ -12,13 +12,11 @@ from numpy.typing import NDArray
 
 from models import choices
 from models.base import Event, FloatArray, History, Mechanism, Parameter, Quantity, Values
+from models.errors import InputError
 from models.interface import declaration, modes
 from models.interface.assembly import build
 from models.interface.layered import LayeredWall
 from models.shaking import Shaking
-
-BOTH = {"layer_thickness", "layer_modulus", "damping_ratio"}
-LAYER = {f"{joint}_{name}" for joint in ("base", "top") for name in (*BOTH, "stiffness", "damping")}
 
 
 @dataclass(frozen=True)
@@ -41,6 +39,7 @@ class Interface:
     states: tuple[str, ...] = declaration.STATES
     integrators: tuple[str, ...] = ("lanes", "reference")
     chaotic: bool = True
+    takes_vertical: bool = True
     vertical_by_default: bool = True
 
     @property
@@ -61,9 +60,12 @@ class Interface:
         """A module of this model's folder: ``lanes.run``, ``reference``, ``observe``."""
         return import_module(f"models.{self.name}.{name}")
 
-    def check(self, values: Values) -> list[str]:
-        """Walls that cannot stand between their layers under their own weight."""
-        wall = self._as_described(values)
+    def check(self, values: Values, options: Mapping[str, str] | None = None) -> list[str]:
+        """Layers that lack a number, and walls that cannot stand on them under their own weight."""
+        try:
+            wall = build(values, self.words(options), False, model=self.name)
+        except InputError as error:
+            return [str(error)]
         lowest = modes.at_rest(wall).squares[:, 0]
         if np.any(~(lowest > 0.0)):
             worst = int(np.argmax(~(lowest > 0.0)))
@@ -85,18 +87,9 @@ class Interface:
                 )
         return found
 
-    def _as_described(self, values: Values) -> LayeredWall:
-        """The walls of values alone, rubber where they describe a layer."""
-        told = {
-            prefix for prefix in ("base", "top") if any(name.startswith(f"{prefix}_") for name in LAYER & set(values))
-        }
-        joints = told.pop() if len(told) == 1 and not BOTH & set(values) else "both"
-        return build(values, self.words({"joints": joints}), False, model=self.name)
-
     def derive(self, values: Values, options: Mapping[str, str] | None = None) -> dict[str, FloatArray]:
         """Static state, natural frequencies, mode shapes and modal damping at rest, arrays ``(n,)``."""
-        told = options is not None
-        wall = build(values, self.words(options), False, model=self.name) if told else self._as_described(values)
+        wall = build(values, self.words(options), False, model=self.name)
         return modes.derived(wall, self.natural_modes(wall))
 
     def natural_modes(self, wall: LayeredWall) -> modes.Modes:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from models import choices
 from models.base import Event, FloatArray, History, Mechanism, Parameter, Quantity, Values
+from models.errors import InputError
 from models.isolated import declaration, modes
 from models.isolated.assembly import build, complaints
 from models.isolated.chain import Chain
@@ -38,6 +39,7 @@ class Isolated:
     states: tuple[str, ...] = declaration.STATES
     integrators: tuple[str, ...] = ("lanes", "reference")
     chaotic: bool = False
+    takes_vertical: bool = False
     vertical_by_default: bool = False
 
     @property
@@ -54,9 +56,15 @@ class Isolated:
         """Every option with its word, the default where none is given."""
         return choices.words(self, options)
 
-    def check(self, values: Values) -> list[str]:
-        """Values that describe no building: levels without a mass, storeys without a stiffness, and so on."""
-        return complaints(values)
+    def check(self, values: Values, options: Mapping[str, str] | None = None) -> list[str]:
+        """What describes no building: levels without a mass, a law without its parameters, and so on."""
+        found = complaints(values)
+        if not found:
+            try:
+                build(values, self.words(options))
+            except InputError as error:
+                found.append(str(error))
+        return found
 
     def derive(self, values: Values, options: Mapping[str, str] | None = None) -> dict[str, FloatArray]:
         """Mass, natural frequencies and modal damping at small strain, arrays ``(n,)``."""

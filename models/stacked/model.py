@@ -41,6 +41,7 @@ class Stacked:
     states: tuple[str, ...] = declaration.STATES
     integrators: tuple[str, ...] = ("lanes", "reference")
     chaotic: bool = True
+    takes_vertical: bool = True
     vertical_by_default: bool = False
 
     @property
@@ -53,7 +54,11 @@ class Stacked:
 
         return acting_on(self.name)
 
-    def check(self, values: Values) -> list[str]:
+    def words(self, options: Mapping[str, str] | None) -> dict[str, str]:
+        """Every option with its word, the default where none is given."""
+        return choices.words(self, options)
+
+    def check(self, values: Values, options: Mapping[str, str] | None = None) -> list[str]:
         """What has no meaning together: a density without thickness, a stack that does not stand by itself."""
         if "wall_density" in values and bool(np.any(np.isnan(values.get("wall_thickness", np.nan)))):
             return ["wall_density gives a mass only with wall_thickness: give both, or wall_mass"]
@@ -102,7 +107,7 @@ class Stacked:
     def _linear(self, integrator: str, options: Mapping[str, str] | None) -> bool:
         """Whether the formulation is linear, after checking the words."""
         choices.check_integrator(self, integrator)
-        return choices.words(self, options)["formulation"] == "linear"
+        return self.words(options)["formulation"] == "linear"
 
     def evaluate(
         self,
