@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from diagnosis.noise import base_noise, response_noise, smooth
 from diagnosis.windows import SMOOTHING, Window, cut
-from grids.recordings.base import REQUIRED, FloatArray, Recording
+from grids.recordings.base import CHANNELS, REQUIRED, FloatArray, Recording
 from models.base import Model
 from models.errors import InputError
 from models.shaking import Shaking
@@ -73,18 +73,30 @@ class Measured:
 def arrange(
     model: Model, recordings: Sequence[Recording], vertical: bool, reference_peak: float | None = None
 ) -> Measured:
-    """Cut the recordings in windows. Raises InputError when nothing can be compared."""
+    """Cut the recordings in windows; channels are compared that all of them hold (see `left_out`).
+
+    Raises InputError when nothing can be compared.
+    """
+    states: tuple[str, ...] = model.states
+    for state in states:
+        if _channel(state) not in CHANNELS:
+            raise InputError(
+                f"calibration and diagnosis of model {model.name} are not offered yet: its motion starts from "
+                f'{state}, which no recording holds; describe the wall as one block (model = "housner"), or simulate.'
+            )
     observed = [q.name for q in model.observables if q.name not in NOT_COMPARED]
     channels = tuple(c for c in observed if all(c in r.channels for r in recordings))
     if not channels:
         raise InputError(
             f"no channel of {model.name} ({', '.join(observed)}) is in every recording: record rotation_1 at least."
         )
-    states: tuple[str, ...] = model.states
     for state in states:
-        needed = state.replace("_rate", "")
-        if needed not in channels:
-            raise InputError(f"{needed} is missing in a recording: a window cannot start without it; record or map it.")
+        lacking = [r.name for r in recordings if _channel(state) not in r.channels]
+        if lacking:
+            raise InputError(
+                f"{_channel(state)} is missing in {', '.join(lacking)}: model {model.name} cannot start a window "
+                "without it; record or map it."
+            )
     lead = channels[0]
     windows: list[Window] = []
     for k, recording in enumerate(recordings):
@@ -115,6 +127,13 @@ def arrange(
     )
 
 
+def left_out(recordings: Sequence[Recording]) -> dict[str, tuple[str, ...]]:
+    """Responses that only some recordings hold, so that none is compared by them; with those that lack them."""
+    held = dict.fromkeys(c for r in recordings for c in r.responses if c not in NOT_COMPARED)
+    lacking = {c: tuple(r.name for r in recordings if c not in r.channels) for c in held}
+    return {c: names for c, names in lacking.items() if names}
+
+
 def gather(recordings: Sequence[Recording], windows: Sequence[Window], channels: Sequence[str]) -> dict[str, Any]:
     """Values, mask, noise and base motion of the windows, padded to the longest one."""
     longest = max(w.samples for w in windows)
@@ -134,13 +153,21 @@ def gather(recordings: Sequence[Recording], windows: Sequence[Window], channels:
     return {"values": values, "mask": mask, "sigma": sigma, "base": base}
 
 
+def _channel(state: str) -> str:
+    """The channel that a state, or its derivative, is read from."""
+    return state.replace("_rate", "")
+
+
 def _start(recordings: Sequence[Recording], windows: Sequence[Window], state: str) -> FloatArray:
-    """A state at the windows' starts, from a parabola through the samples around them."""
-    derivative = "_rate" in state and state not in recordings[0].channels
-    channel = state.replace("_rate", "") if derivative else state
+    """A state at the windows' starts, from a parabola through the samples around them.
+
+    A rate is the slope of its rotation in recordings that do not hold the rate itself.
+    """
     found = np.empty(len(windows))
     for w, window in enumerate(windows):
         recording = recordings[window.recording]
+        derivative = state not in recording.channels
+        channel = _channel(state) if derivative else state
         step, signal = recording.time_step, recording.channels[channel]
         reach = max(3, round(RATE_WIDTH / step))
         low, high = max(0, window.first - reach), min(signal.size, window.first + reach + 1)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from models.errors import InputError
-from rocking.commands.base import INTERRUPTED
+from rocking.command import INTERRUPTED
 
 if TYPE_CHECKING:
     from diagnosis.select import Progress
@@ -18,10 +18,11 @@ if TYPE_CHECKING:
 
 
 def read_recordings(paths: Sequence[Path], held_out: Sequence[Path] = ()) -> list[Recording]:
-    """All recordings in their order; what looks wrong with them goes to stderr.
+    """All recordings in their order; what was done to them and what looks wrong goes to stderr.
 
     Raises InputError for a recording given twice, or two that share a name.
     """
+    from diagnosis.measured import left_out
     from grids.recordings import read_recording
 
     seen: dict[str, Path] = {}
@@ -38,8 +39,13 @@ def read_recordings(paths: Sequence[Path], held_out: Sequence[Path] = ()) -> lis
             )
         seen[recording.name] = path
         found.append(recording)
+        for note in recording.notes:
+            typer.echo(f"note: {recording.name}: {note}", err=True)
         for suspicion in recording.suspicions:
             typer.echo(f"suspicion: {recording.name}: {suspicion}", err=True)
+    for together in (found[: len(paths)], found[len(paths) :]):
+        for channel, lacking in left_out(together).items():
+            typer.echo(f"note: {channel} is not compared, because {', '.join(lacking)} lacks it", err=True)
     return found
 
 
