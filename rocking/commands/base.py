@@ -9,24 +9,41 @@ import typer
 from typer.core import TyperGroup
 
 from models.errors import InputError
+from rocking.command import INTERRUPTED, STOPPED, raise_interrupts
 
 if TYPE_CHECKING:
     import xarray as xr
 
 USER_ERROR = 2
 FAILURES = 1
-INTERRUPTED = 130
 
 
 class Commands(TyperGroup):
-    """The group of commands, which turns a mistake (or a folder nobody may write to) into a sentence."""
+    """The group of commands, which turns a mistake, what the disk refuses and Ctrl-C into a sentence."""
 
     def invoke(self, ctx: Any) -> Any:
         try:
+            raise_interrupts()
             return super().invoke(ctx)
-        except (InputError, PermissionError) as error:
+        except InputError as error:
             typer.echo(f"error: {error}", err=True)
             raise typer.Exit(USER_ERROR) from None
+        except BrokenPipeError:  # of `rocking ... | head`: typer ends that quietly
+            raise
+        except OSError as error:
+            typer.echo(f"error: {_refusal(error)}", err=True)
+            raise typer.Exit(USER_ERROR) from None
+        except KeyboardInterrupt:
+            typer.echo(STOPPED, err=True)
+            raise typer.Exit(INTERRUPTED) from None
+
+
+def _refusal(error: OSError) -> str:
+    """What the operating system refuses (a full disk, rights, a path that cannot be), and where."""
+    if error.strerror is None:
+        return str(error)
+    what = error.strerror[0].lower() + error.strerror[1:]
+    return f"{error.filename}: {what}; name another place, or make this one writable." if error.filename else f"{what}."
 
 
 def read_selection(cube: xr.Dataset, entries: Sequence[str]) -> dict[str, Any]:

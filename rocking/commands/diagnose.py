@@ -44,10 +44,13 @@ def diagnose(
 
 
 def make_folder(out: Path) -> None:
-    """The folder of the answer, before the work; InputError where a file stands in its place."""
+    """The folder of the answer, before the work; InputError where it cannot be made."""
     from models.errors import InputError
 
     try:
         out.mkdir(parents=True, exist_ok=True)
     except (FileExistsError, NotADirectoryError):
         raise InputError(f"--out {out} is a file or lies in one; name a folder.") from None
+    except OSError as error:
+        why = (error.strerror or str(error)).lower()
+        raise InputError(f"--out {out} cannot be made ({why}); name a folder elsewhere.") from None

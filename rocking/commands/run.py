@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from rocking.commands.base import FAILURES, INTERRUPTED, human_time
+from rocking.command import INTERRUPTED
+from rocking.commands.base import FAILURES, human_time
 
 if TYPE_CHECKING:
     from rich.progress import Progress as Bar

@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+import errno
 import json
+import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+import numpy as np
 import pytest
+import xarray as xr
 from typer.testing import CliRunner
 
 import rocking.commands.diagnose as command
+from grids.recordings import read_recording
 from rocking.commands import app
+from rocking.commands.recordings import read_recordings
 from tests.diagnosis.report.example import diagnosis
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "from_a_data_logger"
@@ -65,6 +72,67 @@ def test_a_file_in_place_of_the_folder_is_said_before_the_work(tmp_path: Path) -
     (tmp_path / "answer").write_text("")
     code, _, err = run("diagnose", BLOCK, FIRST, "--out", str(tmp_path / "answer"))
     assert code == 2 and "is a file" in err
+
+
+@pytest.mark.skipif(not Path("/proc/self").is_dir(), reason="needs a folder that nobody can write to")
+def test_a_folder_that_cannot_be_made_is_said_before_the_work() -> None:
+    code, _, err = run("diagnose", BLOCK, FIRST, "--out", "/proc/answer")
+    assert code == 2 and err.count("error:") == 1 and "--out /proc/answer cannot be made" in err
+
+
+@pytest.mark.usefixtures("quick")
+def test_a_full_disk_is_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device", str(tmp_path / "fit.nc"))
+
+    monkeypatch.setattr("diagnosis.report.write_answer", full)
+    code, _, err = run("diagnose", BLOCK, FIRST, "--out", str(tmp_path))
+    assert code == 2 and "fit.nc: no space left on device" in err
+
+
+def test_a_channel_that_one_recording_lacks_is_said_for_those_compared_together(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    richer = with_rate(tmp_path / "richer.nc")
+    read_recordings([richer, Path(FIRST)])
+    assert "note: rotation_rate_1 is not compared, because shake_1 lacks it" in capsys.readouterr().err
+    read_recordings([richer], [Path(FIRST)])
+    said = capsys.readouterr().err
+    assert "is not compared" not in said and "note: shake_1: sign turned as stated: rotation_1" in said
+
+
+def with_rate(path: Path) -> Path:
+    """The second recording with its rate, as a netCDF file."""
+    read = read_recording(SECOND)
+    channels = {"base_acceleration_x": "m s-2", "rotation_1": "rad"}
+    held = {name: ("time", read.channels[name], {"units": unit}) for name, unit in channels.items()}
+    rate = np.gradient(read.channels["rotation_1"], read.time_step)
+    held["rotation_rate_1"] = ("time", rate, {"units": "rad s-1"})
+    xr.Dataset(held, coords={"time": ("time", read.time, {"units": "s"})}).to_netcdf(path)
+    return path
+
+
+PRESSED = """
+import os, signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)
+from rocking.command import main
+
+class Press:
+    def find_spec(self, name, *_):
+        if name == wanted:
+            os.kill(os.getpid(), signal.SIGINT)
+
+*sys.argv[1:], wanted = sys.argv[1:]
+sys.meta_path.insert(0, Press())
+main()
+"""
+
+
+@pytest.mark.parametrize("wanted", ["rocking.commands", "typer", "rocking.instruments", "grids.recordings.read"])
+def test_ctrl_c_while_something_is_imported_is_one_word(wanted: str) -> None:
+    words = [sys.executable, "-c", PRESSED, "calibrate", BLOCK, FIRST, wanted]
+    ran = subprocess.run(words, capture_output=True, text=True, cwd=EXAMPLE.parents[1], timeout=60)
+    assert (ran.returncode, ran.stdout, ran.stderr) == (130, "", "stopped\n")
 
 
 @pytest.mark.usefixtures("quick")
