@@ -22,6 +22,9 @@ from grids.recordings import Recording
 from grids.specimen import Specimen
 from study.store import write_text
 
+OURS = "<!-- drawn by rocking diagnose -->\n"
+"""Ends every figure written, so that one drawn earlier can be told from a user's own."""
+
 
 def drawings(diagnosis: Diagnosis, specimen: Specimen, recordings: Sequence[Recording]) -> dict[str, Draw]:
     """What can be drawn of this diagnosis: functions that take ``width`` (inches) and ``palette``, by name."""
@@ -52,6 +55,9 @@ def pictures(diagnosis: Diagnosis, specimen: Specimen, recordings: Sequence[Reco
 
 
 def write_figures(drawn: Mapping[str, Picture], folder: Path) -> None:
-    """Every drawing as SVG, for a paper or a slide."""
+    """Every drawing as SVG, for a paper or a slide; drawings of an earlier diagnosis in the folder go."""
+    for old in folder.glob("*.svg"):
+        if old.stem not in drawn and old.read_text("utf-8", errors="replace").endswith(OURS):
+            old.unlink()
     for name, figure in drawn.items():
-        write_text(folder / f"{name}.svg", figure.file())
+        write_text(folder / f"{name}.svg", figure.file() + OURS)

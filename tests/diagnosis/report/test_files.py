@@ -6,12 +6,15 @@ import json
 from dataclasses import replace
 from pathlib import Path
 from typing import get_args
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 import xarray as xr
 
 from diagnosis.report import diagnosis_json, extend
+from diagnosis.report.pictures import write_figures
+from diagnosis.report.svg import Picture
 from diagnosis.result import Effect, Estimate, Verdict
 from grids.write_specimen import write_specimen
 from models.shaking import Shaking
@@ -46,6 +49,19 @@ def test_json_knows_no_infinity_and_takes_numpy_numbers() -> None:
 
 def test_written_json_is_the_same(answer: Path) -> None:
     assert (answer / "diagnosis.json").read_text("utf-8") == diagnosis_json(diagnosis())
+
+
+def test_a_second_diagnosis_takes_the_figures_of_the_first_away_and_no_others(tmp_path: Path) -> None:
+    drawn = {name: Picture("<svg ></svg>", "<svg ></svg>") for name in ("raster", "read_old")}
+    write_figures(drawn, tmp_path)
+    (tmp_path / "mine.svg").write_text("<svg></svg>")
+    write_figures({"raster": drawn["raster"]}, tmp_path)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["mine.svg", "raster.svg"]
+
+
+def test_figures_are_xml(answer: Path) -> None:
+    for path in (answer / "figures").glob("*.svg"):
+        ElementTree.parse(path)
 
 
 def test_extended_specimen_reads_back_with_the_effect_on(answer: Path) -> None:
