@@ -1,4 +1,10 @@
-"""Parametric bootstrap of the p-value: recordings made by the fitted base model, searched the same way."""
+"""Parametric bootstrap of the p-value: recordings made by the fitted base model, searched the same way.
+
+Each draw is the base model's windows plus noise of the sensor and what noise of the base motion does to them
+(covariance of `diagnosis.whitening`). The gains that a short search brings are compared with the gain that
+the same search brings on the recordings. Beyond the draws' upper quarter the tail is exponential, as that of
+chi-squared is (Knijnenburg et al., Bioinformatics 25, 2009, with shape 0).
+"""
 
 from __future__ import annotations
 
@@ -8,32 +14,51 @@ import numpy as np
 
 from diagnosis.candidates import candidates
 from diagnosis.fit import fit
-from diagnosis.found import Search
-from diagnosis.refit import Explanation, best_of, extend
+from diagnosis.found import Search, adjusted
+from diagnosis.misfit import Misfit
+from diagnosis.refit import Explanation, extend
 from diagnosis.screen import open_screen, score
 from diagnosis.select import FEWEST, Progress
 from diagnosis.starts import start_of
 from grids.specimen import Specimen
+from models.base import FloatArray
 
-REFITTED = 3
+TAIL = 0.25
+FEWEST_FOR_A_TAIL = 20
+LEAST = 1e-6
+"""No p-value from some tens of draws is told below this."""
 
 
 def p_value(specimen: Specimen, found: Search, draws: int, seed: int, progress: Progress) -> float:
-    """(1 + draws with a gain at least as large)/(1 + draws): windows from the base fit plus noise."""
-    observed = found.base.loss - min([found.base.loss, *(e.loss for e in found.singles)])
+    """Probability of a gain at least as large as that of the recordings if nothing is missing."""
     base = found.base.fitted
     predictor, m = base.misfit.predictor, base.misfit.predictor.measured
     motion = predictor.predict([base.misfit.point(base.u, base.states)])[0]
     rng = np.random.default_rng(seed)
-    above = 0
+    progress("bootstrap: the recordings", 0.9)
+    observed = gain(specimen, base.misfit, base.states)
+    drawn = []
     for draw in range(draws):
         progress(f"bootstrap {draw + 1} of {draws}", 0.9)
-        noise = rng.normal(size=motion.shape) * m.sigma[..., None]
+        noise = base.misfit.whitening.draw(rng) * m.sigma[..., None]
         made = replace(m, values=np.where(m.mask, motion + noise, 0.0))
-        misfit = replace(base.misfit, predictor=replace(predictor, measured=made))
-        again = Explanation((), fit(misfit, start_of(misfit.unknowns), base.states))
-        scores = score(open_screen(again.fitted), candidates(made, specimen))[: min(FEWEST, REFITTED)]
-        fits = [extend(again, s.candidate, start) for s in scores for start in s.starts[:1]]
-        gain = again.loss - best_of([again, *fits]).loss
-        above += gain >= observed
-    return (1 + above) / (1 + draws)
+        drawn.append(gain(specimen, replace(base.misfit, predictor=replace(predictor, measured=made)), base.states))
+    return tail_probability(observed, np.array(drawn))
+
+
+def gain(specimen: Specimen, misfit: Misfit, states: FloatArray) -> float:
+    """What the best of the strongest mechanisms of a screen takes off the base model's loss."""
+    base = Explanation((), fit(misfit, start_of(misfit.unknowns), states))
+    scores = score(open_screen(base.fitted), candidates(misfit.predictor.measured, specimen))
+    fits = [extend(base, entry.candidate, start) for entry in scores[:FEWEST] for start in entry.starts]
+    return max([0.0, *(base.loss - adjusted(each) for each in fits)])
+
+
+def tail_probability(observed: float, drawn: FloatArray) -> float:
+    """(1 + draws as large)/(1 + draws), or less where the tail of the draws says so."""
+    counted = (1.0 + np.sum(drawn >= observed)) / (1.0 + drawn.size)
+    start = float(np.quantile(drawn, 1.0 - TAIL))
+    beyond = drawn[drawn > start] - start
+    if drawn.size < FEWEST_FOR_A_TAIL or observed <= start or beyond.size == 0:
+        return float(counted)
+    return float(max(LEAST, beyond.size / drawn.size * np.exp((start - observed) / beyond.mean())))

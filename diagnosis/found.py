@@ -108,6 +108,11 @@ def adequate(explanation: Explanation) -> bool:
     return misfit_per_sample(explanation) < ADEQUATE
 
 
+def explains_all(explanation: Explanation) -> bool:
+    """Whether no window is badly off either: a peak that was clipped may be the only one."""
+    return adequate(explanation) and bool(np.max(by_window(explanation)) < BADLY)
+
+
 def rivals(found: Search) -> list[tuple[Explanation, Candidate, float]]:
     """Explanations with one effect exchanged, within the gap: (explanation, the other effect, gap)."""
     if found.best is None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 
 from diagnosis.candidates import Candidate
-from diagnosis.found import MISSING, Search, adequate, adjusted, survives
+from diagnosis.found import MISSING, Search, adequate, adjusted, explains_all, survives
 from diagnosis.null import null_distribution
 from diagnosis.outside import outside
 from diagnosis.refit import QUICK, Explanation, again, best_of, extend, from_other, reshaped, with_memory, without
@@ -21,7 +21,7 @@ FEWEST, MOST = 5, 16
 SHARE_OF_FIRST, SHARE_OF_SECOND = 0.05, 0.25
 """Of the strongest statistic: what a first or a further mechanism must reach to be refitted."""
 HOPELESS = 8.0
-"""Statistic of the strongest further mechanism under which an adequate model is not extended."""
+"""Statistic of the strongest further mechanism under which a model that explains all windows is not extended."""
 TIE = 0.5
 """Gain within which two explanations are one for the data: the earlier in the catalogue is named."""
 THOROUGH = 2
@@ -61,10 +61,13 @@ def search(base: Explanation, candidates: Sequence[Candidate], progress: Progres
 
 
 def take_best_single(found: Search) -> None:
-    """The strongest single so far, if it counts."""
-    best = min(found.singles, key=adjusted, default=None)
-    if best is not None and found.gain(best) >= MISSING and survives(found.base, best):
-        found.best = best
+    """The strongest single so far that counts; a stronger one may rest on one window that needs another effect too."""
+    for single in sorted(found.singles, key=adjusted):
+        if found.gain(single) < MISSING:
+            return
+        if survives(found.base, single):
+            found.best = single
+            return
 
 
 def worth_a_refit(scores: Sequence[Score], fewest: int, share: float) -> list[Score]:
@@ -158,7 +161,7 @@ def seconds(found: Search, explanation: Explanation) -> list[Score]:
 
 def _extended(explanation: Explanation, scores: Sequence[Score]) -> list[Explanation]:
     """Refits with one more mechanism, the strongest of a screen beside the explanation."""
-    if adequate(explanation) and max((s.statistic for s in scores), default=0.0) < HOPELESS:
+    if explains_all(explanation) and max((s.statistic for s in scores), default=0.0) < HOPELESS:
         return []
     return _refits(explanation, scores, 2, SECOND_TRIES)
 

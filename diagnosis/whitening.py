@@ -44,6 +44,15 @@ class Whitening:
         inside = np.einsum("wmk,...wm->...wk", self.basis, flat, optimize=True)
         return np.asarray(flat - np.einsum("wmk,...wk->...wm", self.basis, inside * self.shrink, optimize=True))
 
+    def draw(self, rng: np.random.Generator) -> FloatArray:
+        """Noise (W, C, N) of the covariance C, in units of sigma."""
+        white = rng.normal(size=self.scale.shape)
+        if self.basis is None or self.shrink is None:
+            return white
+        s = np.sqrt(np.maximum((1.0 - self.shrink) ** -2 - 1.0, 0.0))
+        inside = s * rng.normal(size=s.shape)
+        return np.asarray(white + np.einsum("wmk,wk->wm", self.basis, inside).reshape(white.shape))
+
 
 def sensor_noise_only(predictor: Predictor) -> Whitening:
     m = predictor.measured
