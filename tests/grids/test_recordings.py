@@ -328,3 +328,15 @@ def test_the_recordings_at_hand() -> None:
         assert found.time[-1] > 5.0 and found.suspicions == ()
     assert found.channels["level_acceleration_x"].shape == (6, found.time.size)
     assert found.levels == ("0", "1", "2", "3", "4", "5")
+
+
+def test_the_table_of_the_page_is_read_as_the_page_maps_it(written: Callable[[str, str], Path]) -> None:
+    page = (Path(__file__).resolve().parents[2] / "docs" / "recordings.md").read_text("utf-8")
+    table = page.partition("```text\n")[2].partition("```")[0]
+    mapping = page.partition("A data logger's CSV")[2].partition("```toml\n")[2].partition("```")[0]
+    rows = "".join(f"{5 * k};0,1;-0,5;0,2;0,3\n" for k in range(2, 30))
+    written("run_1.toml", mapping)
+    found = read_recording(written("run_1.csv", table + rows))
+    assert found.time_step == 0.005 and found.levels == ("0", "1")
+    assert found.channels["rotation_1"][-1] == pytest.approx(np.radians(0.5))
+    assert found.channels["level_acceleration_x"][:, -1] == pytest.approx([0.2 * GRAVITY, 0.3 * GRAVITY])
