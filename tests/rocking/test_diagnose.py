@@ -146,12 +146,11 @@ def test_what_looks_wrong_is_said(tmp_path: Path) -> None:
 
 
 def stopping(at: float) -> Callable[[str], object]:
-    """Stages in which Ctrl-C is pressed once ``at`` of the work is done."""
+    """Stages in which Ctrl-C is pressed once, when ``at`` of the work is done."""
+    pressed: list[str] = []
 
     @contextmanager
     def stages(interrupted: str) -> Iterator[Callable[[str, float], None]]:
-        pressed = []
-
         def report(text: str, share: float) -> None:
             if share >= at and not pressed:
                 pressed.append(text)
