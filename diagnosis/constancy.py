@@ -23,19 +23,36 @@ SCAN_FLAG = 25.0
 SPELL = "a spell of time"
 SHORTEST_SPELL = 2
 """Windows."""
+SAME_FORCE = {
+    ("lean", "direction of motion"): ("coulomb_damping", "side"),
+    ("stiffness", "direction of motion"): ("coulomb_damping", "size of the rotation"),
+}
+"""One force under two names: sign(theta theta') = sign(theta') sign(theta); told as the right one."""
+WITHOUT_STRENGTH = ("lean",)
+"""A couple in one direction has a sign, not a strength."""
+STRONGER = {
+    "side": ("for theta < 0, to the left", "for theta > 0, to the right"),
+    "amplitude of the motion": ("in weak motion", "in strong motion"),
+    "size of the rotation": ("at small rotation", "at large rotation"),
+    "time": ("early", "late"),
+    "direction of motion": ("on the way back", "on the way out"),
+}
+"""Where a force is, with the smaller and with the larger value of what it depends on."""
 
 
 @dataclass(frozen=True)
 class Tested:
     """One test: statistic of a force of ``kind`` modulated by ``depends_on`` (nothing: the plain force).
 
-    ``sign``: positive where the force is stronger with the larger value (the right side, later).
+    ``sign``: positive where the force is stronger with the larger value (the right side, later);
+    ``extra``: sign of the part that depends, a force that resists the motion or the rotation being positive.
     """
 
     kind: str
     depends_on: str
     statistic: float
     sign: float = 0.0
+    extra: float = 0.0
 
 
 def modulations(forces: Forces) -> Iterator[tuple[str, FloatArray]]:
@@ -84,7 +101,7 @@ def tests(forces: Forces) -> list[Tested]:
             score = screen.scores_with_residual(column) - cross * along
             sign = float(np.sign(score) * np.sign(along))
             statistic = without_loudest(*screen.by_window(column - cross * plain))
-            found.append(Tested(kind, depends_on, statistic / excess, sign))
+            found.append(Tested(kind, depends_on, statistic / excess, sign, -float(np.sign(score))))
         spell = _spell(forces, plain) / excess
         found.append(Tested(kind, SPELL, spell * FLAG / SCAN_FLAG))
     return sorted(found, key=lambda t: -t.statistic)
@@ -120,12 +137,25 @@ def _but_loudest(score: FloatArray, information: FloatArray) -> tuple[float, flo
 
 
 def flags(tested: list[Tested], threshold: float = FLAG) -> tuple[Constancy, ...]:
-    """Dependences beyond the threshold: one a kind of force, the strongest first.
+    """Dependences beyond the threshold: one a kind of force, the strongest first, each force under one name.
 
     Plain forces are no flags: each has its mechanism in the library, which was refitted and is the better judge.
     """
-    found: dict[str, Constancy] = {}
+    strongest: dict[str, Tested] = {}
     for test in tested:
-        if test.depends_on and test.statistic >= threshold and test.kind not in found:
-            found[test.kind] = Constancy(test.kind, test.depends_on, test.statistic)
+        if test.depends_on and test.statistic >= threshold:
+            strongest.setdefault(test.kind, test)
+    found: dict[str, Constancy] = {}
+    for test in strongest.values():
+        one = flag(test, test.statistic)
+        found.setdefault(one.parameter, one)
     return tuple(found.values())
+
+
+def flag(test: Tested, evidence: float) -> Constancy:
+    """A dependence told, with the end at which the force is stronger."""
+    kind, depends_on = SAME_FORCE.get((test.kind, test.depends_on), (test.kind, test.depends_on))
+    ends = STRONGER.get(depends_on)
+    if ends is None or kind in WITHOUT_STRENGTH or not test.extra:
+        return Constancy(kind, depends_on, evidence)
+    return Constancy(kind, depends_on, evidence, ends[1 if test.extra > 0.0 else 0])

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from diagnosis.constancy import inflation, tests
+from diagnosis.constancy import flag, inflation, tests
 from diagnosis.forces import forces
 from diagnosis.refit import Explanation
 from diagnosis.result import Constancy
@@ -34,4 +34,4 @@ def outside(single: Explanation, seconds: Sequence[Score]) -> Constancy | None:
     library = max((s.statistic for s in seconds), default=0.0)
     if largest < FACTOR * library + MARGIN:
         return None
-    return Constancy(test.kind, test.depends_on, largest - library)
+    return flag(test, largest - library)

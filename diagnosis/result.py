@@ -11,6 +11,9 @@ from numpy.typing import NDArray
 
 Verdict = Literal["missing", "nothing_missing", "not_in_library", "cannot_tell_apart"]
 
+LEAST_P = 1e-6
+"""Least p-value told; it stands for "at most this": nobody has tested a null distribution further out."""
+
 WHERE = (
     "impact", "between_impacts", "first_uplift", "large_rotation", "small_rotation", "left", "right", "late",
     "above_10_hz", "everywhere",
@@ -30,7 +33,10 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Effect:
-    """A mechanism that the recordings ask for; ``evidence`` is its gain in 2 log likelihood, refitted."""
+    """A mechanism that the recordings ask for.
+
+    ``evidence``: its gain in 2 log likelihood, refitted; ``p_value``: chance of it, LEAST_P for at most that.
+    """
 
     name: str
     effect_class: str
@@ -49,6 +55,20 @@ class Rival:
 
 
 @dataclass(frozen=True)
+class Undecided:
+    """A suspect that is not named although chance hardly brings its ``gain`` (2 log likelihood, shapes paid for).
+
+    ``rests_on``: "one window" or "one recording" without which too little is left; "" where the gain is
+    under what a name takes.
+    """
+
+    name: str
+    effect_class: str
+    gain: float
+    rests_on: str
+
+
+@dataclass(frozen=True)
 class Located:
     """An interval of a recording in which the base model misses; ``share`` of the excess misfit."""
 
@@ -62,21 +82,26 @@ class Located:
 
 @dataclass(frozen=True)
 class Constancy:
-    """A parameter that is not the same everywhere, and what it depends on."""
+    """A parameter that is not the same everywhere, what it depends on, and where it is ``stronger`` ("" if untold)."""
 
     parameter: str
     depends_on: str
     evidence: float
+    stronger: str = ""
 
 
 @dataclass(frozen=True)
 class Fit:
-    """Relative rms misfit over windows and channels before and after, on one set of recordings."""
+    """Relative rms misfit over windows and channels before and after, on one set of recordings.
+
+    ``noise_free``: these recordings have no noise of their own, the floor is that of rounding.
+    """
 
     before: float
     after: float
     noise_floor: float
     share_of_achievable: float | None = None
+    noise_free: bool = False
 
 
 @dataclass(frozen=True)
@@ -140,8 +165,8 @@ class Diagnosis:
     screen: tuple[Screened, ...]
     null_band: float
     """The gain that chance alone exceeds with 5 % probability."""
-    p_value: float
-    """Of "something is missing"."""
+    p_value: float | None
+    """Of "something is missing"; None where a stopped search has tested nothing."""
     next_experiment: Mapping[str, Any] | None
     windows: tuple[Windows, ...]
     traces: tuple[Trace, ...]
@@ -151,4 +176,12 @@ class Diagnosis:
     """Shape of the force that is not in the library: terms over (theta, theta', contact, a) and curves."""
     provenance: Mapping[str, Any] = field(default_factory=dict)
     finished: bool = True
-    """False when the user stopped it: what stands is what was found so far."""
+    """False when the user stopped the search: what stands is what was found so far."""
+    undecided: Undecided | None = None
+    """With ``nothing_missing``: what is not named although chance hardly brings it."""
+    unexplained: bool = False
+    """The best model leaves so much of the motion that a name would mean nothing; then there are no effects."""
+    suspicions: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """By recording: what looked wrong with it when it was read."""
+    skipped: tuple[str, ...] = ()
+    """What a Ctrl-C after the search has left out."""
