@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,25 +12,24 @@ from diagnosis import bootstrap as bootstrapping
 from diagnosis.candidates import candidates
 from diagnosis.constancy import Tested, flags, tests
 from diagnosis.experiment import next_experiment
-from diagnosis.forces import forces
-from diagnosis.found import Search, adjusted, evidence, misfit_per_sample, rivals
-from diagnosis.heldout import Shown, compare, fit_figures, horizons, windows_of
+from diagnosis.forces import Forces, forces
+from diagnosis.found import Search, evidence, misfit_per_sample, rivals
+from diagnosis.heldout import Shown, compare, fit_figures, horizons, traces_of, windows_of
 from diagnosis.intervals import estimates
+from diagnosis.judgement import explains, p_of_effects, p_of_missing, undecided, verdict_of
 from diagnosis.locate import locate
 from diagnosis.missing_force import missing_force
 from diagnosis.refit import Explanation
 from diagnosis.rescale import to_true_peak
-from diagnosis.result import Diagnosis, Effect, Estimate, Rival, Screened, Verdict
+from diagnosis.result import LEAST_P, Diagnosis, Effect, Estimate, Located, Rival, Screened
 from diagnosis.select import Progress, search, take_best_single
 from diagnosis.sensors import SENSORS
 from diagnosis.setup import base_fit, measure, silent
+from diagnosis.stages import Stages
 from diagnosis.statement import statement
 from diagnosis.whole_runs import with_runs_from_rest
 from grids.recordings.base import Recording
 from grids.specimen import Specimen
-
-INADEQUATE = 1.35
-"""Misfit per sample of the final model beyond which no mechanism of the library is adequate."""
 
 
 def diagnose(
@@ -45,7 +45,8 @@ def diagnose(
 
     ``bootstrap``: draws of a parametric bootstrap for the p-value (0: the score's null distribution).
     ``progress`` is called with (what is being done, share done). A KeyboardInterrupt during the search
-    ends it: the answer holds what was found so far and has ``finished`` false. Raises InputError.
+    ends it: the answer holds what was found so far and has ``finished`` false. One after the search leaves
+    out what the answer can do without (``skipped``); a second one is raised. Raises InputError.
     """
     progress("calibrating the base model", 0.02)
     measured = measure(specimen, training)
@@ -59,60 +60,82 @@ def diagnose(
         finished = False
         if found.best is None:
             take_best_single(found)
-    if found.scores:
-        progress("testing constancy", 0.85)
-    return _assemble(specimen, found, holdout, bootstrap, progress, seed, finished)
+    return _assemble(specimen, found, training, holdout, bootstrap, progress, seed, finished)
 
 
 def _assemble(
     specimen: Specimen,
     found: Search,
+    training: Sequence[Recording],
     holdout: Sequence[Recording],
     draws: int,
     progress: Progress,
     seed: int,
     finished: bool,
 ) -> Diagnosis:
-    chosen, measured = found.chosen, found.base.fitted.misfit.predictor.measured
-    about = forces(chosen.fitted)
-    tested = tests(about)
-    flagged = flags(tested, found.more)
+    stages = Stages(stopped=not finished)
+    measured = found.base.fitted.misfit.predictor.measured
+    shown = [stages.needed(lambda: compare(found.base, found.chosen, measured))]
+    unexplained = not explains(shown[0])
+    if unexplained:  # what a model says that explains nothing is no name
+        found = replace(found, best=None, outside=None)
+        shown = [replace(shown[0], after=shown[0].before, point_after=shown[0].point_before)]
+    chosen = found.chosen
+
+    def of_chosen() -> Forces:
+        progress("testing constancy", 0.85)
+        return forces(chosen.fitted)
+
+    about = stages.needed(of_chosen)
+    tested = stages.needed(lambda: tests(about))
+    flagged = () if unexplained else flags(tested, found.more)
     if found.outside is not None:
         flagged = (found.outside, *(f for f in flagged if f.parameter != found.outside.parameter))
-    adequate = misfit_per_sample(chosen) < INADEQUATE
     near = rivals(found)
-    verdict = _verdict(found, near, bool(flagged), adequate, finished)
-    progress("intervals", 0.9)
-    gain = found.base.loss - (found.best or min(found.singles, key=adjusted, default=found.base)).loss
-    p_value = found.null.p_value(gain) if found.null else 1.0
+    verdict = verdict_of(found, near, bool(flagged), not unexplained, finished)
+    gains = stages.needed(lambda: evidence(found).tolist())
+    p_value = p_of_missing(found, gains, finished)
     if draws and finished:
-        p_value = bootstrapping.p_value(specimen, found, draws, seed, progress)
-    effects, base = _estimates(found, p_value, profile=finished)
-    progress("before and after", 0.95)
-    shown = [compare(found.base, chosen, measured)]
-    held = None
-    if holdout:
-        held = compare(found.base, chosen, measure(specimen, holdout, measured.reference_peak))
+        score_p = p_value
+        p_value = stages.optional(
+            "the bootstrap (the p-value is that of the score)",
+            lambda: max(bootstrapping.p_value(specimen, found, draws, seed, progress), LEAST_P),
+            lambda: score_p,
+        )
+    effects, base = stages.optional(
+        "the profile likelihood (the intervals are symmetric instead)",
+        lambda: _estimates(found, gains, p_value, progress),
+        lambda: _estimates(found, gains, p_value, None),
+    )
+
+    def of_holdout() -> Shown:
+        progress("before and after", 0.95)
+        return compare(found.base, chosen, measure(specimen, holdout, measured.reference_peak))
+
+    held = stages.needed(of_holdout) if holdout else None
+    if held:
         shown.append(held)
-    missing = verdict != "nothing_missing"
-    at_base = tests(forces(found.base.fitted)) if found.best is not None else tested
+    missing = verdict != "nothing_missing" and (finished or bool(effects))
     train = fit_figures(shown[0], missing)
     held_fit = fit_figures(held, missing) if held else None
-    sensors_only = bool(effects) and all(e.name in SENSORS for e in effects)
-    explained = found.best is not None and verdict != "not_in_library"
-    located = locate(shown[0], at_base, sensors_only, explained, seed) if missing else ()
-    rivals_told = tuple(Rival(c.name, c.effect_class, gap) for _, c, gap in near)
-    experiment = next_experiment(found, near) if finished and verdict == "cannot_tell_apart" else None
-    known = {**measured.model.mechanisms, **SENSORS}
-    said = statement(
-        verdict, effects, rivals_told, located, flagged, train, held_fit, p_value, known, experiment, finished
-    )
-    return Diagnosis(
+
+    def where() -> tuple[Located, ...]:
+        at_base = tests(forces(found.base.fitted)) if found.best is not None else tested
+        sensors_only = bool(effects) and all(e.name in SENSORS for e in effects)
+        explained = found.best is not None and verdict != "not_in_library"
+        return locate(shown[0], at_base, sensors_only, explained, seed) if missing else ()
+
+    experiment, force = None, None
+    if finished and verdict == "cannot_tell_apart":
+        experiment = stages.optional("the next experiment", lambda: next_experiment(found, near), lambda: None)
+    if verdict == "not_in_library" and not unexplained:
+        force = stages.optional("the shape of the missing force", lambda: missing_force(about, tested), lambda: None)
+    answer = Diagnosis(
         verdict=verdict,
-        statement=said,
+        statement="",
         effects=effects,
-        rivals=rivals_told,
-        located=located,
+        rivals=tuple(Rival(c.name, c.effect_class, gap) for _, c, gap in near),
+        located=stages.needed(where),
         constancy=flagged,
         train=train,
         holdout=held_fit,
@@ -122,40 +145,45 @@ def _assemble(
         p_value=p_value,
         next_experiment=experiment,
         windows=tuple(w for k, s in enumerate(shown) for w in windows_of(s, k == 1)),
-        traces=with_runs_from_rest(specimen, shown, found.base, chosen),
-        prediction_horizon=_horizons(shown, specimen),
-        missing_force=missing_force(about, tested) if verdict == "not_in_library" else None,
+        traces=stages.optional(
+            "runs from rest",
+            lambda: with_runs_from_rest(specimen, shown, found.base, chosen),
+            lambda: tuple(t for k, s in enumerate(shown) for t in traces_of(s, k == 1)),
+        ),
+        prediction_horizon=stages.optional("prediction horizons", lambda: _horizons(shown, specimen), dict),
+        missing_force=force,
         provenance=_provenance(specimen, found, tested, seed),
         finished=finished,
+        undecided=undecided(found, p_value) if verdict == "nothing_missing" else None,
+        unexplained=unexplained,
+        suspicions={r.name: r.suspicions for r in (*training, *holdout) if r.suspicions},
     )
+    known = {**measured.model.mechanisms, **SENSORS}
+    answer = replace(answer, skipped=tuple(stages.skipped) if finished else ())
+    return replace(answer, statement=statement(answer, known))
 
 
-def _verdict(found: Search, near: Sequence[Any], flagged: bool, adequate: bool, finished: bool) -> Verdict:
-    if not finished:  # what was not tried may explain it as well
-        return "cannot_tell_apart"
-    if flagged or not adequate:
-        return "not_in_library"
-    if found.best is None:
-        return "nothing_missing"
-    own = set(found.best.classes)
-    others = {c.effect_class for _, c, _ in near}
-    return "cannot_tell_apart" if others - own else "missing"
-
-
-def _estimates(found: Search, p_value: float, profile: bool) -> tuple[tuple[Effect, ...], dict[str, Estimate]]:
+def _estimates(
+    found: Search, gains: Sequence[float], p_missing: float | None, progress: Progress | None
+) -> tuple[tuple[Effect, ...], dict[str, Estimate]]:
+    """Effects, strongest first, and base parameters; by profile likelihood where there is a ``progress`` to tell."""
     chosen = found.chosen
+    if progress:
+        progress("intervals", 0.9)
     named = [x.name for c in chosen.candidates for x in c.unknowns[:1]]
-    values = estimates(chosen.fitted, named if profile else ())
-    gains = evidence(found)
+    values = estimates(chosen.fitted, named if progress else ())
+    chances = p_of_effects(found, gains)
+    if len(chances) == 1 and p_missing is not None:  # of the one effect it may be the bootstrap's
+        chances = [p_missing]
     effects = []
-    for candidate, gain in sorted(zip(chosen.candidates, gains, strict=True), key=lambda pair: -pair[1]):
+    order = sorted(zip(chosen.candidates, gains, chances, strict=True), key=lambda entry: -entry[1])
+    for candidate, gain, chance in order:
         parameters = {x.name.partition(".")[2]: values.pop(x.name) for x in candidate.unknowns}
         for name, value in candidate.held.items():
             short = name.partition(".")[2]
             parameters[short] = Estimate(value, value, value, candidate.mechanism.parameter(short).unit)
         parameters = to_true_peak(chosen, candidate, parameters)
-        each = found.null.p_value(float(gain)) if found.null and len(gains) > 1 else p_value
-        effects.append(Effect(candidate.name, candidate.effect_class, parameters, float(gain), each))
+        effects.append(Effect(candidate.name, candidate.effect_class, parameters, gain, chance))
     return tuple(effects), values
 
 
@@ -186,6 +214,7 @@ def _horizons(shown: Sequence[Shown], specimen: Specimen) -> dict[str, tuple[flo
 
 def _provenance(specimen: Specimen, found: Search, tested: Sequence[Tested], seed: int) -> Mapping[str, Any]:
     measured = found.base.fitted.misfit.predictor.measured
+    units = {q.name: q.unit for q in measured.model.observables}
     return {
         "specimen": specimen.title,
         "model": specimen.model,
@@ -193,7 +222,10 @@ def _provenance(specimen: Specimen, found: Search, tested: Sequence[Tested], see
         "recordings": [r.name for r in measured.recordings],
         "windows": len(measured.windows),
         "channels": list(measured.channels),
-        "noise": {c: [float(s) for s in np.unique(measured.sigma[:, k])] for k, c in enumerate(measured.channels)},
+        "noise": {
+            c: {"sigma": np.unique(measured.sigma[:, k]).tolist(), "unit": units[c]}
+            for k, c in enumerate(measured.channels)
+        },
         "misfit_per_sample": misfit_per_sample(found.chosen),
         "constancy_threshold": found.more,
         "largest_constancy": tested[0].statistic if tested else 0.0,

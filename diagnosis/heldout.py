@@ -16,6 +16,7 @@ from diagnosis.fit import fit_thoroughly
 from diagnosis.measured import Measured
 from diagnosis.memory import counted
 from diagnosis.misfit import Misfit
+from diagnosis.noise import RELATIVE_FLOOR
 from diagnosis.prediction import Point, Predictor
 from diagnosis.refit import Explanation
 from diagnosis.result import Fit, Trace, Windows
@@ -84,7 +85,13 @@ def fit_figures(shown: Shown, missing: bool) -> Fit:
     before, after = (relative_misfit(shown.measured, p) for p in (shown.before, shown.after))
     floor = relative_misfit(shown.measured, None)
     share = (before - after) / (before - floor) if missing and before > floor else None
-    return Fit(before, after, floor, share)
+    return Fit(before, after, floor, share, _noise_free(shown.measured))
+
+
+def _noise_free(m: Measured) -> bool:
+    """Whether the noise of every channel is the least that is assumed."""
+    peak = np.array([[np.max(np.abs(r.channels[c])) for c in m.channels] for r in m.recordings])
+    return bool(np.all(m.sigma <= 1.001 * RELATIVE_FLOOR * peak[m.recording_of]))
 
 
 def windows_of(shown: Shown, held_out: bool) -> list[Windows]:

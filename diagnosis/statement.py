@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from string import Formatter
 
 from diagnosis.forces import KINDS
-from diagnosis.result import Constancy, Effect, Fit, Located, Rival, Verdict
+from diagnosis.result import LEAST_P, Constancy, Diagnosis, Effect, Fit, Located
 from models.base import Mechanism
 
 WHERE = {
@@ -23,68 +23,104 @@ WHERE = {
 }
 
 
-def statement(
-    verdict: Verdict,
-    effects: Sequence[Effect],
-    rivals: Sequence[Rival],
-    located: Sequence[Located],
-    constancy: Sequence[Constancy],
-    train: Fit,
-    holdout: Fit | None,
-    p_value: float,
-    known: Mapping[str, Mechanism],
-    next_experiment: Mapping[str, object] | None,
-    finished: bool,
-) -> str:
+def statement(found: Diagnosis, known: Mapping[str, Mechanism]) -> str:
     """The paragraph; every number in it stands in the other fields too."""
-    parts: list[str] = []
-    if verdict == "nothing_missing":
+    parts = [_suspicion(name, what) for name, all_of in found.suspicions.items() for what in all_of]
+    if not found.finished and not found.effects:
         parts.append(
-            "The model explains the recordings within their noise; nothing is missing "
-            f"(the strongest suspect is no stronger than chance, p = {p_value:.2g})."
+            "The search was stopped before anything was found: the base model is calibrated, and whether something is "
+            "missing from it is not known. Run it again."
         )
-    else:
-        if effects or finished:
-            chance = "far beyond chance" if p_value < 1e-6 else f"p = {p_value:.1g}"
-            parts.append(f"The model leaves something out ({chance}).")
-        if located:
-            parts.append(_where(located))
-    if effects:
-        told = [effect_told(effect, known[effect.name]) for effect in effects]
-        opening = "Best explanation" if verdict in ("missing", "cannot_tell_apart") else "What the library can say"
+        return " ".join(parts)
+    if found.verdict == "nothing_missing":
+        parts.append(_nothing(found))
+        return " ".join([*parts, *_skipped(found)])
+    parts.append(f"The model leaves something out ({_beyond_chance(found.p_value)}).")
+    if found.located:
+        parts.append(_where(found.located))
+    if found.unexplained:
+        parts.append(
+            "Even the best model of the library leaves most of the motion unexplained, so a name would mean nothing: "
+            "check the signs, units and clocks of the recordings, and the specimen."
+        )
+    if found.effects:
+        told = [effect_told(effect, known[effect.name]) for effect in found.effects]
+        opening = "What the library can say" if found.verdict == "not_in_library" else "Best explanation"
         parts.append(f"{opening}: {'; and '.join(told)}.")
-    if verdict == "not_in_library":
+    if found.verdict == "not_in_library" and not found.unexplained:
         parts.append("That does not settle it: what is missing is not in the library of mechanisms.")
-        parts += [_flag(found) for found in constancy[:2]]
-    if verdict == "cannot_tell_apart" and rivals:
-        names = ", ".join(f"{r.name.replace('_', ' ')} ({r.evidence_gap:.1f} less)" for r in rivals)
+        parts += [_flag(flag) for flag in found.constancy[:2]]
+    if found.verdict == "cannot_tell_apart" and found.rivals:
+        names = ", ".join(f"{r.name.replace('_', ' ')} ({r.evidence_gap:.1f} less)" for r in found.rivals)
         parts.append(f"These recordings cannot tell it apart from: {names}.")
-    elif rivals:
-        names = ", ".join(r.name.replace("_", " ") for r in rivals)
+    elif found.rivals:
+        names = ", ".join(r.name.replace("_", " ") for r in found.rivals)
         parts.append(f"{names[0].upper()}{names[1:]} would explain nearly as much.")
-    if verdict != "nothing_missing":
-        parts.append(_fit(train, holdout))
-    if next_experiment and next_experiment.get("static_test"):
-        parts.append(f"To settle it: {next_experiment['static_test']}.")
-    if not finished:
+    parts.append(_fit(found.train, found.holdout))
+    if found.next_experiment and found.next_experiment.get("static_test"):
+        parts.append(f"To settle it: {found.next_experiment['static_test']}.")
+    if not found.finished:
         parts.append(
             "The search was stopped before its end: this is what stood by then, and what was not tried may explain "
             "the recordings as well."
         )
-    return " ".join(parts)
+    return " ".join([*parts, *_skipped(found)])
+
+
+def _suspicion(recording: str, what: str) -> str:
+    return f"Check this first: {recording}: {what}{'' if what.endswith(('.', '?', '!')) else '.'}"
+
+
+def _nothing(found: Diagnosis) -> str:
+    """Nothing is named, because there is nothing or because a suspect is not sure enough."""
+    suspect = found.undecided
+    if suspect is None:
+        chance = f", {p_text(found.p_value)}" if found.p_value is not None else ""
+        return (
+            "The model explains the recordings within their noise; nothing is missing "
+            f"(the strongest suspect is no stronger than chance{chance})."
+        )
+    why = (
+        f"but that rests on {suspect.rests_on}"
+        if suspect.rests_on
+        else "less than a name takes: a weak effect, or a rare chance"
+    )
+    return (
+        "Nothing is named as missing from the model, but one thing is not decided: "
+        f"{suspect.name.replace('_', ' ')} gains {suspect.gain:.0f} in 2 log likelihood ({p_text(found.p_value)}), "
+        f"{why}. Another recording would decide."
+    )
+
+
+def p_text(p_value: float | None) -> str:
+    """A p-value as papers print it."""
+    if p_value is None:
+        return "not tested"
+    return "p < 1e-6" if p_value <= LEAST_P else f"p = {p_value:.2g}"
+
+
+def _beyond_chance(p_value: float | None) -> str:
+    far = p_value is not None and p_value <= LEAST_P
+    return f"far beyond chance, {p_text(p_value)}" if far else p_text(p_value)
+
+
+def _skipped(found: Diagnosis) -> list[str]:
+    return [f"Stopped after the search; left out: {', '.join(found.skipped)}."] if found.skipped else []
 
 
 _NOUNS = ("side", "amplitude of the motion", "size of the rotation", "time", "direction of motion")
 
 
 def _flag(found: Constancy) -> str:
+    what = f"What acts is a {KINDS[found.parameter]}"
+    stronger = f", stronger {found.stronger}" if found.stronger else ""
     if found.depends_on in _NOUNS:
-        return f"What acts is a {KINDS[found.parameter]} that depends on the {found.depends_on}."
+        return f"{what} that depends on the {found.depends_on}{stronger}."
     if found.depends_on == "a spell of time":
-        return f"What acts is a {KINDS[found.parameter]} that is there for a while only."
+        return f"{what} that is there for a while only."
     if found.depends_on.startswith("recording"):
-        return f"What acts is a {KINDS[found.parameter]} that is not the same in {found.depends_on}."
-    return f"What acts is a {KINDS[found.parameter]} ({found.depends_on})."
+        return f"{what} that is not the same in {found.depends_on}."
+    return f"{what} ({found.depends_on})."
 
 
 def _where(located: Sequence[Located]) -> str:
@@ -117,10 +153,18 @@ def _form(sentence: str, parameter: str) -> str:
 
 
 def _fit(train: Fit, holdout: Fit | None) -> str:
-    text = f"The misfit falls from {train.before:.3f} to {train.after:.3f} of the signal on the recordings fitted to"
+    text = f"The misfit {_change(train)} of the signal on the recordings fitted to"
     if holdout is None:
         return text + "; no recording was held out."
-    text += f", and from {holdout.before:.3f} to {holdout.after:.3f} on those held out"
-    if holdout.share_of_achievable is not None:
-        text += f" ({holdout.share_of_achievable:.0%} of what the noise allows)"
+    text += f", and {_change(holdout)} on those held out"
+    if holdout.share_of_achievable is not None and holdout.after != holdout.before:
+        share = f"{holdout.share_of_achievable:.0%}"
+        of = "of it; they have no noise of their own" if holdout.noise_free else "of what the noise allows"
+        text += f" ({share} {of})"
     return text + "."
+
+
+def _change(fit: Fit) -> str:
+    if fit.after == fit.before:
+        return f"is {fit.after:.3f}"
+    return f"{'falls' if fit.after < fit.before else 'rises'} from {fit.before:.3f} to {fit.after:.3f}"

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from diagnosis.result import Diagnosis, Estimate, Fit
+from diagnosis.result import Diagnosis, Estimate, Fit, Undecided
 from study.provenance import as_json
 
 
@@ -16,7 +16,7 @@ def diagnosis_json(diagnosis: Diagnosis) -> str:
 
 
 def as_mapping(diagnosis: Diagnosis) -> dict[str, Any]:
-    """The same as plain mappings and lists; whether the search was stopped stands in ``provenance``."""
+    """The same as plain mappings and lists; whether and what was stopped stands in ``provenance``."""
     return {
         "verdict": diagnosis.verdict,
         "effects": [
@@ -45,25 +45,50 @@ def as_mapping(diagnosis: Diagnosis) -> dict[str, Any]:
             for place in diagnosis.located
         ],
         "constancy": [
-            {"parameter": found.parameter, "depends_on": found.depends_on, "evidence": found.evidence}
+            {
+                "parameter": found.parameter,
+                "depends_on": found.depends_on,
+                "stronger": found.stronger or None,
+                "evidence": found.evidence,
+            }
             for found in diagnosis.constancy
         ],
+        "undecided": None if diagnosis.undecided is None else _undecided(diagnosis.undecided),
+        "suspicions": [
+            {"recording": name, "suspicion": what} for name, all_of in diagnosis.suspicions.items() for what in all_of
+        ],
+        "p_value": diagnosis.p_value,
         "fit": {
             "train": _fit(diagnosis.train),
             "holdout": None if diagnosis.holdout is None else _holdout(diagnosis.holdout),
         },
         "statement": diagnosis.statement,
         "next_experiment": None if diagnosis.next_experiment is None else dict(diagnosis.next_experiment),
-        "provenance": {**diagnosis.provenance, "finished": diagnosis.finished},
+        "provenance": {**diagnosis.provenance, "finished": diagnosis.finished, "skipped": list(diagnosis.skipped)},
     }
 
 
 def _estimate(value: Estimate) -> dict[str, Any]:
-    return {"estimate": value.estimate, "low95": value.low95, "high95": value.high95, "unit": value.unit}
+    return {
+        "estimate": value.estimate,
+        "low95": value.low95,
+        "high95": value.high95,
+        "unit": value.unit,
+        "at_bound": value.at_bound or None,
+    }
+
+
+def _undecided(suspect: Undecided) -> dict[str, Any]:
+    return {
+        "name": suspect.name,
+        "class": suspect.effect_class,
+        "gain": suspect.gain,
+        "rests_on": suspect.rests_on or None,
+    }
 
 
 def _fit(fit: Fit) -> dict[str, Any]:
-    return {"before": fit.before, "after": fit.after}
+    return {"before": fit.before, "after": fit.after, "noise_floor": fit.noise_floor}
 
 
 def _holdout(fit: Fit) -> dict[str, Any]:

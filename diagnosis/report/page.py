@@ -29,6 +29,18 @@ HEADLINES = {
 }
 
 
+def headline(found: Diagnosis) -> str:
+    """The answer in a line."""
+    names = words.listed(words.plain(effect.name) for effect in found.effects)
+    if not found.finished:
+        return f"Stopped early; found so far: {names}" if names else "Stopped before anything was found"
+    if found.unexplained:
+        return "The model does not explain the recordings"
+    if found.undecided:
+        return f"Nothing is named; not decided: {words.plain(found.undecided.name)}"
+    return HEADLINES[found.verdict].format(names=names)
+
+
 def report_page(
     diagnosis: Diagnosis,
     specimen: Specimen,
@@ -46,7 +58,7 @@ def report_page(
             d=diagnosis,
             specimen=specimen,
             model=model,
-            headline=HEADLINES[diagnosis.verdict].format(names=words.listed(words.plain(e.name) for e in effects)),
+            headline=headline(diagnosis),
             effects=[
                 (effect, entry, entry.says({name: value.estimate for name, value in effect.parameters.items()}))
                 for effect, entry in zip(diagnosis.effects, effects, strict=True)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 
 from diagnosis.forces import KINDS
-from diagnosis.result import Estimate
+from diagnosis.result import LEAST_P, Estimate
 from diagnosis.statement import WHERE
 
 CHANNEL_WORDS = {
@@ -109,13 +109,15 @@ def percent(share: float, digits: int = 2) -> str:
     return f"{number(100 * share, digits)} %"
 
 
-def chance(p_value: float) -> str:
+def chance(p_value: float | None) -> str:
     """A p-value as odds: "1 in 2 000"."""
+    if p_value is None:
+        return "not tested"
     if not 0.0 < p_value < 1.0:
         return "under one in a million" if p_value <= 0.0 else "certain"
     if p_value > UNSURE:
         return percent(p_value)
-    if p_value < 1e-6:
+    if p_value <= LEAST_P:
         return "under one in a million"
     return f"1 in {number(1.0 / p_value, 2)}"
 

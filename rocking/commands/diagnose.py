@@ -23,8 +23,9 @@ def diagnose(
 ) -> None:
     """Say what the model leaves out of recordings, model it, and show the fit improve.
 
-    Writes diagnosis.json, extended.toml, report.html, fit.nc and figures. Ctrl-C ends the search and
-    writes what was found until then. The exit code is 0 whatever is found, 2 for unusable input.
+    Writes diagnosis.json, extended.toml, report.html, fit.nc and figures. Ctrl-C ends the search, or the
+    bootstrap or the intervals after it, and writes what was found until then. The exit code is 0 whatever
+    is found, 2 for unusable input.
     """
     from rocking.instruments import read_specimen
 
@@ -37,6 +38,7 @@ def diagnose(
         from diagnosis.report import write_answer
 
         found = diagnose_recordings(wall, train, test, bootstrap=bootstrap, progress=progress)
+    with stages(f"stopped while the answer was written; {out} is not complete") as progress:
         progress("writing the report", 0.98)
         paths = write_answer(found, wall, train, test, out)
     typer.echo(found.statement)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from diagnosis import calibrate, diagnose
-from diagnosis.result import Diagnosis
+from diagnosis.result import LEAST_P, Diagnosis
 from models.errors import InputError
 from tests.diagnosis.made import SPECIMEN, TRUE, recording
 
@@ -24,7 +24,7 @@ def test_nothing_missing() -> None:
     alone = calibrate(SPECIMEN, [recording("train_1", 1), recording("train_2", 2)], profile=False)
     assert alone.misfit == pytest.approx(found.train.before, rel=1e-9)
     assert not found.effects and not found.rivals
-    assert found.p_value > 0.001
+    assert found.p_value is not None and found.p_value > 0.001
     assert found.holdout is not None and found.holdout.share_of_achievable is None
     for name in ("width", "height"):
         value = found.base[name]
@@ -38,7 +38,7 @@ def test_restitution_is_named_and_recovered() -> None:
     value = found.effects[0].parameters["factor_on_housner"]
     assert value.low95 <= truth <= value.high95
     assert value.high95 - value.low95 < 0.03
-    assert found.p_value < 1e-6 and found.effects[0].evidence > 50
+    assert found.p_value == found.effects[0].p_value == LEAST_P and found.effects[0].evidence > 50
     assert found.holdout is not None and found.holdout.share_of_achievable is not None
     assert found.holdout.share_of_achievable > 0.8
     assert found.located and "impact" in found.located[0].where
@@ -54,6 +54,34 @@ def test_a_stopped_search_tells_what_it_has() -> None:
     assert not found.finished
     assert found.effects and found.effects[0].name == "restitution"
     assert "stopped" in found.statement
+
+
+@pytest.mark.parametrize("stage", ["intervals", "bootstrap", "before and after"])
+def test_ctrl_c_after_the_search_leaves_the_answer(stage: str) -> None:
+    pressed = []
+
+    def stop(text: str, share: float) -> None:
+        if text.startswith(stage) and not pressed:
+            pressed.append(text)
+            raise KeyboardInterrupt
+
+    draws = 20 if stage == "bootstrap" else 0
+    found = diagnose(SPECIMEN, [recording("train_1", 1)], [recording("test_1", 3)], bootstrap=draws, progress=stop)
+    assert pressed and found.finished and found.verdict == "nothing_missing"
+    assert found.p_value is not None and found.p_value > 0.001 and found.holdout is not None and found.base
+    assert found.skipped and "left out" in found.statement
+    assert ("bootstrap" in found.skipped[0]) == (stage == "bootstrap")
+
+
+def test_a_search_stopped_at_once_claims_nothing() -> None:
+    def stop(text: str, share: float) -> None:
+        if text.startswith("screening"):
+            raise KeyboardInterrupt
+
+    found = diagnose(SPECIMEN, [recording("train_1", 1)], [recording("test_1", 3)], progress=stop)
+    assert not found.finished and not found.effects and not found.located and found.p_value is None
+    assert found.holdout is not None and found.holdout.share_of_achievable is None
+    assert "stopped before anything was found" in found.statement and "leaves something out" not in found.statement
 
 
 def test_priors_hold_what_the_recordings_do_not_tell() -> None:

@@ -161,7 +161,7 @@ def diagnosis(verdict: Verdict = "missing") -> Diagnosis:
         "contact_geometry",
         {"inset_over_half_width": Estimate(0.1203, 0.1161, 0.1247, "1")},
         1480.0,
-        1e-9,
+        1e-6,
     )
     missing = verdict in ("missing", "cannot_tell_apart")
     nothing = verdict == "nothing_missing"
@@ -206,7 +206,7 @@ def diagnosis(verdict: Verdict = "missing") -> Diagnosis:
         },
         screen=_screen(),
         null_band=11.2,
-        p_value=0.41 if nothing else 1e-9,
+        p_value=0.41 if nothing else 1e-6,
         next_experiment=REPEAT if verdict == "cannot_tell_apart" else None,
         windows=tuple(w for _, w in parts),
         traces=tuple(t for t, _ in parts),

@@ -1,4 +1,4 @@
-"""``diagnosis.json`` as the design fixes it: these keys, these types, no others."""
+"""``diagnosis.json`` as the design fixes it: these keys, these types, and what was added to it since; no others."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ class ParameterPart(Part):
     low95: float
     high95: float | None
     unit: str
+    at_bound: Literal["low", "high"] | None
 
 
 class EffectPart(Part):
@@ -28,7 +29,7 @@ class EffectPart(Part):
     effect_class: str = Field(alias="class")
     parameters: dict[str, ParameterPart]
     evidence: float
-    p_value: float = Field(ge=0.0, le=1.0)
+    p_value: float = Field(ge=1e-6, le=1.0)
 
 
 class RivalPart(Part):
@@ -49,12 +50,26 @@ class LocatedPart(Part):
 class ConstancyPart(Part):
     parameter: str
     depends_on: str
+    stronger: str | None
     evidence: float
+
+
+class UndecidedPart(Part):
+    name: str
+    effect_class: str = Field(alias="class")
+    gain: float
+    rests_on: Literal["one window", "one recording"] | None
+
+
+class SuspicionPart(Part):
+    recording: str
+    suspicion: str
 
 
 class TrainPart(Part):
     before: float
     after: float
+    noise_floor: float
 
 
 class HoldoutPart(TrainPart):
@@ -72,6 +87,9 @@ class AnswerFile(Part):
     rivals: list[RivalPart]
     located: list[LocatedPart]
     constancy: list[ConstancyPart]
+    undecided: UndecidedPart | None
+    suspicions: list[SuspicionPart]
+    p_value: float | None = Field(ge=1e-6, le=1.0)
     fit: FitPart
     statement: str = Field(min_length=1)
     next_experiment: dict[str, Any] | None

@@ -47,6 +47,14 @@ def test_json_knows_no_infinity_and_takes_numpy_numbers() -> None:
     assert json.loads(text)["provenance"]["finished"] is False
 
 
+def test_json_tells_bounds_and_noise() -> None:
+    hit = Effect("tilt", "tilt", {"tilt": Estimate(0.05, 0.04, 0.05, "rad", "high")}, 31.0, 0.002)
+    read = AnswerFile.model_validate_json(diagnosis_json(replace(diagnosis(), effects=(hit,))))
+    assert read.effects[0].parameters["tilt"].at_bound == "high"
+    assert read.fit.holdout is not None
+    assert [read.fit.train.noise_floor, read.fit.holdout.noise_floor] == [0.027, 0.028]
+
+
 def test_written_json_is_the_same(answer: Path) -> None:
     assert (answer / "diagnosis.json").read_text("utf-8") == diagnosis_json(diagnosis())
 

@@ -113,6 +113,13 @@ def test_page_says_when_it_was_stopped() -> None:
     assert "stopped before its end" not in render(diagnosis())
 
 
+def test_page_of_a_search_stopped_at_once_has_its_own_next_step() -> None:
+    found = replace(diagnosis("cannot_tell_apart"), effects=(), rivals=(), next_experiment=None, p_value=None)
+    words = " ".join(" ".join(outline(render(replace(found, finished=False))).text).split())
+    assert "Stopped before anything was found" in words and "not tested" in words and "Run it again" in words
+    assert "or a rival" not in words and "with  switched on" not in words and "hold all the same" not in words
+
+
 def test_page_without_held_out_recordings_or_screen() -> None:
     found = replace(diagnosis("nothing_missing"), holdout=None, screen=(), prediction_horizon={})
     words = " ".join(outline(render(found)).text)

@@ -41,6 +41,7 @@ def test_units_and_chances() -> None:
     assert words.unit_text("N m-2") == "N m⁻²" and words.unit_text("1") == ""
     assert words.quantity(2.941995, "m s-2") == "0.300 g" and words.quantity(0.0042, "rad") == "4.20 mrad"
     assert words.chance(5e-4) == "1 in 2 000" and words.chance(0.41) == "41 %"
+    assert words.chance(None) == "not tested" and words.chance(1e-6) == "under one in a million"
     assert words.chance(0.0) == "under one in a million" and words.chance(1.0) == "certain"
 
 
