@@ -49,7 +49,7 @@ def statement(found: Diagnosis, known: Mapping[str, Mechanism]) -> str:
         parts.append(f"{opening}: {'; and '.join(told)}.")
     if found.verdict == "not_in_library" and not found.unexplained:
         parts.append("That does not settle it: what is missing is not in the library of mechanisms.")
-        parts += [_flag(flag) for flag in found.constancy[:2]]
+        parts += [_flag(flag) for flag in _distinct(found.constancy)[:2]]
     if found.verdict == "cannot_tell_apart" and found.rivals:
         names = ", ".join(f"{r.name.replace('_', ' ')} ({r.evidence_gap:.1f} less)" for r in found.rivals)
         parts.append(f"These recordings cannot tell it apart from: {names}.")
@@ -109,6 +109,14 @@ def _skipped(found: Diagnosis) -> list[str]:
 
 
 _NOUNS = ("side", "amplitude of the motion", "size of the rotation", "time", "direction of motion")
+
+
+def _distinct(found: Sequence[Constancy]) -> list[Constancy]:
+    """The strongest of each dependence: forces that depend on the same thing are mostly one force seen twice."""
+    strongest: dict[str, Constancy] = {}
+    for flag in found:
+        strongest.setdefault(flag.depends_on, flag)
+    return list(strongest.values())
 
 
 def _flag(found: Constancy) -> str:

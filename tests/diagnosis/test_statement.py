@@ -109,4 +109,8 @@ def test_a_dependence_says_on_which_side() -> None:
     rubs = Constancy("coulomb_damping", "side", 40.0, "for theta < 0, to the left")
     text = said("not_in_library", constancy=(rubs,))
     assert "couple against the motion that depends on the side, stronger for theta < 0, to the left." in text
+    damps = Constancy("viscous_damping", "side", 35.0, "for theta < 0, to the left")
+    assert said("not_in_library", constancy=(rubs, damps)) == text
+    late = replace(damps, depends_on="time", stronger="late")
+    assert "angular velocity that depends on the time, stronger late" in said("not_in_library", constancy=(rubs, late))
     assert json.loads(diagnosis_json(answer("not_in_library", constancy=(rubs,))))["constancy"][0]["stronger"]
