@@ -33,12 +33,10 @@ name = "killed"
 model = "{model}"
 [motion]
 files = ["ridgecrest_2019_clc"]
-vertical = true
 [parameters]
 {parameters}
 [axes]
-aspect_ratio = {{ linspace = [{aspects}] }}
-top_mass = {{ linspace = [500, 4000, {masses}] }}
+{axes}
 pga = {{ linspace = [0.05, 0.77, {levels}], unit = "g" }}
 [run]
 block_seconds = 0.1
@@ -50,12 +48,20 @@ wall_density = "900 kg/m^3"
 top_length = "2 m"
 top_height = "0.6 m\""""
 RUBBER = 'layer_thickness = "10 mm"\nlayer_modulus = "4.5 MPa"\ndamping_ratio = 0.0544'
+BUILDING = """levels = 4
+total_mass = "300 t"
+storey_stiffness = 3e8
+storey_damping = 1e6"""
+WALLS = "aspect_ratio = {{ linspace = [{span}] }}\ntop_mass = {{ linspace = [500, 4000, {size}] }}"
+BEARINGS = "bearing_stiffness = {{ geomspace = [{span}] }}\nbearing_damping = {{ linspace = [1e5, 9e5, {size}] }}"
 MODELS = {
-    "housner": (BLOCK, "0.1, 0.4, 30", 37),
-    "stacked": (WALL, "0.2, 0.6, 10", 10),
-    "interface": (f"{WALL}\n{RUBBER}", "0.4, 1.2, 5", 9),
+    "housner": (BLOCK, WALLS, "0.1, 0.4, 30", 37),
+    "stacked": (WALL, WALLS, "0.2, 0.6, 10", 10),
+    "interface": (f"{WALL}\n{RUBBER}", WALLS, "0.4, 1.2, 5", 9),
+    "interface_linear": (f"{WALL}\n{RUBBER}", WALLS, "0.4, 1.2, 2", 4),
+    "isolated": (BUILDING, BEARINGS, "1e6, 9e6, 6", 8),
 }
-"""Parameters, points of the aspect ratio and number of PGA: cells of like cost in all, a second or two."""
+"""Parameters, two axes, the span of the first, number of PGA: cells of like cost in all, a second or two."""
 CLUSTER = """
 import sys
 from distributed import LocalCluster
@@ -66,10 +72,10 @@ if __name__ == "__main__":
 """
 
 
-def plan_text(model: str, masses: int) -> str:
-    """A study of one model, the longer the more ``masses``."""
-    parameters, aspects, levels = MODELS[model]
-    return PLAN.format(model=model, parameters=parameters, aspects=aspects, masses=masses, levels=levels)
+def plan_text(model: str, size: int) -> str:
+    """A study of one model, the longer the more points ``size`` of its second axis."""
+    parameters, axes, span, levels = MODELS[model]
+    return PLAN.format(model=model, parameters=parameters, axes=axes.format(span=span, size=size), levels=levels)
 
 
 @dataclass
@@ -227,17 +233,14 @@ def main() -> int:
     parser.add_argument("--model", choices=tuple(MODELS), action="append")
     parser.add_argument("--seed", type=int, default=int(time.time()))
     chosen = parser.parse_args()
-    print(f"seed {chosen.seed}\n{'model':<10} {'scheduler':<12} {'kills':>5} {'studies':>7} {'blocks':>6}  damage")
+    print(f"seed {chosen.seed}\n{'model':<16} {'scheduler':<12} {'kills':>5} {'studies':>7} {'blocks':>6}  damage")
     bad = 0
     with tempfile.TemporaryDirectory() as work:
         for model, scheduler in product(chosen.model or MODELS, chosen.scheduler or SCHEDULERS):
             found = kill_scheduler(scheduler, model, chosen.kills, Path(work), seed=chosen.seed)
             bad += len(found.damage)
-            damage = "; ".join(found.damage) or "none"
-            print(
-                f"{model:<10} {scheduler:<12} {found.kills:>5} {found.studies:>7} {found.blocks_seen:>6}  {damage}",
-                flush=True,
-            )
+            row = f"{model:<16} {scheduler:<12} {found.kills:>5} {found.studies:>7} {found.blocks_seen:>6}"
+            print(f"{row}  {'; '.join(found.damage) or 'none'}", flush=True)
     return 1 if bad else 0
 
 

@@ -73,6 +73,7 @@ def test_provenance_stands_in_one_place(cube: xr.Dataset) -> None:
     assert found["plan"] == plan_text() and found["plan_sha256"] == sha256(plan_text())
     assert found["inputs"]["ridgecrest_2019_clc"]["fingerprint"]
     assert {"versions", "commit", "host", "started", "finished"} <= found.keys()
+    assert found["options"] == {"formulation": "nonlinear"}, "the words that the plan leaves to the model"
     for name in cube.variables:
         assert found["host"] not in str(cube[name].attrs)
 

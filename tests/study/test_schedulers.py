@@ -15,7 +15,8 @@ from pathlib import Path
 import pytest
 import xarray as xr
 
-from benchmarks.kill_test import Finding, finish, kill_study, local_cluster, plan_text, same_cube, start_run
+import models
+from benchmarks.kill_test import MODELS, Finding, finish, kill_study, local_cluster, plan_text, same_cube, start_run
 from models.errors import InputError
 from study.open import open_study
 from study.run import run
@@ -53,6 +54,10 @@ def test_a_cluster_leaves_no_trace(cluster: str, tmp_path: Path) -> None:
     assert_identical(open_study(there.folder), here)
 
 
+def test_every_model_is_killed() -> None:
+    assert set(MODELS) == set(models.MODELS)
+
+
 @pytest.mark.parametrize("scheduler", ["threads", "processes", "cluster"])
 def test_killed_runs_lose_no_finished_block(
     scheduler: str, plan: Path, undisturbed: Path, tmp_path: Path, request: pytest.FixtureRequest
@@ -65,8 +70,8 @@ def test_killed_runs_lose_no_finished_block(
     assert not same_cube(undisturbed, tmp_path / "killed")
 
 
-@pytest.mark.parametrize("model", ["stacked", "interface"])
-def test_models_of_two_bodies_lose_nothing_either(model: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("model", [name for name in MODELS if name != "housner"])
+def test_the_other_models_lose_nothing_either(model: str, tmp_path: Path) -> None:
     """Killed once on threads and finished: the bits of blocks of another size, one after the other."""
     plan, finding = tmp_path / "killed.toml", Finding("threads")
     plan.write_text(plan_text(model, 6))

@@ -1,5 +1,6 @@
 """The model behind the same plan files, cubes and commands as the others."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -93,3 +94,5 @@ def test_plan_and_simulate_from_the_command_line(tmp_path: Path, monkeypatch: py
     with xr.open_dataset("lanes.nc") as fast, xr.open_dataset("reference.nc") as slow:
         np.testing.assert_allclose(fast["rotation_1"], slow["rotation_1"], rtol=0, atol=1e-9)
         assert fast["contact_1"].values[0] == 0.5
+        words = json.loads(fast.attrs["provenance"])["options"]
+        assert (words["joints"], words["dashpot"], words["kinematics"]) == ("both", "A", "midpoint_held")

@@ -1,9 +1,11 @@
 """A building on bearings through the commands: a plan to a cube and a map, a specimen to a history."""
 
+import json
 from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 from typer.testing import CliRunner, Result
 
 from grids.recordings import read_recording
@@ -101,6 +103,8 @@ def test_a_specimen_becomes_a_history_that_reads_as_a_recording() -> None:
         "--duration", 15,
     )  # fmt: skip
     assert told.exit_code == 0 and Path("h.png").exists(), told.output
+    with xr.open_dataset("h.nc") as history:
+        assert json.loads(history.attrs["provenance"])["options"] == {"rubber_law": "bouc_wen"}
     recording = read_recording("h.nc")
     assert recording.channels["level_acceleration_x"].shape == recording.channels["level_displacement_x"].shape
     assert recording.channels["level_displacement_x"].shape[0] == len(recording.levels) == 3
