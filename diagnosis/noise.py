@@ -25,6 +25,10 @@ STILL, FEWEST = 0.35, 3
 """s that nothing moves, and how many such stretches must follow one another."""
 LIKE = 1.5
 """Range of a still stretch over that of the stillest ones."""
+MOST = 200.0
+"""Density over what a filter leaves of it at the highest frequencies: beyond, the channel is a motion without noise."""
+FLAT = 0.25
+"""Geometric over arithmetic mean of a spectrum that is noise: .56 if white, next to nothing if motion."""
 
 
 def response_noise(recording: Recording, channel: str) -> float:
@@ -34,23 +38,27 @@ def response_noise(recording: Recording, channel: str) -> float:
     level = max(noise.sigma, RELATIVE_FLOOR * float(np.max(np.abs(values))))
     if noise.white or noise.lag_one < noise.lag_one_if_white:
         return level
-    return max(level, density_level(values, recording.time_step))
+    density = density_level(values, recording.time_step)
+    return max(level, density) if density < MOST * noise.sigma else level
 
 
 def density_level(values: FloatArray, time_step: float) -> float:
     """Standard deviation of the white noise as dense below `BAND` as a channel's while it is still; 0 if never.
 
     With the periodogram P(f) = |sum_j (x_j - mean) exp(-2 pi i f t_j)|^2/n of n samples white noise has
-    E P = sigma^2 at every frequency.
+    E P = sigma^2 at every frequency. A spectrum that is not flat is that of a motion.
     """
-    power, count = 0.0, 0
+    found = []
     for stretch in still(values, time_step):
         x = values[stretch]
         frequency = np.fft.rfftfreq(x.size, time_step)
         inside = (frequency > 0.0) & (frequency < BAND)
-        power += float(np.sum(np.abs(np.fft.rfft(x - x.mean())[inside]) ** 2)) / x.size
-        count += int(inside.sum())
-    return float(np.sqrt(power / count)) if count else 0.0
+        found.append(np.abs(np.fft.rfft(x - x.mean())[inside]) ** 2 / x.size)
+    power = np.concatenate(found) if found else np.zeros(1)
+    mean = float(np.mean(power))
+    if mean == 0.0 or float(np.exp(np.mean(np.log(np.maximum(power, 1e-30 * mean))))) < FLAT * mean:
+        return 0.0
+    return float(np.sqrt(mean))
 
 
 def still(values: FloatArray, time_step: float) -> list[slice]:
