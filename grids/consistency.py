@@ -86,9 +86,10 @@ def check_laws(options: Mapping[str, str], varied: Collection[str], mechanisms: 
     """
     from models.rubber import LAWS
 
-    words = {name: options[name] for name in ("rubber_law", "base_rubber_law", "top_rubber_law") if name in options}
-    overall = words.get("rubber_law", "as_given")
-    joints = {words.get(f"{joint}_rubber_law", "same") for joint in ("base", "top")}
+    joints = {options.get(f"{joint}_rubber_law", "same") for joint in ("base", "top")}
+    overall = options.get("rubber_law", "as_given")
+    if overall == "as_given" and joints != {"same"}:
+        overall = "linear"  # a law named for one joint alone leaves the other linear
     used = {overall if word == "same" else word for word in joints}
     if "as_given" in used or any(name.endswith("rubber_law") for name in varied):
         return

@@ -100,6 +100,9 @@ def test_a_specimen_with_the_parameters_of_a_law_not_in_use() -> None:
         specimen({**WALL, **RUBBER}, f"[options]\nrubber_law = 'linear'\n{mullins}")
     for word in ("mullins", "as_given"):
         specimen({**WALL, **RUBBER}, f"[options]\nrubber_law = '{word}'\n{mullins}")
+    specimen({**WALL, **RUBBER}, f"[options]\ntop_rubber_law = 'mullins'\n{mullins}")
+    with pytest.raises(InputError, match="the law in use is 'bouc_wen' and 'linear'"):
+        specimen({**WALL, **RUBBER}, f"[options]\ntop_rubber_law = 'bouc_wen'\n{mullins}")
     with pytest.raises(InputError, match="rubber law mullins are given"):
         bouc_wen = "[mechanisms.bouc_wen]\npost_yield_ratio = 0.3\nyield_compression = 0.005\n"
         specimen(BUILDING, f"[options]\nrubber_law = 'bouc_wen'\n{mullins}{bouc_wen}", "isolated")
