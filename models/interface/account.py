@@ -22,8 +22,10 @@ class Reading(NamedTuple):
     """By which each joint's freer end is from pressing; negative: full contact."""
     friction: Pair
     shares: Pair
+    edges: Pair
+    """Compression (m) of each joint's more compressed end."""
     stored: Pair
-    """Elastic energy (J) of each layer."""
+    """Energy (J) in the springs of each layer."""
     kinetic: float
 
 
@@ -38,7 +40,7 @@ class Account:
         self.wall = wall
         self.time = math.nan
         self.kinetic = 0.0
-        self.peak, self.friction, self.contact = [0.0, 0.0], [0.0, 0.0], [1.0, 1.0]
+        self.peak, self.friction, self.contact, self.edge = [0.0, 0.0], [0.0, 0.0], [1.0, 1.0], [0.0, 0.0]
         self.height = [math.nan, math.nan]
         self.up, self.onset, self.closings = [0.0, 0.0], [math.nan, math.nan], [0, 0]
         self.work, self.first, self.last = [0.0, 0.0], [0.0, 0.0], [0.0, 0.0]
@@ -58,6 +60,7 @@ class Account:
             self.peak[k] = max(self.peak[k], abs(reading.rotations[k]))
             self.friction[k] = max(self.friction[k], reading.friction[k])
             self.contact[k] = min(self.contact[k], reading.shares[k])
+            self.edge[k] = max(self.edge[k], reading.edges[k])
             if math.isnan(self.time):
                 self.first[k], self.height[k] = reading.stored[k], reading.heights[k]
                 if reading.heights[k] > 0.0:
@@ -77,8 +80,6 @@ class Account:
             self.events.append(Event(crossing, "uplift", k + 1))
             if math.isnan(self.onset[k]):
                 self.onset[k] = crossing
-                if all(math.isnan(t) or t == crossing for t in self.onset):
-                    self.events.append(Event(crossing, "onset", k + 1))
         elif height <= 0.0:
             self.up[k] += crossing - (time - step)
             self.closings[k] += 1
@@ -113,6 +114,8 @@ class Account:
         lost = [s - e - w for s, e, w in zip(self.first, self.last, self.work, strict=True)]
         rubber = [wall.joints in ("both", joint) for joint in JOINTS]
         needed = [f if r else math.nan for f, r in zip(self.friction, rubber, strict=True)]
+        thickness = (wall.base_thickness, wall.top_thickness)
+        strain = [u / e if r else math.nan for u, e, r in zip(self.edge, thickness, rubber, strict=True)]
         found = {
             **_both("peak_rotation", "12", peak, max(peak)),
             **_both("peak_rotation_ratio", "12", ratio, max(ratio)),
@@ -124,6 +127,7 @@ class Account:
             **_both("impacts", "bt", [float(n) for n in self.closings], float(max(self.closings))),
             **_both("residual_rotation", "12", left, max(left, key=abs)),
             **_both("dissipated_energy", "bt", lost, sum(lost)),
+            **_both("peak_strain", "bt", strain, float(np.nanmax(strain))),
             **_both("needed_friction", "bt", needed, float(np.nanmax(needed))),
         }
         lifted = not all(math.isnan(t) for t in self.onset)

@@ -8,8 +8,6 @@ from models.walls import ALTERNATIVES as OF_WALLS
 from models.walls import PARAMETERS as OF_WALL
 from models.walls import by_body, by_joint
 
-LAYERS = (("", "", "both layers"), ("base_", "_b", "the base layer"), ("top_", "_t", "the top layer"))
-
 
 def _layer(name: str, symbol: str, unit: str, meaning: str) -> tuple[Parameter, ...]:
     """A quantity of both layers, and of each alone."""
@@ -76,6 +74,7 @@ UP = (
     "a joint is up while part of it carries no compression: total stress under dashpot law B, w < 0 under law A "
     "(see the option dashpot); counted to overturning"
 )
+LOST = "what the rubber's law could give back at the end counts as stored; counted to overturning"
 CALM = 1e-6
 """At rest: kinetic energy below this share of its peak for one first period, after the shaking."""
 
@@ -94,7 +93,12 @@ OUTPUTS = (
     *by_body("overturning_time", "t_ov", "s", "time of overturning", f"nan when it stands; {OVERTURNED}", FIRST),
     *by_joint("impacts", "n", "1", "number of closings", "every return to full contact counts", WORST, "int32"),
     *by_body("residual_rotation", "theta_end", "rad", "rotation at the end", "signed pi/2 when overturned", WORST),
-    *by_joint("dissipated_energy", "E_d", "J", "energy lost in the layer", "counted to overturning", "in all"),
+    *by_joint("dissipated_energy", "E_d", "J", "energy lost in the layer", LOST, "in all"),
+    *by_joint(
+        "peak_strain", "max u/e", "1", "largest compression of the joint's edge over the layer's thickness",
+        "(sinking + b |sin r|)/e at the steps, of an overturned wall that of the fall; above 1 the layer would be "
+        "compressed beyond its own thickness; nan for a bonded joint", WORST,
+    ),
     *by_joint(
         "needed_friction", "max |H|/N", "1", "largest ratio of the forces along and across the joint",
         "nan for a bonded joint; inf when the joint opens completely: the model holds it laterally all the same", WORST,
@@ -103,20 +107,27 @@ OUTPUTS = (
 )  # fmt: skip
 
 
+TANGENT = "with the slope of the rubber's law on unloading from rest, a Maxwell arm as stiff as at once"
+MODES = range(1, 5)
 DERIVED = (
     Quantity("alpha", "alpha", "rad", "slenderness angle of both as one body"),
     Quantity("alpha_2", "alpha_2", "rad", "slenderness angle of the upper block"),
     Quantity("static_sinking_base", "-z_1", "m", "compression of the base layer at rest"),
     Quantity("static_sinking_top", "-z_2", "m", "compression of the top layer at rest"),
-    Quantity("uplift_rotation", "theta_u", "rad", "rotation at which the base begins to lift, statically"),
-    *(
-        Quantity(f"frequency_{k}", f"f_{k}", "Hz", f"natural frequency {k} at rest, gravity included")
-        for k in range(1, 5)
+    Quantity(
+        "uplift_rotation", "theta_u", "rad", "rotation at which the base begins to lift, turned slowly", "nan if bonded"
     ),
-    *(Quantity(f"modal_damping_{k}", f"xi_{k}", "1", f"damping ratio of mode {k} at rest") for k in range(1, 5)),
+    *(
+        Quantity(f"frequency_{k}", f"f_{k}", "Hz", f"natural frequency {k} at rest, gravity included", TANGENT)
+        for k in MODES
+    ),
+    *(
+        Quantity(f"modal_damping_{k}", f"xi_{k}", "1", f"damping ratio of mode {k} at rest, of the dashpots", TANGENT)
+        for k in MODES
+    ),
     *(
         Quantity(f"mode_{k}_{name}", f"phi_{k}", "1", f"{name} in mode {k}; largest component 1, rotations times b_1")
-        for k in range(1, 5)
+        for k in MODES
         for name in ("rotation_1", "rotation_2", "sinking_base", "sinking_top")
     ),
     Quantity("base_damping_used", "c_b", "N s m-2", "dashpot of the base layer"),

@@ -111,9 +111,28 @@ class Equation:
                 top = top._replace(force=top.force + more, moment=top.moment + couple)
         return base, top, rates
 
-    def relaxed(self) -> FloatArray:
-        """The laws' hidden state after a long rest under gravity."""
-        parts = [fibres.relaxed(sunk) for fibres, sunk in zip(self.fibres.values(), self.sunk, strict=True)]
+    def stored(self, q: Sequence[float], hidden: FloatArray) -> Pair:
+        """Energy (J) in the springs of each layer's law; 0 where bonded."""
+        wall, found, position = self.wall, [0.0, 0.0], 0
+        for k, (joint, z, angle) in enumerate((("base", q[2], q[0]), ("top", q[3], q[1] - q[0]))):
+            if wall.joints not in ("both", joint):
+                continue
+            b = wall.base_half_width if joint == "base" else wall.top_half_width
+            stiffness = wall.base_stiffness if joint == "base" else wall.top_stiffness
+            found[k] = stored(b, stiffness, z, math.sin(angle))
+            if joint in self.fibres:
+                size = self.fibres[joint].size
+                found[k] += self.fibres[joint].energy(z, angle, hidden[position : position + size])
+                position += size
+        return found[0], found[1]
+
+    def relaxed(self, q: Sequence[float] = (0.0,) * 4) -> FloatArray:
+        """The laws' hidden state after a long rest under gravity, let go at ``q``."""
+        places = {"base": (q[2], q[0]), "top": (q[3], q[1] - q[0])}
+        parts = [
+            fibres.relaxed(sunk, *places[joint])
+            for (joint, fibres), sunk in zip(self.fibres.items(), self.sunk, strict=True)
+        ]
         return np.concatenate(parts) if parts else np.zeros(0)
 
     def mass(self, at: Kinematics) -> FloatArray:
@@ -168,15 +187,11 @@ class Equation:
         rate = np.asarray(v)
         return float(0.5 * rate @ self.mass(self.kinematics(q, v)) @ rate)
 
-    def potential(self, q: Sequence[float]) -> float:
-        """Of the constant gravity and the linear springs, in J."""
+    def potential(self, q: Sequence[float], hidden: FloatArray | None = None) -> float:
+        """Of the constant gravity and the layers, in J; ``hidden``: the laws' state, else relaxed."""
         at, wall = self.kinematics(q, (0.0,) * 4), self.wall
-        energy: float = wall.gravity * (wall.mass_1 * at.centre_1[1] + wall.mass_2 * at.centre_2[1])
-        if wall.joints != "top":
-            energy += stored(wall.base_half_width, wall.base_stiffness, q[2], math.sin(q[0]))
-        if wall.joints != "base":
-            energy += stored(wall.top_half_width, wall.top_stiffness, q[3], math.sin(q[1] - q[0]))
-        return energy
+        weight: float = wall.gravity * (wall.mass_1 * at.centre_1[1] + wall.mass_2 * at.centre_2[1])
+        return weight + sum(self.stored(q, self.relaxed() if hidden is None else hidden))
 
 
 def power(strips: tuple[Strip, Strip], q: Sequence[float], v: Sequence[float]) -> Pair:

@@ -1,8 +1,9 @@
 """Small motions about rest in full contact: static state, natural frequencies, shapes, modal damping.
 
-q = (theta1, theta2, z1, z2). At rest z1 = -(m1+m2) g/(2 k_b b1), z2 = -m2 g/(2 k_t bt); with
-l = 2 h1 + e_t + z2 the matrices are M, C = B(c_b, c_t), K = B(k_b, k_t) - diag(g (m1 h1 + m2 l), g m2 h2, 0, 0)
-of full contact; they equal the Jacobian of the full equations there, for either kinematics.
+q = (theta1, theta2, z1, z2). At rest z1 = -(m1+m2) g/(2 k_b b1), z2 = -m2 g/(2 k_t bt) under the linear law;
+with l = 2 h1 + e_t + z2 the matrices are M, C = B(c_b, c_t), K = B(k_b, k_t) - diag(g (m1 h1 + m2 l), g m2 h2, 0, 0)
+of full contact, k the slope of each layer's law on unloading from there; they equal the Jacobian of the full
+equations with what has flowed in the rubber held, for either kinematics.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import numpy as np
 
 from models.base import FloatArray
 from models.interface.layered import FREE, LayeredWall
-from models.rubber.base import static_compression
+from models.rubber.base import edge_at_uplift, static_compression
 
 
 def static_state(wall: LayeredWall) -> FloatArray:
@@ -28,6 +29,25 @@ def static_state(wall: LayeredWall) -> FloatArray:
             most = np.maximum(thickness, 4.0 * load / stiffness)
             state[:, column] = -static_compression(load, laws, stiffness, most) if laws else -load / stiffness
     return state
+
+
+def tangents(wall: LayeredWall, rest: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Slope (N m-2) of the base and the top layer on unloading from ``rest`` (n, 4); k where no other law acts."""
+    found = []
+    for joint, z, stiffness in (("base", rest[:, 2], wall.base_stiffness), ("top", rest[:, 3], wall.top_stiffness)):
+        laws = wall.laws_at(joint) if joint in wall.rubber_joints else []
+        found.append(np.asarray(stiffness + sum(law.tangent(-z, law.relaxed(-z, p), p) for law, p in laws)))
+    return found[0], found[1]
+
+
+def uplift_rotation(wall: LayeredWall, rest: FloatArray) -> FloatArray:
+    """theta (rad) at which the base begins to lift when turned slowly under its weight; W/(2 k b^2) if linear."""
+    if "base" not in wall.rubber_joints:
+        return np.full(wall.size, np.nan)
+    load = wall.mass * wall.gravity / (2.0 * wall.base_half_width)
+    laws = wall.laws_at("base")
+    edge = edge_at_uplift(load, laws, wall.base_stiffness, -rest[:, 2]) if laws else -2.0 * rest[:, 2]
+    return np.asarray(edge / (2.0 * wall.base_half_width))
 
 
 def mass_matrix(wall: LayeredWall, lever: FloatArray) -> FloatArray:
@@ -88,8 +108,9 @@ class Modes:
 
 def at_rest(wall: LayeredWall) -> Modes:
     """Undamped modes in full contact, gravity included, with l as the wall stands at rest."""
-    lever = wall.height_1 + wall.rise + static_state(wall)[:, 3]
-    stiffness = layer_matrix(wall, wall.base_stiffness, wall.top_stiffness) - gravity_matrix(wall, lever)
+    rest = static_state(wall)
+    lever = wall.height_1 + wall.rise + rest[:, 3]
+    stiffness = layer_matrix(wall, *tangents(wall, rest)) - gravity_matrix(wall, lever)
     return modes(wall, mass_matrix(wall, lever), stiffness)
 
 
@@ -127,14 +148,12 @@ def derived(wall: LayeredWall, found: Modes) -> dict[str, FloatArray]:
     )
     largest = np.take_along_axis(lengths, np.argmax(np.abs(lengths), axis=1)[:, None], axis=1)
     shapes[:, :, :count] = lengths / largest
-    with np.errstate(divide="ignore"):
-        uplift = wall.mass * wall.gravity / (2.0 * wall.base_stiffness * wall.base_half_width**2)
     result = {
         "alpha": wall.slenderness,
         "alpha_2": wall.slenderness_2,
-        "static_sinking_base": -rest[:, 2],
-        "static_sinking_top": -rest[:, 3],
-        "uplift_rotation": uplift,
+        "static_sinking_base": 0.0 - rest[:, 2],
+        "static_sinking_top": 0.0 - rest[:, 3],
+        "uplift_rotation": uplift_rotation(wall, rest),
         "base_damping_used": wall.base_damping,
         "top_damping_used": wall.top_damping,
     }

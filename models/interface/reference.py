@@ -79,7 +79,9 @@ class _Run:
         self.account = Account(self.equation.wall)
 
     def begin(self, state: FloatArray) -> None:
-        self.y = np.concatenate([state[:4][self.pick], state[4:][self.pick], (0.0, 0.0), self.equation.relaxed()])
+        self.y = np.concatenate(
+            [state[:4][self.pick], state[4:][self.pick], (0.0, 0.0), self.equation.relaxed(state[:4].tolist())]
+        )
 
     def spread(self, y: FloatArray) -> tuple[FloatArray, FloatArray]:
         """q and q' of the free coordinates."""

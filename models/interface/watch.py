@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from models.base import FloatArray
 from models.interface.account import Pair, Reading
 from models.interface.equation import Equation
-from models.interface.strip import stored
 
 
 def read(
@@ -23,20 +22,18 @@ def read(
         heights=uplift(equation, q, v),
         friction=friction(equation, q, v, second, a, gravity),
         shares=(base.share, top.share),
-        stored=elastic(equation, q),
+        edges=edges(equation, q),
+        stored=equation.stored(q, hidden),
         kinetic=equation.kinetic(q, v),
     )
 
 
-def elastic(equation: Equation, q: Sequence[float]) -> Pair:
-    """Energy (J) of the linear springs of each layer; 0 where bonded."""
+def edges(equation: Equation, q: Sequence[float]) -> Pair:
+    """Compression (m) of the more compressed end of each joint."""
     wall = equation.wall
-    base = top = 0.0
-    if wall.joints != "top":
-        base = stored(wall.base_half_width, wall.base_stiffness, q[2], math.sin(q[0]))
-    if wall.joints != "base":
-        top = stored(wall.top_half_width, wall.top_stiffness, q[3], math.sin(q[1] - q[0]))
-    return base, top
+    turn = q[1] - q[0]
+    base = wall.base_half_width * abs(math.sin(q[0])) - q[2]
+    return base, wall.top_half_width * abs(math.sin(turn)) - q[3]
 
 
 def uplift(equation: Equation, q: Sequence[float], v: Sequence[float]) -> tuple[float, float]:

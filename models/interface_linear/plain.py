@@ -131,6 +131,10 @@ class Equation:
             heights=(1.0 if joints[0].side else -1.0, 1.0 if joints[1].side else -1.0),
             friction=(ratios[0], ratios[1]),
             shares=(shares[0], shares[1]),
+            edges=(
+                self.width[0] * float(abs(q[0])) - float(q[2]),
+                self.width[1] * float(abs(q[1] - q[0])) - float(q[3]),
+            ),
             stored=self.stored(joints, q),
             kinetic=float(0.5 * v @ self.matrices(joints)[0] @ v),
         )

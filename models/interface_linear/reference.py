@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from models.base import FloatArray
+from models.base import STATUS, FloatArray
 from models.ground import Piece, pieces
 from models.interface.account import Account
 from models.interface.declaration import CALM, STATES
@@ -194,4 +194,7 @@ class _Run:
             self.history[4:, self.written :] = 0.0
         elif not self.account.failed:
             self.account.close(self.time, self.equation.toppled(self.y[:4], self.y[4:8]))
-        return ReferenceResult(self.account.outputs(self.y[:4]), self.grid, self.history, tuple(self.account.events))
+        outputs = self.account.outputs(self.y[:4])
+        if outputs["minimum_contact"] == 0.0 and not self.account.failed:
+            outputs["status"] = float(STATUS.index("failed"))
+        return ReferenceResult(outputs, self.grid, self.history, tuple(self.account.events))

@@ -47,4 +47,21 @@ def _integrated(x: FloatArray, n: FloatArray) -> FloatArray:
     return found
 
 
-LAW = RubberLaw("bouc_wen", ("post_yield_ratio", "yield_compression", "exponent"), extra, rate, relaxed)
+def tangent(u: FloatArray, h: FloatArray, p: Numbers) -> FloatArray:
+    """zeta follows u on unloading: the slope of all is k."""
+    return np.zeros_like(u)
+
+
+def energy(u: FloatArray, h: FloatArray, p: Numbers) -> FloatArray:
+    return np.asarray(0.5 * (1.0 - p["post_yield_ratio"]) * p["stiffness"] * (h**2 - u**2))
+
+
+def turned(u: FloatArray, rest: FloatArray, p: Numbers) -> FloatArray:
+    """Down from ``rest`` along u to zeta = 0, and a virgin curve of the other sign from there."""
+    kept = relaxed(rest, p) - (rest - u)
+    down = np.where(kept < 0.0, -relaxed(np.maximum(-kept, 0.0), p), kept)
+    return np.where(u > rest, relaxed(u, p), down)
+
+
+PARAMETERS = ("post_yield_ratio", "yield_compression", "exponent")
+LAW = RubberLaw("bouc_wen", PARAMETERS, extra, rate, relaxed, tangent, energy, turned)

@@ -20,4 +20,16 @@ def relaxed(u: FloatArray, p: Numbers) -> FloatArray:
     return np.zeros_like(u)
 
 
-LAW = RubberLaw("hardening", ("beta2",), extra, rate, relaxed, hidden=False)
+def tangent(u: FloatArray, h: FloatArray, p: Numbers) -> FloatArray:
+    return np.asarray(3.0 * p["stiffness"] * p["beta2"] * (u / p["thickness"]) ** 2)
+
+
+def energy(u: FloatArray, h: FloatArray, p: Numbers) -> FloatArray:
+    return np.asarray(0.25 * p["stiffness"] * u**2 * p["beta2"] * (u / p["thickness"]) ** 2)
+
+
+def turned(u: FloatArray, rest: FloatArray, p: Numbers) -> FloatArray:
+    return np.zeros_like(u)
+
+
+LAW = RubberLaw("hardening", ("beta2",), extra, rate, relaxed, tangent, energy, turned, hidden=False)

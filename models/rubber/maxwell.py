@@ -23,4 +23,17 @@ def relaxed(u: FloatArray, p: Numbers) -> FloatArray:
     return np.zeros_like(u)
 
 
-LAW = RubberLaw("maxwell", ("arm_stiffness_ratio", "relaxation_time"), extra, rate, relaxed)
+def tangent(u: FloatArray, h: FloatArray, p: Numbers) -> FloatArray:
+    """Of the arm at once, v held: slower motions meet less."""
+    return np.asarray(p["arm_stiffness_ratio"] * p["stiffness"] + 0.0 * u)
+
+
+def energy(u: FloatArray, h: FloatArray, p: Numbers) -> FloatArray:
+    return np.asarray(0.5 * p["arm_stiffness_ratio"] * p["stiffness"] * h**2)
+
+
+def turned(u: FloatArray, rest: FloatArray, p: Numbers) -> FloatArray:
+    return np.zeros_like(u)
+
+
+LAW = RubberLaw("maxwell", ("arm_stiffness_ratio", "relaxation_time"), extra, rate, relaxed, tangent, energy, turned)

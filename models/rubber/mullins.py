@@ -21,4 +21,16 @@ def relaxed(u: FloatArray, p: Numbers) -> FloatArray:
     return np.asarray(u)
 
 
-LAW = RubberLaw("mullins", ("softening", "strain"), extra, rate, relaxed)
+def tangent(u: FloatArray, h: FloatArray, p: Numbers) -> FloatArray:
+    return np.asarray(p["stiffness"] * p["softening"] * np.expm1(-np.maximum(h, u) / (p["strain"] * p["thickness"])))
+
+
+def energy(u: FloatArray, h: FloatArray, p: Numbers) -> FloatArray:
+    return np.asarray(0.5 * u * extra(u, h, p))
+
+
+def turned(u: FloatArray, rest: FloatArray, p: Numbers) -> FloatArray:
+    return np.maximum(u, rest)
+
+
+LAW = RubberLaw("mullins", ("softening", "strain"), extra, rate, relaxed, tangent, energy, turned)

@@ -21,4 +21,17 @@ def relaxed(u: FloatArray, p: Numbers) -> FloatArray:
     return np.zeros_like(u)
 
 
-LAW = RubberLaw("permanent_set", ("rate", "strain_limit"), extra, rate, relaxed)
+def tangent(u: FloatArray, h: FloatArray, p: Numbers) -> FloatArray:
+    return np.zeros_like(u)
+
+
+def energy(u: FloatArray, h: FloatArray, p: Numbers) -> FloatArray:
+    """k (u - u_p)^2/2 in all."""
+    return np.asarray(p["stiffness"] * h * (0.5 * h - u))
+
+
+def turned(u: FloatArray, rest: FloatArray, p: Numbers) -> FloatArray:
+    return np.zeros_like(u)
+
+
+LAW = RubberLaw("permanent_set", ("rate", "strain_limit"), extra, rate, relaxed, tangent, energy, turned)

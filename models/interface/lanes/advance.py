@@ -115,7 +115,7 @@ def advance(
                         ended = ended or may_rest
                     window[slot] = i + 1 + int(given[lane, Q_PERIOD] / time_step)
                 if ended:
-                    finish(result, w, lane, slot, False)
+                    finish(result, w, lane, slot, False, laws)
                     lane = -1
                     empty(w, slot)
                     continue
@@ -161,7 +161,7 @@ def advance(
                         if logged:
                             over = LOG_OVER_1 if abs(w[T1 * W + slot]) >= HALF_TURN else LOG_OVER_2
                             note(log, count, lane, w[CLOCK * W + slot] * w[STEP * W + slot], float(over))
-                        finish(result, w, lane, slot, True)
+                        finish(result, w, lane, slot, True, laws)
                         of[slot] = -1
                         empty(w, slot)
                         settle = True

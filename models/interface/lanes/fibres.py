@@ -184,11 +184,12 @@ def fibres_at_start(w: Table, given: Table, lane: int, slot: int, laws: Any) -> 
     # the state may be another than at rest: its forces first, then its history begins relaxed
     for again in range(2):
         for joint in range(2):
-            u = given[lane, r.Q_RELAXED + 2 * joint]
+            turn, z = w[(r.B1 + joint) * W + slot] * w[(r.FS_B + joint) * W + slot], w[(r.FZ_B + joint) * W + slot]
             for f in range(FIBRES):
                 own = (r.W_FIBRES + (joint * FIBRES + f) * N_HIDDEN) * W + slot
-                w[own + COMPRESSION * W], w[own + ARM * W], w[own + SET * W] = u, 0.0, 0.0
-                w[own + ZETA * W], w[own + LARGEST * W] = given[lane, r.Q_RELAXED + 2 * joint + 1], u
+                w[own + COMPRESSION * W], w[own + ARM * W], w[own + SET * W] = max(NODES[f] * turn - z, 0.0), 0.0, 0.0
+                w[own + ZETA * W] = given[lane, r.Q_RELAXED + 2 * joint + 1]
+                w[own + LARGEST * W] = given[lane, r.Q_RELAXED + 2 * joint]
             if again == 0:
                 for f in range(0, FIBRES, 4):
                     fibres_of(w, joint, f, slot, laws)

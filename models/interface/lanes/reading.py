@@ -18,15 +18,18 @@ TINY = 1e-60
 def read_joints(
     w: Table, i: int, z1: float, z2: float, s1: float, sr: float, y1: float, y2: float, rb: float, rt: float
 ) -> bool:
-    """Time up, closings, first uplift; False where a lane whose events are logged opens or closes a joint.
+    """Time up, closings, first uplift, edges; False where a lane whose events are logged opens or closes a joint.
 
     The height by which the freer end is from pressing (`models.interface.watch.uplift`) is taken as
     linear in time over the step.
     """
     late_b, late_t = w[r.LATE_B * W + i], w[r.LATE_T * W + i]
     b1, bt = w[r.B1 * W + i], w[r.BT * W + i]
-    now_b = z1 + max(b1 * abs(s1), late_b * y1 + b1 * abs(s1 + late_b * rb))
-    now_t = z2 + max(bt * abs(sr), late_t * y2 + bt * abs(sr + late_t * rt))
+    lean_b, lean_t = b1 * abs(s1), bt * abs(sr)
+    w[r.EDGE_B * W + i] = max(w[r.EDGE_B * W + i], lean_b - z1)
+    w[r.EDGE_T * W + i] = max(w[r.EDGE_T * W + i], lean_t - z2)
+    now_b = z1 + max(lean_b, late_b * y1 + b1 * abs(s1 + late_b * rb))
+    now_t = z2 + max(lean_t, late_t * y2 + bt * abs(sr + late_t * rt))
     was_b, was_t = w[r.LIFT_B * W + i], w[r.LIFT_T * W + i]
     w[r.LIFT_B * W + i], w[r.LIFT_T * W + i] = now_b, now_t
     size_b, size_t = abs(now_b) + abs(was_b) + TINY, abs(now_t) + abs(was_t) + TINY

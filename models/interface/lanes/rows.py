@@ -13,8 +13,9 @@ W = 16
     # constants of the lane
     SCALE, OFFSET, GRAVITY, VSCALE,
     M1, H1, I1, M2, H2, I2, HEIGHT, B1, BT, TOE_1, TOE_T, KB, KT, CB, CT, LATE_B, LATE_T, CLIP, FREE_B, FREE_T,
-    # joints: height of the freer end over compression, time up, closings, first uplift (in steps), least share
-    LIFT_B, LIFT_T, UP_B, UP_T, CLOSED_B, CLOSED_T, ONSET_B, ONSET_T, SHARE_B, SHARE_T,
+    # joints: height of the freer end over compression, time up, closings, first uplift (in steps), least share,
+    # largest compression of the edge
+    LIFT_B, LIFT_T, UP_B, UP_T, CLOSED_B, CLOSED_T, ONSET_B, ONSET_T, SHARE_B, SHARE_T, EDGE_B, EDGE_T,
     # power and work of the strips; forces along and across the joints at the worst ratio
     POWER_B, POWER_T, WORK_B, WORK_T, ALONG_B, ALONG_T, ACROSS_B, ACROSS_T,
     # bodies: peaks, kinetic energy (peak so far, peak of this window)
@@ -23,8 +24,8 @@ W = 16
     FZ_B, FZ_T, FS_B, FS_T, FY_B, FY_T, FR_B, FR_T, FN_B, FN_T, FM_B, FM_T, F1_B, F1_T, F2_B, F2_T, F3_B, F3_T,
     # whether uplifts and closings are to be logged, whether the lane needs attention
     LOGGED, FLAG,
-) = range(91)  # fmt: skip
-N_WORK = 91
+) = range(93)  # fmt: skip
+N_WORK = 93
 CONSTANTS = tuple(range(SCALE, FREE_T + 1))
 """Rows copied from ``given``, in this order."""
 
@@ -53,9 +54,9 @@ N_WORK_LAWS = W_FIBRES + 2 * FIBRES * N_HIDDEN
 (
     R_PEAK_1, R_PEAK_2, R_UP_B, R_UP_T, R_ONSET_B, R_ONSET_T, R_SHARE_B, R_SHARE_T, R_CLOSED_B, R_CLOSED_T,
     R_LOST_B, R_LOST_T, R_FRICTION_B, R_FRICTION_T, R_END_1, R_END_2, R_OVER_1, R_OVER_2, R_FAILED,
-    R_STORED_B, R_STORED_T,
-) = range(21)  # fmt: skip
-N_RESULT = 21
+    R_STORED_B, R_STORED_T, R_EDGE_B, R_EDGE_T,
+) = range(23)  # fmt: skip
+N_RESULT = 23
 
 # kinds of events in a log, in the order of `models.interface.lanes.run.EVENTS`
 LOG_UPLIFT_B, LOG_UPLIFT_T, LOG_CLOSING_B, LOG_CLOSING_T, LOG_REST, LOG_OVER_1, LOG_OVER_2 = range(7)

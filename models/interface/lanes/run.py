@@ -143,6 +143,8 @@ def outputs(wall: LayeredWall, table: NDArray[np.float64]) -> dict[str, NDArray[
     lost = np.where(rubber, table[:, [r.R_LOST_B, r.R_LOST_T]], 0.0)
     friction = table[:, [r.R_FRICTION_B, r.R_FRICTION_T]]
     friction = np.where(rubber, np.where(friction > 1e200, np.inf, friction), np.nan)
+    thickness = np.stack([wall.base_thickness, wall.top_thickness], axis=1)
+    strain = np.divide(table[:, [r.R_EDGE_B, r.R_EDGE_T]], thickness, out=np.full(share.shape, np.nan), where=rubber)
     failed = table[:, r.R_FAILED] != 0.0
     status = np.where(np.isnan(onset).all(axis=1), STATUS.index("rest"), STATUS.index("rocking"))
     status = np.where(over.any(axis=1), STATUS.index("overturned"), status)
@@ -158,6 +160,7 @@ def outputs(wall: LayeredWall, table: NDArray[np.float64]) -> dict[str, NDArray[
         **_both("impacts", "bt", closed, closed.max(axis=1)),
         **_both("residual_rotation", "12", end, larger),
         **_both("dissipated_energy", "bt", lost, lost.sum(axis=1)),
+        **_both("peak_strain", "bt", strain, np.fmax(strain[:, 0], strain[:, 1])),
         **_both("needed_friction", "bt", friction, np.fmax(friction[:, 0], friction[:, 1])),
         "status": np.where(failed, STATUS.index("not_converged"), status).astype(np.int8),
     }

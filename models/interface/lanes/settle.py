@@ -27,7 +27,6 @@ from models.interface.lanes.rows import (
     HEIGHT,
     KB,
     KINETIC,
-    KT,
     LIFT_B,
     LIFT_T,
     LOGGED,
@@ -62,6 +61,7 @@ from models.interface.lanes.rows import (
     W,
 )  # fmt: skip
 from models.interface.lanes.step import AM, BETA, GAMMA, step_one
+from models.interface.lanes.stored import stored
 from models.lanes.compiler import called, inlined
 
 Table = Any
@@ -96,32 +96,10 @@ def consistent(w: Table, slot: int, a: float, v: float, mixed: Any, laws: Any) -
     for row in range(A1, A1 + 4):
         kept[row] = (1.0 - AM) * w[row * W + slot]
     kept[r.POWER_B], kept[r.POWER_T] = w[r.POWER_B * W + slot], w[r.POWER_T * W + slot]
-    for row in (LIFT_B, LIFT_T, ALONG_B, ALONG_T, ACROSS_B, ACROSS_T):
+    for row in (LIFT_B, LIFT_T, r.EDGE_B, r.EDGE_T, ALONG_B, ALONG_T, ACROSS_B, ACROSS_T):
         kept[row] = w[row * W + slot]
     for row in range(N_WORK):
         w[row * W + slot] = kept[row]
-
-
-@inlined
-def stored(k: float, b: float, z: float, s: float) -> float:
-    """Elastic energy of a strip."""
-    lean = abs(s)
-    low = -b if z + lean * b <= 0.0 else min(b, max(-b, z / lean))
-    d1, d2, d3 = b - low, 0.5 * (b * b - low * low), (b * b * b - low * low * low) / 3.0
-    return float(0.5 * k * (z * z * d1 - 2.0 * z * lean * d2 + lean * lean * d3)) if d1 > 0.0 else 0.0
-
-
-@inlined
-def stored_base(w: Table, slot: int) -> float:
-    """Elastic energy of the base layer in J."""
-    return stored(w[KB * W + slot], w[B1 * W + slot], w[Z1 * W + slot], math.sin(w[T1 * W + slot]))
-
-
-@inlined
-def stored_top(w: Table, slot: int) -> float:
-    """Elastic energy of the top layer in J."""
-    turn = math.sin(w[T2 * W + slot] - w[T1 * W + slot])
-    return stored(w[KT * W + slot], w[BT * W + slot], w[Z2 * W + slot], turn)
 
 
 @called
@@ -153,7 +131,7 @@ def start(
     for k in range(result.shape[1]):
         result[lane, k] = 0.0
     result[lane, r.R_OVER_1], result[lane, r.R_OVER_2] = math.nan, math.nan
-    result[lane, r.R_STORED_B], result[lane, r.R_STORED_T] = stored_base(w, slot), stored_top(w, slot)
+    result[lane, r.R_STORED_B], result[lane, r.R_STORED_T] = stored(w, 0, slot, laws), stored(w, 1, slot, laws)
 
 
 @called
@@ -202,7 +180,7 @@ def topple(result: Table, w: Table, lane: int, slot: int, time: float) -> None:
 
 
 @called
-def finish(result: Table, w: Table, lane: int, slot: int, fell: bool) -> None:
+def finish(result: Table, w: Table, lane: int, slot: int, fell: bool, laws: Any) -> None:
     """Close the account of a lane that ends now; ``fell``: a body has reached pi/2."""
     h = w[STEP * W + slot]
     time = h * w[CLOCK * W + slot]
@@ -221,8 +199,9 @@ def finish(result: Table, w: Table, lane: int, slot: int, fell: bool) -> None:
     result[lane, r.R_SHARE_B] = 0.5 * w[SHARE_B * W + slot] / w[B1 * W + slot]
     result[lane, r.R_SHARE_T] = 0.5 * w[SHARE_T * W + slot] / w[BT * W + slot]
     result[lane, r.R_CLOSED_B], result[lane, r.R_CLOSED_T] = w[CLOSED_B * W + slot], w[CLOSED_T * W + slot]
-    result[lane, r.R_LOST_B] = result[lane, r.R_STORED_B] - stored_base(w, slot) - 0.5 * h * w[WORK_B * W + slot]
-    result[lane, r.R_LOST_T] = result[lane, r.R_STORED_T] - stored_top(w, slot) - 0.5 * h * w[WORK_T * W + slot]
+    result[lane, r.R_LOST_B] = result[lane, r.R_STORED_B] - stored(w, 0, slot, laws) - 0.5 * h * w[WORK_B * W + slot]
+    result[lane, r.R_LOST_T] = result[lane, r.R_STORED_T] - stored(w, 1, slot, laws) - 0.5 * h * w[WORK_T * W + slot]
+    result[lane, r.R_EDGE_B], result[lane, r.R_EDGE_T] = w[r.EDGE_B * W + slot], w[r.EDGE_T * W + slot]
     result[lane, r.R_FRICTION_B] = ratio(w[ALONG_B * W + slot], w[ACROSS_B * W + slot])
     result[lane, r.R_FRICTION_T] = ratio(w[ALONG_T * W + slot], w[ACROSS_T * W + slot])
     result[lane, r.R_END_1], result[lane, r.R_END_2] = t1, t2

@@ -174,6 +174,7 @@ def close(result: Table, given: Table, gathered: Table, lane: int, x: Table, tim
         along, across = gathered[r.ALONG_B + end], gathered[r.ACROSS_B + end]
         result[lane, kept.R_FRICTION_B + end] = along / across if across > 0.0 else NEVER
         result[lane, kept.R_END_1 + end] = x[end]
+        result[lane, kept.R_EDGE_B + end] = gathered[r.EDGE_B + end]
 
 
 @compiled

@@ -56,16 +56,36 @@ def loss(given: Table, lane: int, joint: int, state: int, x: Table, reading: Tab
 
 
 @inlined
+def summit(t0: float, v0: float, t1: float, v1: float, t: float) -> float:
+    """Where its rate changes sign: the cubic through values and rates at both ends of a step; else the first value."""
+    if not v0 * v1 < 0.0:
+        return t0
+    r0, r1, rise = t * v0, t * v1, t1 - t0
+    second, third = 3.0 * rise - 2.0 * r0 - r1, r0 + r1 - 2.0 * rise
+    root = math.copysign(math.sqrt(max(second * second - 3.0 * third * r0, 0.0)), r0)
+    s = r0 / (root - second)
+    return float(t0 + s * (r0 + s * (second + s * third)))
+
+
+@inlined
 def peak(t0: float, v0: float, t1: float, v1: float, t: float) -> float:
-    """Largest |theta| of the cubic through angles and rates at both ends of a step."""
-    largest = max(abs(t0), abs(t1))
-    if v0 * v1 < 0.0:
-        r0, r1, rise = t * v0, t * v1, t1 - t0
-        second, third = 3.0 * rise - 2.0 * r0 - r1, r0 + r1 - 2.0 * rise
-        root = math.copysign(math.sqrt(max(second * second - 3.0 * third * r0, 0.0)), r0)
-        s = r0 / (root - second)
-        largest = max(largest, abs(t0 + s * (r0 + s * (second + s * third))))
-    return largest
+    """Largest |theta| of the cubic."""
+    return max(abs(t0), abs(t1), abs(summit(t0, v0, t1, v1, t)))
+
+
+@inlined
+def edge(given: Table, lane: int, joint: int, x0: Table, x1: Table, t: float) -> float:
+    """Largest compression (m) of a joint's ends, each on its cubic."""
+    largest = -x0[2 + joint]
+    for end in range(2):
+        arm = (1.0 - 2.0 * end) * given[lane, r.B_B + joint]
+        if joint == 1:
+            u0, v0 = arm * (x0[1] - x0[0]) - x0[3], arm * (x0[5] - x0[4]) - x0[7]
+            u1, v1 = arm * (x1[1] - x1[0]) - x1[3], arm * (x1[5] - x1[4]) - x1[7]
+        else:
+            u0, v0, u1, v1 = arm * x0[0] - x0[2], arm * x0[4] - x0[6], arm * x1[0] - x1[2], arm * x1[4] - x1[6]
+        largest = max(largest, u0, u1, summit(u0, v0, u1, v1, t))
+    return float(largest)
 
 
 @inlined
@@ -116,6 +136,7 @@ def gather(
     for joint in range(2):
         state = c // STATES if joint == 0 else c % STATES
         gathered[r.UP_B + joint] += t if state != FULL else 0.0
+        gathered[r.EDGE_B + joint] = max(gathered[r.EDGE_B + joint], edge(given, lane, joint, x0, x1, t))
         p0, g0 = loss(given, lane, joint, state, x0, before)
         p1, g1 = loss(given, lane, joint, state, x1, after)
         gathered[r.LOST_B + joint] += 0.5 * t * (p0 + p1) + t * t / 12.0 * (g0 - g1)

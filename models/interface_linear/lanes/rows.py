@@ -12,12 +12,12 @@ STEPS, LEVELS, BRIEF = PERIOD + 1, PERIOD + 2, PERIOD + 3
 N_GIVEN = PERIOD + 4
 
 # --- gathered: peaks, kinetic energy (so far, of this window), joints: time up, lost energy, closings, onset,
-# least share, forces along and across at the worst ratio
+# least share, forces along and across at the worst ratio, largest compression of the edge
 (
     PEAK_1, PEAK_2, KINETIC, WINDOW, UP_B, UP_T, LOST_B, LOST_T, CLOSED_B, CLOSED_T, ONSET_B, ONSET_T,
-    SHARE_B, SHARE_T, ALONG_B, ALONG_T, ACROSS_B, ACROSS_T,
-) = range(18)  # fmt: skip
-N_GATHERED = 18
+    SHARE_B, SHARE_T, ALONG_B, ALONG_T, ACROSS_B, ACROSS_T, EDGE_B, EDGE_T,
+) = range(20)  # fmt: skip
+N_GATHERED = 20
 
 # --- reading of a state: q'' (4), the four watched values, their rates
 ACC, VALUE, RATE, N_READING = 0, 4, 8, 12

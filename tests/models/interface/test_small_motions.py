@@ -5,8 +5,18 @@ import pytest
 
 from models.interface import modes
 from models.interface.equation import Equation
+from models.rubber import LAWS
+from models.rubber.base import RubberLaw
 from tests.models.interface.walls import LONG, MODEL, SHORT, block_on_strip, random_wall, wall
 
+STRONG = {
+    "hardening": {"hardening.beta2": 20.0},
+    "maxwell": {"maxwell.arm_stiffness_ratio": 0.5, "maxwell.relaxation_time": 0.05},
+    "bouc_wen": {"bouc_wen.post_yield_ratio": 0.4, "bouc_wen.yield_compression": 2e-3, "bouc_wen.exponent": 2.0},
+    "mullins": {"mullins.softening": 0.3, "mullins.strain": 0.1},
+    "permanent_set": {"permanent_set.rate": 2.0, "permanent_set.strain_limit": 0.3},
+}
+"""Numbers of each law that show at rest."""
 FREQUENCIES = (
     (SHORT, (1.35130, 6.38983, 10.59931, 119.10733), 5e-6),
     (LONG, (6.3723, 17.5377, 29.4294, 119.975), 5e-5),
@@ -77,6 +87,72 @@ def test_the_linear_matrices_are_the_jacobians_of_the_full_equations(values, kin
     np.testing.assert_allclose(
         equation.mass(equation.kinematics(rest, still)), modes.mass_matrix(one, lever)[0], rtol=1e-13
     )
+
+
+def held(rest: float, u: np.ndarray, law: RubberLaw, p: dict) -> np.ndarray:
+    """The hidden state at u after an elastic change from rest: what has flowed in the rubber is held."""
+    if law.name == "maxwell":  # h = u - v, v held
+        return u - rest
+    if law.name == "bouc_wen":  # u - zeta held
+        return law.relaxed(np.array([rest]), p) + (u - rest)
+    # Mullins: a little more than at rest, so that neither side of a small turn exceeds it
+    return np.full_like(u, rest * (1 + 1e-6)) if law.name == "mullins" else np.zeros_like(u)
+
+
+@pytest.mark.parametrize("joints", ["both", "base"])
+@pytest.mark.parametrize("name", LAWS)
+def test_frequencies_are_those_of_the_jacobian_with_the_flow_held(name: str, joints: str) -> None:
+    """Of the full nonlinear equations at the law's own static state; under the linear law they differ."""
+    one = wall({**SHORT, "top_layer_modulus": 6e6, "base_layer_modulus": 4.95e6, **STRONG[name]}, joints=joints)
+    equation, rest = Equation(one), modes.static_state(one)[0]
+
+    def force(q: np.ndarray) -> np.ndarray:
+        hidden = []
+        for joint, z, angle, sunk in (("base", q[2], q[0], -rest[2]), ("top", q[3], q[1] - q[0], -rest[3])):
+            if joint in equation.fibres:
+                fibres = equation.fibres[joint]
+                u = fibres.x * np.sin(angle) - z
+                hidden += [held(sunk, u, law, p) for law, p in fibres.laws if law.hidden]
+        strips = equation.strips(q, np.zeros(4), np.concatenate(hidden) if hidden else np.zeros(0))[:2]
+        return equation.balance(q, np.zeros(4), 0.0, float(one.gravity[0]), strips)[1]
+
+    free = equation.free
+    sizes = 1e-10 / np.array([0.36, 0.36, 1.0, 1.0])[:, None] * free
+    slope = np.column_stack([(force(rest + d) - force(rest - d)) / 2 for d in sizes.T]) / np.max(sizes, axis=0)
+    mass = free.T @ equation.mass(equation.kinematics(rest, np.zeros(4))) @ free
+    squares = np.sort(np.linalg.eigvals(np.linalg.solve(mass, -free.T @ slope)).real)
+    np.testing.assert_allclose(modes.at_rest(one).squares[0], squares, rtol=1e-4)
+    plain = modes.at_rest(wall({**SHORT, "top_layer_modulus": 6e6, "base_layer_modulus": 4.95e6}, joints=joints))
+    if name in ("hardening", "maxwell", "mullins"):  # the others unload along k, and at the very top only
+        assert abs(modes.at_rest(one).squares[0, 0] / plain.squares[0, 0] - 1.0) > 0.05
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_uplift_rotation_is_where_a_base_turned_slowly_lifts(name: str) -> None:
+    """Turned in small steps under its weight, with the history of 400 fibres followed; the last open end tells."""
+    one = wall({**SHORT, **STRONG[name]})
+    [(law, p)], b, k = one.laws_at("base"), float(one.base_half_width[0]), float(one.base_stiffness[0])
+    weight, z = float(one.mass[0] * one.gravity[0]), float(modes.static_state(one)[0, 2])
+    x = ((np.arange(400) + 0.5) / 200 - 1) * b
+    u = np.full(400, -z)
+    h, theta = law.relaxed(u, p), 0.0
+    while z + b * theta < 0.0:
+        theta += 2e-6
+        for _ in range(3):  # the middle sinks until the weight is carried
+            new = np.maximum(x * theta - z, 0.0)
+            moved = h if name in ("maxwell", "permanent_set") else h + law.rate(u, new - u, h, p)  # slow, without creep
+            stress = np.maximum(k * new + law.extra(new, moved, p), 0.0)
+            z += (np.sum(stress) * 2 * b / 400 - weight) / (2 * b * k)
+        u, h = new, moved
+    values = {**SHORT, **STRONG[name]}
+    assert MODEL.derive(values)["uplift_rotation"][0] == pytest.approx(theta, rel=4e-3)
+    assert MODEL.derive(values)["static_sinking_base"][0] == -float(modes.static_state(one)[0, 2])
+
+
+def test_what_a_bonded_joint_leaves_out() -> None:
+    found = MODEL.derive(SHORT, {"joints": "top"})
+    assert np.isnan(found["uplift_rotation"][0])
+    assert str(found["static_sinking_base"][0]) == "0.0"
 
 
 def test_full_contact_frequencies_of_one_block() -> None:

@@ -54,6 +54,11 @@ def block_on_strip(stiffness: float, damping: float = 0.0) -> dict[str, Any]:
     }
 
 
+def stacked(walls: list[dict[str, float]]) -> dict[str, np.ndarray]:
+    """Walls of their own as one set of arrays."""
+    return {name: np.array([one[name] for one in walls]) for name in walls[0]}
+
+
 def random_wall(rng: np.random.Generator) -> dict[str, float]:
     """A wall within and around the range of the study on the rubber interface."""
     return {

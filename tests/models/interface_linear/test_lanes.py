@@ -87,11 +87,22 @@ def test_lanes_agree_with_the_reference_on_random_walls(seed: int) -> None:
     for name in ("uplift_duration_base", "uplift_duration_top", "onset_time_base", "onset_time_top", "status"):
         assert found[name] == pytest.approx(slow.outputs[name], rel=1e-5 + bound, abs=1e-6, nan_ok=True), name
     assert found["minimum_contact"] == slow.outputs["minimum_contact"]
+    for joint in ("base", "top"):
+        name = f"peak_strain_{joint}"
+        assert found[name] == pytest.approx(slow.outputs[name], rel=1e-3 + bound), name
     for name in ("peak_rotation_1", "peak_rotation_2"):
         assert found[name] == pytest.approx(slow.outputs[name], rel=1e-3 + bound), name
     for name in ("dissipated_energy_base", "dissipated_energy_top"):
         work = abs(slow.outputs["dissipated_energy_base"]) + abs(slow.outputs["dissipated_energy_top"])
         assert found[name] == pytest.approx(slow.outputs[name], abs=(1e-2 + bound) * work), name
+
+
+def test_events_are_told_alike_by_both_routes() -> None:
+    shaking = Shaking(0.01, 2.0 * np.sin(2 * np.pi * 2.0 * 0.01 * np.arange(41)))
+    fast, slow = (MODEL.simulate(SHORT, shaking, integrator=name) for name in MODEL.integrators)
+    assert [(e.kind, e.body) for e in fast.events] == [(e.kind, e.body) for e in slow.events]
+    assert [e.kind for e in fast.events].count("onset") == 1
+    np.testing.assert_allclose([e.time for e in fast.events], [e.time for e in slow.events], atol=1e-6)
 
 
 def test_energy_of_free_motion_without_dashpots_is_kept_between_switches() -> None:

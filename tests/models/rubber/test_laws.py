@@ -11,7 +11,7 @@ from models.interface.lanes import run as lanes
 from models.interface.strip import strip
 from models.rubber import LAWS
 from models.shaking import Shaking
-from tests.models.interface.walls import MODEL, SHORT, random_wall, wall
+from tests.models.interface.walls import MODEL, SHORT, random_wall, stacked, wall
 from tests.models.strategies import random_motion
 
 GIVEN = {
@@ -47,21 +47,43 @@ def test_lanes_agree_with_the_reference(name: str) -> None:
         assert np.max(error) < share
 
 
+def laden(name: str, rng: np.random.Generator, count: int) -> dict[str, np.ndarray]:
+    """Random walls with random numbers of a law that carries them at rest."""
+    values = stacked([random_wall(rng) for _ in range(4 * count)])
+    numbers = {p.name: rng.uniform(0.8 * p.low + 0.2 * p.high, 0.2 * p.low + 0.8 * p.high, 4 * count) for p in
+               MODEL.mechanisms[name].parameters}  # fmt: skip
+    if name == "bouc_wen":
+        numbers["exponent"] = rng.integers(1, 5, 4 * count).astype(float)
+    sunk = -modes.static_state(wall(values).with_law(name, numbers))[:, 2:] / 0.01
+    carried = np.max(sunk, axis=1) < numbers.get("strain_limit", 1.0)
+    kept = np.flatnonzero(carried)[:count]
+    assert kept.size == count
+    return {k: v[kept] for k, v in (values | {f"{name}.{k}": v for k, v in numbers.items()}).items()}
+
+
 @pytest.mark.parametrize("name", LAWS)
 def test_lanes_agree_with_the_reference_on_random_walls_and_values(name: str) -> None:
+    """Forty walls with fine steps, of which three with the reference too."""
     rng = np.random.default_rng([7, list(LAWS).index(name)])
-    law = MODEL.mechanisms[name]
-    drawn = {f"{name}.{p.name}": p.low + float(rng.uniform(0.2, 0.8)) * (p.high - p.low) for p in law.parameters}
-    if name == "bouc_wen":  # its exponent is a whole number
-        drawn["bouc_wen.exponent"] = float(rng.integers(1, 5))
-    values, shaking = {**random_wall(rng), **drawn}, random_motion(rng, duration=0.8)
-    one = wall(values)
-    scale = 9.81 * values["aspect_ratio"] * float(rng.uniform(0.5, 1.2))
-    slow = reference.run(one, shaking, scale, duration=0.8, rtol=1e-6).state
-    assert np.max(np.abs(slow[0])) > 1e-3  # it opens
-    fast = lanes.run(one, shaking, np.array([scale]), samples=slow.shape[1]).samples[0].T
-    error = np.max(np.abs(fast - slow)[:4], axis=1) / np.max(np.abs(slow)[:4], axis=1)
-    assert np.max(error) < 4e-3
+    values, shaking = laden(name, rng, 40), random_motion(rng, duration=0.8)
+    many = wall(values)
+    scale = 9.81 * values["aspect_ratio"] * rng.uniform(0.5, 1.2, 40)
+    coarse, fine, near = (
+        lanes.run(many, shaking, scale * more, samples=81, refinement=n).samples[:, :, :4]
+        for n, more in ((1, 1.0), (8, 1.0), (8, 1.0 + 1e-5))
+    )
+    size = np.max(np.abs(fine), axis=1)
+    assert np.sum(size[:, 0] > 1e-3) > 10  # they open
+    apart, error = (np.max(np.max(np.abs(run - fine), axis=1) / size, axis=1) for run in (near, coarse))
+    # a wall that amplifies a change of the motion by 1e-5 amplifies what the step leaves
+    assert np.mean(error < 1e-2 + 100 * apart) > 0.85
+    calm = apart < 1e-4
+    assert np.median(error[calm]) < 2e-3
+    open_too = np.flatnonzero(calm & (size[:, 0] > 1e-3))[:3]
+    for k in open_too:
+        slow = reference.run(many.take(slice(k, k + 1)), shaking, scale[k], duration=0.8, rtol=1e-6).state[:4].T
+        assert np.max(np.max(np.abs(fine[k] - slow), axis=0) / size[k]) < 1e-3
+    assert open_too.size == 3
 
 
 @pytest.mark.parametrize("name", LAWS)

@@ -1,0 +1,102 @@
+"""Energy: what the rubber has taken in and cannot give back is never negative, in either route."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from models.interface import modes, reference
+from models.interface.equation import Equation
+from models.interface.lanes import run as lanes
+from models.rubber import LAWS
+from models.shaking import Shaking
+from tests.models.interface.walls import SHORT, undamped, wall
+from tests.models.rubber.test_laws import GIVEN, laden, numbers
+from tests.models.strategies import random_motion
+
+HARD = Shaking(0.01, 6.0 * np.sin(2 * np.pi * 2.5 * 0.01 * np.arange(36)))
+JOINTS = ("base", "top")
+
+
+@pytest.mark.parametrize("clip", [True, False])
+@pytest.mark.parametrize("name", LAWS)
+def test_a_fibre_never_gives_back_more_than_it_took(name: str, clip: bool) -> None:
+    """Random paths, opening too: over every step the work is at least the change of the stored energy."""
+    law, p, count = LAWS[name], numbers(name), 20_000
+    rng = np.random.default_rng(5)
+    lines, ways = 2 * np.pi * rng.integers(1, 12, (4, 30)), rng.normal(0, 3e-3, (4, 30))
+    time = np.linspace(0.0, 1.0, count)[:, None]
+    u = np.maximum(1e-3 + sum(way * np.sin(line * time) for way, line in zip(ways, lines, strict=True)), 0.0)
+    h = law.relaxed(u[0], p)
+    k, before, worst, lost, most = float(p["stiffness"]), None, 0.0, 0.0, 0.0
+    for old, new in pairwise(u):
+        middle, change = 0.5 * (old + new), new - old
+        h = h + law.rate(middle, change * count, h, p) / count
+        h = np.maximum(h, new) if name == "mullins" else h
+        spring = k * new + law.extra(new, h, p)
+        energy = 0.5 * k * new**2 + law.energy(new, h, p)
+        if clip:
+            energy = energy - np.minimum(spring, 0.0) ** 2 / (2 * (k + law.tangent(new, h, p)))
+            spring = np.maximum(spring, 0.0)
+        if before is not None:
+            taken = 0.5 * (spring + before[0]) * change - (energy - before[1])
+            worst, lost = np.minimum(worst, taken), lost + taken
+        before, most = (spring, energy), np.maximum(most, energy)
+    # to the error of the steps, greatest where the clip begins or ends within one
+    assert np.all(worst > -1e-5 * most)
+    assert np.all(lost > -1e-4 * most)
+    if name != "hardening":
+        assert np.median(lost / most) > 0.03
+
+
+@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize("dashpot", ["B", "A"])
+def test_layers_of_random_walls_never_give_energy(name: str, dashpot: str) -> None:
+    """Lanes: strong shaking of 64 walls, some overturn; both joints, base and top on their own."""
+    rng = np.random.default_rng([3, list(LAWS).index(name), dashpot == "A"])
+    values = laden(name, rng, 64)
+    many = wall(values, dashpot=dashpot).replace(vertical_factor=1.0)
+    scale = 9.81 * values["aspect_ratio"] * rng.uniform(0.3, 2.5, 64)
+    found = lanes.outputs(many, lanes.run(many, random_motion(rng, duration=2.5), scale, tail=1.0).result)
+    assert np.sum(found["minimum_contact"] < 0.7) > 20
+    assert not np.any(found["status"] == 5)
+    for joint in JOINTS:
+        assert np.all(found[f"dissipated_energy_{joint}"] >= 0.0), joint
+    np.testing.assert_allclose(found["dissipated_energy"], sum(found[f"dissipated_energy_{j}"] for j in JOINTS))
+
+
+@pytest.mark.parametrize("name", ["hardening", "permanent_set"])
+def test_springs_that_only_store_lose_nothing(name: str) -> None:
+    """No dashpots, no flow: to rounding in the reference, with the second order of the step in the lanes."""
+    rigid = {"permanent_set.strain_limit": 50.0} if name == "permanent_set" else {}
+    one = wall({**undamped(SHORT), **GIVEN[name], **rigid})
+    slow = reference.run(one, HARD, duration=0.35, rtol=1e-9)
+    assert slow.outputs["minimum_contact_base"] < 0.5
+    equation = Equation(one)
+    exchanged = max(sum(equation.stored(q, equation.relaxed())) for q in slow.state[:4].T.tolist())
+    errors = []
+    for refinement in (1, 4):
+        found = lanes.outputs(one, lanes.run(one, HARD, np.ones(1), refinement=refinement).result)
+        errors.append(max(abs(found[f"dissipated_energy_{joint}"][0]) for joint in JOINTS))
+    for joint in JOINTS:
+        assert abs(slow.outputs[f"dissipated_energy_{joint}"]) < 1e-8 * exchanged
+    assert errors[0] < 2e-3 * exchanged
+    assert errors[1] < errors[0] / 8
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_both_routes_dissipate_alike(name: str) -> None:
+    """A random wall let go at four times its uplift rotation: never negative, and with fine steps the same."""
+    rng = np.random.default_rng([8, list(LAWS).index(name)])
+    one = wall({k: float(v[0]) for k, v in laden(name, rng, 1).items()})
+    lean = 4.0 * float(modes.uplift_rotation(one, modes.static_state(one))[0])
+    start = {"rotation_1": lean, "rotation_2": lean}
+    slow = reference.run(one, Shaking.silence(0.3, 0.01), initial=start, duration=0.3, rtol=1e-7).outputs
+    ran = lanes.run(one, Shaking.silence(0.3, 0.01), np.ones(1), initial=start, refinement=8, may_rest=False)
+    fast = {k: float(v[0]) for k, v in lanes.outputs(one, ran.result).items()}
+    assert slow["minimum_contact_base"] < 0.8
+    for joint in JOINTS:
+        part = slow[f"dissipated_energy_{joint}"]
+        assert part >= 0.0
+        assert fast[f"dissipated_energy_{joint}"] == pytest.approx(part, abs=5e-3 * slow["dissipated_energy"])
+        assert fast[f"peak_strain_{joint}"] == pytest.approx(slow[f"peak_strain_{joint}"], rel=3e-3)
