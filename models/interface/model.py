@@ -30,7 +30,7 @@ class Interface:
 
     name: str = "interface"
     title: str = "a wall and a block on top, a rubber layer under each"
-    version: str = "2"
+    version: str = "3"
     parameters: tuple[Parameter, ...] = declaration.PARAMETERS
     alternatives: tuple[tuple[tuple[str, ...], ...], ...] = declaration.ALTERNATIVES
     outputs: tuple[Quantity, ...] = declaration.OUTPUTS

@@ -24,7 +24,7 @@ class InterfaceLinear(Interface):
 
     name: str = "interface_linear"
     title: str = "the paper's linear wall and block on rubber layers (Eq. 6, corrected)"
-    version: str = "1"
+    version: str = "2"
     outputs: tuple[Quantity, ...] = declaration.OUTPUTS
 
     @property
