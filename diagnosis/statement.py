@@ -21,6 +21,8 @@ WHERE = {
     "above_10_hz": "above 10 Hz",
     "everywhere": "throughout",
 }
+CONFIRMED = 0.5
+"""Share of the achievable on held-out recordings under which the reader is warned."""
 
 
 def statement(found: Diagnosis, known: Mapping[str, Mechanism]) -> str:
@@ -169,6 +171,8 @@ def _fit(train: Fit, holdout: Fit | None) -> str:
         share = f"{holdout.share_of_achievable:.0%}"
         of = "of it; they have no noise of their own" if holdout.noise_free else "of what the noise allows"
         text += f" ({share} {of})"
+        if holdout.share_of_achievable < CONFIRMED:
+            text += ", so they hardly bear the explanation out"
     return text + "."
 
 

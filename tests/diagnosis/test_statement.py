@@ -101,6 +101,9 @@ def test_what_was_skipped_is_told() -> None:
 def test_a_held_out_recording_without_noise_is_not_measured_by_it() -> None:
     fit = Fit(0.2, 0.012, 1e-4, 0.94)
     assert "(94% of what the noise allows)" in said(holdout=fit)
+    assert "hardly bear" not in said(holdout=fit)
+    poor = replace(fit, share_of_achievable=0.2)
+    assert "so they hardly bear the explanation out" in said(holdout=poor)
     text = said(holdout=replace(fit, noise_free=True))
     assert "noise allows" not in text and "94% of it" in text and "no noise of their own" in text
 
