@@ -18,6 +18,7 @@ from diagnosis.heldout import Shown, compare, fit_figures, horizons, traces_of, 
 from diagnosis.intervals import estimates
 from diagnosis.judgement import explains, p_of_effects, p_of_missing, undecided, verdict_of
 from diagnosis.locate import locate
+from diagnosis.measured import Measured
 from diagnosis.missing_force import missing_force
 from diagnosis.refit import Explanation
 from diagnosis.rescale import to_true_peak
@@ -50,6 +51,7 @@ def diagnose(
     """
     progress("calibrating the base model", 0.02)
     measured = measure(specimen, training)
+    held = measure(specimen, holdout, measured.reference_peak) if holdout else None  # a poor one is told at once
     base = Explanation((), base_fit(specimen, measured, seed))
     found = Search(base, candidates(measured, specimen))
     finished = True
@@ -60,14 +62,13 @@ def diagnose(
         finished = False
         if found.best is None:
             take_best_single(found)
-    return _assemble(specimen, found, training, holdout, bootstrap, progress, seed, finished)
+    return _assemble(specimen, found, held, bootstrap, progress, seed, finished)
 
 
 def _assemble(
     specimen: Specimen,
     found: Search,
-    training: Sequence[Recording],
-    holdout: Sequence[Recording],
+    to_show: Measured | None,
     draws: int,
     progress: Progress,
     seed: int,
@@ -108,11 +109,11 @@ def _assemble(
         lambda: _estimates(found, gains, p_value, None),
     )
 
-    def of_holdout() -> Shown:
+    def of_held(recordings: Measured) -> Shown:
         progress("before and after", 0.95)
-        return compare(found.base, chosen, measure(specimen, holdout, measured.reference_peak))
+        return compare(found.base, chosen, recordings)
 
-    held = stages.needed(of_holdout) if holdout else None
+    held = stages.needed(lambda: of_held(to_show)) if to_show else None
     if held:
         shown.append(held)
     missing = verdict != "nothing_missing" and (finished or bool(effects))
@@ -156,7 +157,7 @@ def _assemble(
         finished=finished,
         undecided=undecided(found, p_value) if verdict == "nothing_missing" else None,
         unexplained=unexplained,
-        suspicions={r.name: r.suspicions for r in (*training, *holdout) if r.suspicions},
+        suspicions={r.name: r.suspicions for s in shown for r in s.measured.recordings if r.suspicions},
     )
     known = {**measured.model.mechanisms, **SENSORS}
     answer = replace(answer, skipped=tuple(stages.skipped) if finished else ())

@@ -132,3 +132,14 @@ def test_nothing_to_compare_is_said() -> None:
         diagnose(SPECIMEN, [still])
     with pytest.raises(InputError, match="no recording"):
         diagnose(SPECIMEN, [])
+
+
+def test_a_held_out_recording_without_motion_is_told_before_the_search() -> None:
+    def never(text: str, share: float) -> None:
+        raise AssertionError(text)
+
+    moving = recording("train_1", 1)
+    noise = 1e-4 * np.random.default_rng(1).normal(size=moving.time.size)
+    still = replace(moving, name="still", channels={**moving.channels, "rotation_1": noise})
+    with pytest.raises(InputError, match="still"):
+        diagnose(SPECIMEN, [moving], [still], progress=lambda text, share: None if share < 0.05 else never(text, share))
