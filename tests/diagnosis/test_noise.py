@@ -8,10 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.signal import butter, lfilter
 
+from diagnosis import diagnose
 from diagnosis.noise import density_level, response_noise, still
 from grids.recordings import noise_of
 from grids.recordings.base import Recording
-from tests.diagnosis.made import TIME_STEP, recording
+from tests.diagnosis.made import SPECIMEN, TIME_STEP, recording
 
 SIGMA = 6e-4
 
@@ -27,7 +28,26 @@ def with_noise(seed: int, corner: float | None) -> tuple[Recording, float]:
         noise = lfilter(*butter(2, corner, fs=1.0 / TIME_STEP), noise)
     base = np.zeros(rotation.size)
     channels = {"base_acceleration_x": base, "rotation_1": rotation + noise}
-    return Recording("made", TIME_STEP, np.arange(rotation.size) * TIME_STEP, channels), SIGMA
+    return Recording("made", TIME_STEP, np.arange(rotation.size, dtype=np.float64) * TIME_STEP, channels), SIGMA
+
+
+def after_rest(name: str, seed: int) -> Recording:
+    """A recording of a block as the model has it, .4 % noise through a 20 Hz filter, a second of rest before it."""
+    clean, rest = recording(name, seed, noise=0.0), round(1.0 / TIME_STEP)
+    rng = np.random.default_rng(seed)
+    rotation = np.concatenate([np.zeros(rest), clean.channels["rotation_1"]])
+    noise = lfilter(*butter(2, 20.0, fs=1.0 / TIME_STEP), rng.normal(size=rotation.size + rest))[rest:]
+    base = np.concatenate([np.zeros(rest), clean.channels["base_acceleration_x"]])
+    channels = {
+        "base_acceleration_x": base + 0.003 * np.max(np.abs(base)) * rng.normal(size=base.size),
+        "rotation_1": rotation + 0.004 * np.max(np.abs(rotation)) * noise / np.std(noise),
+    }
+    return Recording(name, TIME_STEP, np.arange(rotation.size, dtype=np.float64) * TIME_STEP, channels)
+
+
+def test_coloured_noise_is_no_effect() -> None:
+    found = diagnose(SPECIMEN, [after_rest("train_1", 2), after_rest("train_2", 4)])
+    assert found.verdict == "nothing_missing", found.statement
 
 
 @pytest.mark.parametrize("corner", [None, 20.0, 30.0, 45.0])
