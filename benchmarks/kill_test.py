@@ -56,10 +56,10 @@ WALLS = "aspect_ratio = {{ linspace = [{span}] }}\ntop_mass = {{ linspace = [500
 BEARINGS = "bearing_stiffness = {{ geomspace = [{span}] }}\nbearing_damping = {{ linspace = [1e5, 9e5, {size}] }}"
 MODELS = {
     "housner": (BLOCK, WALLS, "0.1, 0.4, 30", 37),
-    "stacked": (WALL, WALLS, "0.2, 0.6, 10", 10),
-    "interface": (f"{WALL}\n{RUBBER}", WALLS, "0.4, 1.2, 5", 9),
+    "stacked": (WALL, WALLS, "0.2, 0.6, 10", 75),
+    "interface": (f"{WALL}\n{RUBBER}", WALLS, "0.4, 1.2, 5", 25),
     "interface_linear": (f"{WALL}\n{RUBBER}", WALLS, "0.4, 1.2, 2", 4),
-    "isolated": (BUILDING, BEARINGS, "1e6, 9e6, 6", 8),
+    "isolated": (BUILDING, BEARINGS, "1e6, 9e6, 6", 75),
 }
 """Parameters, two axes, the span of the first, number of PGA: cells of like cost in all, a second or two."""
 CLUSTER = """
