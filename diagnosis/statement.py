@@ -166,7 +166,8 @@ def _fit(train: Fit, holdout: Fit | None) -> str:
     text = f"The misfit {_change(train)} of the signal on the recordings fitted to"
     if holdout is None:
         return text + "; no recording was held out."
-    text += f", and {_change(holdout)} on those held out"
+    verb = _change(train).split()[0]
+    text += f", and {_change(holdout).removeprefix(f'{verb} ')} on those held out"
     if holdout.share_of_achievable is not None and holdout.after != holdout.before:
         share = f"{holdout.share_of_achievable:.0%}"
         of = "of it; they have no noise of their own" if holdout.noise_free else "of what the noise allows"
