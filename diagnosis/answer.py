@@ -22,7 +22,7 @@ from diagnosis.measured import Measured
 from diagnosis.missing_force import missing_force
 from diagnosis.refit import Explanation
 from diagnosis.rescale import to_true_peak
-from diagnosis.result import LEAST_P, Diagnosis, Effect, Estimate, Located, Rival, Screened
+from diagnosis.result import Diagnosis, Effect, Estimate, Located, Rival, Screened
 from diagnosis.select import Progress, search, take_best_single
 from diagnosis.sensors import SENSORS
 from diagnosis.setup import base_fit, measure, silent
@@ -100,7 +100,7 @@ def _assemble(
         score_p = p_value
         p_value = stages.optional(
             "the bootstrap (the p-value is that of the score)",
-            lambda: max(bootstrapping.p_value(specimen, found, draws, seed, progress), LEAST_P),
+            lambda: bootstrapping.p_value(specimen, found, draws, seed, progress),
             lambda: score_p,
         )
     effects, base = stages.optional(

@@ -2,8 +2,10 @@
 
 Each draw is the base model's windows plus noise of the sensor and what noise of the base motion does to them
 (covariance of `diagnosis.whitening`). The gains that a short search brings are compared with the gain that
-the same search brings on the recordings. Beyond the draws' upper quarter the tail is exponential, as that of
-chi-squared is (Knijnenburg et al., Bioinformatics 25, 2009, with shape 0).
+the same search brings on the recordings. Beyond the draws' upper quarter the tail is that of lambda chi-squared
+with one degree of freedom, lambda from the mean excess over the quarter's start v lambda:
+
+    mean excess = lambda [ Q_3(v)/Q_1(v) - v ],      Q_k(v) = P(chi2_k > v).
 """
 
 from __future__ import annotations
@@ -11,12 +13,15 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from scipy.optimize import brentq
+from scipy.stats import chi2
 
 from diagnosis.candidates import candidates
 from diagnosis.fit import fit
 from diagnosis.found import Search, adjusted
 from diagnosis.misfit import Misfit
 from diagnosis.refit import Explanation, extend
+from diagnosis.result import LEAST_P
 from diagnosis.screen import open_screen, score
 from diagnosis.select import FEWEST, Progress
 from diagnosis.starts import start_of
@@ -25,8 +30,8 @@ from models.base import FloatArray
 
 TAIL = 0.25
 FEWEST_FOR_A_TAIL = 20
-LEAST = 1e-6
-"""No p-value from some tens of draws is told below this."""
+FARTHEST = 600.0
+"""v, beyond which Q underflows."""
 
 
 def p_value(specimen: Specimen, found: Search, draws: int, seed: int, progress: Progress) -> float:
@@ -61,4 +66,13 @@ def tail_probability(observed: float, drawn: FloatArray) -> float:
     beyond = drawn[drawn > start] - start
     if drawn.size < FEWEST_FOR_A_TAIL or observed <= start or beyond.size == 0:
         return float(counted)
-    return float(max(LEAST, beyond.size / drawn.size * np.exp((start - observed) / beyond.mean())))
+    mean = float(beyond.mean())
+
+    def excess(scale: float) -> float:
+        v = start / scale
+        return float(scale * (chi2.sf(v, 3) / chi2.sf(v, 1) - v)) - mean
+
+    low = max(0.3 * mean, start / FARTHEST)  # the factor of lambda is 1 at v = 0 and grows to 2
+    scale = brentq(excess, low, mean) if excess(low) < 0.0 else low
+    tail = chi2.sf(observed / scale, 1) / chi2.sf(start / scale, 1)
+    return float(max(LEAST_P, beyond.size / drawn.size * tail))

@@ -4,7 +4,8 @@ The excess of a window is what the extended model takes off its squared misfit; 
 library is adequate, what the base model leaves over that of the noise. Runs of neighbouring
 windows are scanned for more than their part; the largest run is compared with that of shuffled windows,
 at a level shared out among recordings and channels, so that all scans together are wrong with 5 %
-probability at most. Without a run that stands out the interval is all that was compared.
+probability at most. Without a run that stands out the interval is all that was compared. Windows start at a
+peak, so what happens at the first uplift alone is not located.
 """
 
 from __future__ import annotations

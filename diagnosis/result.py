@@ -15,7 +15,7 @@ LEAST_P = 1e-6
 """Least p-value told; it stands for "at most this": nobody has tested a null distribution further out."""
 
 WHERE = (
-    "impact", "between_impacts", "first_uplift", "large_rotation", "small_rotation", "left", "right", "late",
+    "impact", "between_impacts", "large_rotation", "small_rotation", "left", "right", "late",
     "above_10_hz", "everywhere",
 )  # fmt: skip
 

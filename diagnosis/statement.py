@@ -12,7 +12,6 @@ from models.base import Mechanism
 WHERE = {
     "impact": "at impacts",
     "between_impacts": "between impacts",
-    "first_uplift": "at the first uplift",
     "large_rotation": "at large rotations",
     "small_rotation": "at small rotations",
     "left": "while rocking to the left",

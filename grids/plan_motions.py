@@ -48,7 +48,7 @@ def read_motions(
             "set [motion] vertical = false or leave the mechanism out."
         )
     check_vertical(model, vertical)
-    wanted = True if apart else vertical if model.takes_vertical else False
+    wanted = apart or (vertical if model.takes_vertical else False)
 
     def read(source: Any) -> Motion:
         return read_motion(source, component=table.component, vertical=wanted, near=folder)

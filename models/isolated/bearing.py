@@ -78,18 +78,10 @@ def spring_force(chain: Chain, u: FloatArray, memory: Memory) -> FloatArray:
 def stored(chain: Chain, u: FloatArray, memory: Memory) -> FloatArray:
     """Energy (J) that the springs of the bearings would give back now.
 
-    k u^2/2, and of the laws: hardening beta2 k u^4/(4 e^2), Maxwell's arm k1 d^2/2, Bouc-Wen
-    (1-a) k (zeta^2 - u^2)/2, Mullins and Payne their loss of k u^2/2; all times the wear.
+    k u^2/2 less its share lost by Payne's effect, and what each law stores beyond it, even in u; all times the wear.
     """
-    k, half = chain.stiffness, 0.5 * chain.stiffness * u**2
-    energy = half * (1.0 - payne_loss(chain, np.maximum(memory.amplitude, np.abs(u))))
+    loss = payne_loss(chain, np.maximum(memory.amplitude, np.abs(u)))
+    energy = 0.5 * chain.stiffness * u**2 * (1.0 - loss)
     for (law, p), h in zip(chain.rubber_laws, memory.hidden, strict=True):
-        if law.name == "hardening":
-            energy = energy + 0.5 * half * p["beta2"] * (u / p["thickness"]) ** 2
-        elif law.name == "maxwell":
-            energy = energy + 0.5 * p["arm_stiffness_ratio"] * k * h**2
-        elif law.name == "bouc_wen":
-            energy = energy + 0.5 * (1.0 - p["post_yield_ratio"]) * k * (h**2 - u**2)
-        else:
-            energy = energy + 0.5 * u * _addition(law, p, u, h)
+        energy = energy + law.energy(np.abs(u), h, p)
     return np.asarray(wear(chain, memory.crossings) * energy)

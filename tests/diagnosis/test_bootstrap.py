@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from diagnosis.bootstrap import LEAST, p_value, tail_probability
+from diagnosis.bootstrap import p_value, tail_probability
 from diagnosis.candidates import candidates
 from diagnosis.fit import fit
 from diagnosis.found import Search
 from diagnosis.refit import Explanation
+from diagnosis.result import LEAST_P
 from diagnosis.screen import open_screen, score
 from diagnosis.setup import base_fit, measure
 from tests.diagnosis.made import SPECIMEN, recording
@@ -54,10 +55,14 @@ def test_scores_of_draws_are_those_of_chance() -> None:
 
 def test_the_tail_goes_on_where_the_draws_end() -> None:
     gains = chi2.ppf((np.arange(99) + 0.5) / 99, 1)
-    for beyond in (12.0, 20.0):
-        assert tail_probability(beyond, gains) == pytest.approx(chi2.sf(beyond, 1), rel=3.0)
+    for scale, beyond in ((1.0, 12.0), (1.0, 20.0), (3.0, 40.0), (0.5, 8.0)):
+        assert 0.5 < tail_probability(beyond, scale * gains) / chi2.sf(beyond / scale, 1) < 2.0
+    many = chi2.ppf(((np.arange(99) + 0.5) / 99) ** 0.1, 1)  # the largest of ten
+    assert 0.5 < tail_probability(20.0, many) / (10.0 * chi2.sf(20.0, 1)) < 2.0
+    alike = 1e4 + gains  # far out and close together
+    assert LEAST_P <= tail_probability(1e4 + 30.0, alike) < 0.1
     assert tail_probability(12.0, gains) > tail_probability(20.0, gains)
-    assert tail_probability(1e4, gains) == LEAST
+    assert tail_probability(1e4, gains) == LEAST_P
     assert tail_probability(0.0, gains) == 1.0
     assert tail_probability(1e4, gains[:9]) == 0.1
 

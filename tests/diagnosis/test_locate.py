@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from types import SimpleNamespace
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from diagnosis import constancy
 from diagnosis.locate import LEVEL, intervals, locate, phases
@@ -17,41 +15,29 @@ WINDOWS, SAMPLES = 14, 60
 PLAIN = [constancy.Tested("couple", "", 400.0)]
 
 
-@dataclass
-class Scan:
-    """Recordings of 14 windows each; noise of one, and a mismatch in some windows."""
-
-    recordings: int
-    channels: int
-    seed: int
-
-    def shown(self, where: tuple[int, ...] = (), size: float = 2.0, explained: bool = True) -> Any:
-        rng = np.random.default_rng(self.seed)
-        shape = (self.recordings * WINDOWS, self.channels, SAMPLES)
-        values = rng.normal(size=shape)
-        missing = np.zeros(shape)
-        missing[list(where)] = size * np.sin(np.linspace(0.0, 6.0, SAMPLES))
-        measured = SimpleNamespace(
-            recordings=tuple(SimpleNamespace(name=f"run_{r}", time_step=0.01) for r in range(self.recordings)),
-            channels=tuple(f"rotation_{c + 1}" for c in range(self.channels)),
-            windows=tuple(
-                SimpleNamespace(recording=r, first=w * SAMPLES, samples=SAMPLES)
-                for r in range(self.recordings)
-                for w in range(WINDOWS)
-            ),
-            recording_of=np.repeat(np.arange(self.recordings), WINDOWS),
-            mask=np.ones(shape, bool),
-            sigma=np.ones(shape[:2]),
-            values=values + missing,
-        )
-        after: NDArray[np.float64] = missing if explained else np.zeros(shape)
-        return SimpleNamespace(measured=measured, before=np.zeros(shape), after=after)
+def shown(where: tuple[int, ...], explained: bool) -> Any:
+    """Two recordings of 14 windows each; noise of one, and a mismatch in the windows ``where``."""
+    shape = (2 * WINDOWS, 1, SAMPLES)
+    missing = np.zeros(shape)
+    missing[list(where)] = 2.0 * np.sin(np.linspace(0.0, 6.0, SAMPLES))
+    measured = SimpleNamespace(
+        recordings=tuple(SimpleNamespace(name=f"run_{r}", time_step=0.01) for r in range(2)),
+        channels=("rotation_1",),
+        windows=tuple(
+            SimpleNamespace(recording=r, first=w * SAMPLES, samples=SAMPLES) for r in range(2) for w in range(WINDOWS)
+        ),
+        recording_of=np.repeat(np.arange(2), WINDOWS),
+        mask=np.ones(shape, bool),
+        sigma=np.ones(shape[:2]),
+        values=np.random.default_rng(3).normal(size=shape) + missing,
+    )
+    after = missing if explained else np.zeros(shape)
+    return SimpleNamespace(measured=measured, before=np.zeros(shape), after=after)
 
 
 @pytest.mark.parametrize("explained", [True, False])
 def test_the_windows_with_the_mismatch_are_found(explained: bool) -> None:
-    shown = Scan(2, 1, 3).shown(where=(20, 21, 22, 23), explained=explained)
-    first = locate(cast(Any, shown), PLAIN, sensors_only=False, explained=explained)[0]
+    first = locate(shown((20, 21, 22, 23), explained), PLAIN, sensors_only=False, explained=explained)[0]
     assert first.recording == "run_1" and first.share > 0.6
     step = SAMPLES * 0.01
     assert first.start == pytest.approx(6 * step, abs=step) and first.end == pytest.approx(10 * step, abs=step)
