@@ -60,7 +60,7 @@ def test_the_tail_goes_on_where_the_draws_end() -> None:
     many = chi2.ppf(((np.arange(99) + 0.5) / 99) ** 0.1, 1)  # the largest of ten
     assert 0.5 < tail_probability(20.0, many) / (10.0 * chi2.sf(20.0, 1)) < 2.0
     alike = 1e4 + gains  # far out and close together
-    assert LEAST_P <= tail_probability(1e4 + 30.0, alike) < 0.1
+    assert LEAST_P <= tail_probability(1e4 + 30.0, alike) < 0.25
     assert tail_probability(12.0, gains) > tail_probability(20.0, gains)
     assert tail_probability(1e4, gains) == LEAST_P
     assert tail_probability(0.0, gains) == 1.0
