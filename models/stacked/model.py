@@ -99,7 +99,7 @@ class Stacked:
         }
 
     def _stack(self, values: Values, shaking: Shaking, size: int) -> Stack:
-        stack = build(values, shaking.vertical is not None, size)
+        stack = build(values, shaking.vertical is not None and shaking.vertical_acts, size)
         if stack.size != size:
             raise ValueError(f"values broadcast to {stack.size} lanes, {size} are asked for")
         return stack

@@ -54,6 +54,27 @@ def test_outputs_fit_together() -> None:
     assert np.all(found["needed_friction"][~rest] > 0.1)
 
 
+def test_a_vertical_motion_that_does_not_act_is_left_out() -> None:
+    rng = np.random.default_rng(5)
+    across, up = random_motion(rng, duration=3.0), random_motion(rng, duration=3.0).horizontal
+    alone = Shaking(across.time_step, across.horizontal)
+    left_out = Shaking(across.time_step, across.horizontal, up, vertical_acts=False)
+    acting = Shaking(across.time_step, across.horizontal, up)
+    one, samples = np.zeros(1, np.int64), across.horizontal.size
+    start = {"rotation_1": np.array([0.02])}
+
+    def peaks(shaking: Shaking, integrator: str = "lanes") -> list[float]:
+        run = MODEL.simulate(B, shaking, scale=3.0, integrator=integrator).channels["rotation_1"]
+        window = MODEL.trajectories(B, shaking, first=one, samples=samples, initial=start)["rotation_1"]
+        names = ["peak_rotation"]
+        (peak,) = MODEL.evaluate(B, shaking, np.array([3.0]), outputs=names, tail=0.0)["peak_rotation"]
+        return [float(np.sum(np.abs(run))), float(np.sum(np.abs(window))), float(peak)]
+
+    for integrator in MODEL.integrators:
+        assert peaks(left_out, integrator) == peaks(alone, integrator)
+    assert all(a != b for a, b in zip(peaks(acting), peaks(alone), strict=True))
+
+
 def test_overturned_history_stays_down() -> None:
     pulse = Shaking(0.005, 8.0 * np.sin(np.pi * np.arange(401) / 200.0))
     for integrator in MODEL.integrators:
