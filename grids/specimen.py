@@ -32,10 +32,12 @@ from grids.files import Schema, check, parse_toml, read_text
 from grids.plan_checks import check_cells, check_vertical
 from grids.targets import Targets, find_model
 from grids.units import to_si, with_unit
-from models.base import Mechanism
+from models.base import Mechanism, Model
 from models.errors import InputError, nearest
 
 MOST_TOLERANCE = 1.0
+UNITS_OF_STATES = {"rotation_rate": "rad s-1", "rotation": "rad", "velocity": "m s-1", "displacement": "m"}
+"""By how the name of a state begins that a model does not observe."""
 
 
 class MotionTable(Schema):
@@ -168,13 +170,18 @@ def _range(name: str, entry: object, targets: Targets) -> tuple[float, float]:
 
 
 def _initial(file: SpecimenFile, targets: Targets) -> dict[str, float]:
-    observables = {quantity.name: quantity for quantity in targets.model.observables}
     initial = {}
     for name, value in file.initial.items():
         where = f"[initial] {name}"
-        if name not in observables:
-            raise InputError(f"{where} is no state of model '{targets.model.name}'; {nearest(name, observables)}")
-        initial[name] = to_si(value, observables[name].unit, where)
+        initial[name] = to_si(value, state_unit(targets.model, name, where), where)
         if abs(initial[name]) == float("inf"):
             raise InputError(f"{where} = {initial[name]}: give a finite value.")
     return initial
+
+
+def state_unit(model: Model, name: str, where: str) -> str:
+    """The SI unit of a state of ``model``; InputError with the nearest one where it has no such state."""
+    if name not in model.states:
+        raise InputError(f"{where} is no state of model '{model.name}'; {nearest(name, model.states)}")
+    units = {quantity.name: quantity.unit for quantity in model.observables}
+    return units.get(name) or next(unit for start, unit in UNITS_OF_STATES.items() if name.startswith(start))

@@ -10,10 +10,12 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+import models
 from grids.data_folder import data_folder
-from grids.specimen import Specimen, parse_specimen, read_specimen
+from grids.specimen import Specimen, parse_specimen, read_specimen, state_unit
 from grids.write_specimen import specimen_text, write_specimen
 from models.errors import InputError
+from models.shaking import Shaking
 from tests.grids.fakes import SENSORS, FakeWall
 
 GOOD = """
@@ -112,6 +114,43 @@ def test_restitution_has_one_handle(fake_wall: FakeWall) -> None:
     text = GOOD.replace("height = 1.8", "height = 1.8\nrestitution = 0.9")
     with pytest.raises(InputError, match="two handles"):
         parse_specimen(text + "[mechanisms.restitution]\nfactor_on_housner = 0.9\n", sensors=SENSORS)
+
+
+WALL_ON_RUBBER = """
+title = "wall on rubber"
+model = "interface"
+[parameters]
+wall_length = "0.72 m"
+wall_height = "1.8 m"
+wall_thickness = "0.138 m"
+wall_density = 900
+top_mass = "5 t"
+top_length = "2 m"
+top_height = "0.6 m"
+layer_thickness = "10 mm"
+layer_modulus = "4.5 MPa"
+damping_ratio = 0.05
+[initial]
+"""
+
+
+def test_an_initial_state_is_one_of_the_model() -> None:
+    found = parse_specimen(WALL_ON_RUBBER + 'displacement_z_1 = "-1 mm"\nvelocity_z_2 = "2 mm/s"')
+    assert found.initial == {"displacement_z_1": -0.001, "velocity_z_2": 0.002}
+    models.get("interface").simulate(
+        found.parameters, Shaking.silence(0.05, 0.005), initial=found.initial, integrator="reference"
+    )
+    with pytest.raises(InputError, match=r"\[initial\] contact_1 is no state of model 'interface'"):
+        parse_specimen(WALL_ON_RUBBER + "contact_1 = 0.5")
+
+
+@pytest.mark.parametrize("name", models.MODELS)
+def test_every_state_has_a_unit(name: str) -> None:
+    model = models.get(name)
+    for state in model.states:
+        per_second = "rate" in state or "velocity" in state
+        unit = ("rad" if "rotation" in state else "m") + (" s-1" if per_second else "")
+        assert state_unit(model, state, "") == unit
 
 
 def test_a_sensor_that_nobody_lists_is_unknown(fake_wall: FakeWall) -> None:
