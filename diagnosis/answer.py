@@ -24,11 +24,11 @@ from diagnosis.refit import Explanation
 from diagnosis.rescale import to_true_peak
 from diagnosis.result import Diagnosis, Effect, Estimate, Located, Rival, Screened
 from diagnosis.select import Progress, search, take_best_single
-from diagnosis.sensors import SENSORS
 from diagnosis.setup import base_fit, measure, silent
 from diagnosis.stages import Stages
 from diagnosis.statement import statement
 from diagnosis.whole_runs import with_runs_from_rest
+from grids.instruments import INSTRUMENTS
 from grids.recordings.base import Recording
 from grids.specimen import Specimen
 
@@ -122,7 +122,7 @@ def _assemble(
 
     def where() -> tuple[Located, ...]:
         at_base = tests(forces(found.base.fitted)) if found.best is not None else tested
-        sensors_only = bool(effects) and all(e.name in SENSORS for e in effects)
+        sensors_only = bool(effects) and all(e.name in INSTRUMENTS for e in effects)
         explained = found.best is not None and verdict != "not_in_library"
         return locate(shown[0], at_base, sensors_only, explained, seed) if missing else ()
 
@@ -159,7 +159,7 @@ def _assemble(
         unexplained=unexplained,
         suspicions={r.name: r.suspicions for s in shown for r in s.measured.recordings if r.suspicions},
     )
-    known = {**measured.model.mechanisms, **SENSORS}
+    known = {**measured.model.mechanisms, **INSTRUMENTS}
     answer = replace(answer, skipped=tuple(stages.skipped) if finished else ())
     return replace(answer, statement=statement(answer, known))
 

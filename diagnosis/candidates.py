@@ -9,8 +9,8 @@ from itertools import product
 import numpy as np
 
 from diagnosis.measured import Measured
-from diagnosis.sensors import SENSORS
 from diagnosis.unknowns import Unknown, of_parameter
+from grids.instruments import INSTRUMENTS
 from grids.specimen import Specimen
 from models.base import FloatArray, Mechanism
 
@@ -75,7 +75,7 @@ def _spread(unknown: Unknown) -> FloatArray:
 
 def candidates(measured: Measured, specimen: Specimen) -> tuple[Candidate, ...]:
     """Every mechanism that can act on the model or its sensors and is not switched on already."""
-    known = {**measured.model.mechanisms, **SENSORS}
+    known = {**measured.model.mechanisms, **INSTRUMENTS}
     found: list[Candidate] = []
     for name, mechanism in known.items():
         if name in specimen.mechanisms or not _usable(name, measured):

@@ -15,9 +15,9 @@ import numpy as np
 
 from diagnosis.measured import Measured
 from diagnosis.prediction import Point, Predictor
-from diagnosis.sensors import SENSORS, moved
 from diagnosis.unknowns import split
 from diagnosis.windows import Window
+from grids.instruments import INSTRUMENTS, moved
 
 
 def counted(predictor: Predictor, point: Point) -> Measured:
@@ -40,8 +40,8 @@ def counted(predictor: Predictor, point: Point) -> Measured:
 def _impacts(predictor: Predictor, point: Point, pieces: Sequence[Window], states: np.ndarray) -> list[int]:
     """Impacts along each piece, from its state on."""
     m = predictor.measured
-    sensors = split(point.values, tuple(SENSORS))
-    of_wall = {k: v for k, v in point.values.items() if k.partition(".")[0] not in SENSORS}
+    sensors = split(point.values, tuple(INSTRUMENTS))
+    of_wall = {k: v for k, v in point.values.items() if k.partition(".")[0] not in INSTRUMENTS}
     counts = []
     for piece, state in zip(pieces, states, strict=True):
         shaking = moved(m.shakings[piece.recording], sensors)

@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.measured import Measured
-from diagnosis.sensors import SENSORS
-from diagnosis.sensors.base import Surroundings
 from diagnosis.unknowns import split
+from grids.instruments import INSTRUMENTS
+from grids.instruments.base import Surroundings
 from models.base import FloatArray
 from models.shaking import Shaking
 
@@ -41,7 +41,7 @@ class Predictor:
         """Channels (P, W, C, N) of P points; ``shakings`` replace the measured ones."""
         m = self.measured
         out = np.zeros((len(points), *m.values.shape))
-        sensors = [split(p.values, tuple(SENSORS)) for p in points]
+        sensors = [split(p.values, tuple(INSTRUMENTS)) for p in points]
         nulls = self._nulls(points)
         groups: dict[tuple[object, ...], list[int]] = {}
         for k, switched in enumerate(sensors):
@@ -78,7 +78,7 @@ class Predictor:
         ahead = max(_ahead(sensors[p]) for p in members)
         samples = compared + int(np.ceil(ahead / time_step))
         n, count = len(windows), len(members)
-        full = [{**nulls, **{k: v for k, v in points[p].values.items() if k.partition(".")[0] not in SENSORS}}
+        full = [{**nulls, **{k: v for k, v in points[p].values.items() if k.partition(".")[0] not in INSTRUMENTS}}
                 for p in members]  # fmt: skip
         values = {}
         for name in full[0]:
@@ -94,7 +94,7 @@ class Predictor:
         around = Surroundings(time_step, base)
         for k, p in enumerate(members):
             recorded = {c: found[c][k] for c in m.channels}
-            for name, sensor in SENSORS.items():
+            for name, sensor in INSTRUMENTS.items():
                 if name in sensors[p] and "response" in sensor.acts:
                     given = {**sensor.nulls, "reference_peak": m.reference_peak, **sensors[p][name]}
                     act = sensor.acts.get("windowed", sensor.acts["response"])
@@ -108,7 +108,7 @@ def _ahead(switched: Mapping[str, Mapping[str, float]]) -> float:
     return float(
         sum(
             sensor.acts["lag"]({**sensor.nulls, **switched[name]})
-            for name, sensor in SENSORS.items()
+            for name, sensor in INSTRUMENTS.items()
             if name in switched and "lag" in sensor.acts
         )
     )
@@ -125,7 +125,7 @@ def _base_key(switched: Mapping[str, Mapping[str, float]]) -> tuple[object, ...]
     """What two points must share to feel the same motion of the base."""
     return tuple(
         (name, tuple(sorted(switched[name].items())))
-        for name, sensor in SENSORS.items()
+        for name, sensor in INSTRUMENTS.items()
         if name in switched and not {"base", "clock", "lag"}.isdisjoint(sensor.acts)
     )
 
@@ -133,7 +133,7 @@ def _base_key(switched: Mapping[str, Mapping[str, float]]) -> tuple[object, ...]
 def _as_felt(shaking: Shaking, switched: Mapping[str, Mapping[str, float]]) -> Shaking:
     """The motion of the base on the clock of the responses."""
     rate, lag = 0.0, 0.0
-    for name, sensor in SENSORS.items():
+    for name, sensor in INSTRUMENTS.items():
         if name not in switched:
             continue
         given = {**sensor.nulls, **switched[name]}

@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from diagnosis.sensors import SENSORS
+from grids.instruments import INSTRUMENTS
 from grids.specimen import Specimen
 from models.base import FloatArray, Mechanism, MechanismParameter, Model
 
@@ -72,7 +72,7 @@ def values_of(unknowns: Sequence[Unknown], u: FloatArray) -> dict[str, float]:
 def of_specimen(specimen: Specimen, model: Model) -> tuple[Unknown, ...]:
     """Toleranced parameters with their priors, and those to calibrate within their ranges."""
     units = {p.name: p.unit for p in model.parameters}
-    known = {**model.mechanisms, **SENSORS}
+    known = {**model.mechanisms, **INSTRUMENTS}
     units |= {f"{m}.{p.name}": p.unit for m in known for p in known[m].parameters}
     found = []
     for name, relative in specimen.tolerance.items():

@@ -12,8 +12,8 @@ from diagnosis.heldout import Shown, traces_of
 from diagnosis.measured import Measured
 from diagnosis.refit import Explanation
 from diagnosis.result import Trace
-from diagnosis.sensors import SENSORS, moved, recorded
 from diagnosis.unknowns import split
+from grids.instruments import INSTRUMENTS, moved, recorded
 from grids.recordings.base import REQUIRED, FloatArray, Recording
 from grids.specimen import Specimen
 
@@ -46,11 +46,11 @@ def sensed_run(
     """Channels of one run under the recording's base motion, as the sensors would record them."""
     misfit = explanation.fitted.misfit
     values = {**misfit.fixed, **explanation.fitted.values}
-    sensors = split(values, tuple(SENSORS))
+    sensors = split(values, tuple(INSTRUMENTS))
     for name, given in sensors.items():
-        if any(p.name == REFERENCE for p in SENSORS[name].parameters):
+        if any(p.name == REFERENCE for p in INSTRUMENTS[name].parameters):
             given.setdefault(REFERENCE, measured.reference_peak)
-    of_wall = {k: v for k, v in values.items() if k.partition(".")[0] not in SENSORS}
+    of_wall = {k: v for k, v in values.items() if k.partition(".")[0] not in INSTRUMENTS}
     like = measured.shakings[0]
     shaking = recording.shaking(like.vertical is not None, vertical_acts=like.vertical_acts)
     history = measured.model.simulate(

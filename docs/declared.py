@@ -111,11 +111,11 @@ def _acts_on(mechanism: Mechanism) -> str:
 
 
 def mechanisms_page() -> str:
-    from diagnosis.sensors import SENSORS
+    from grids.instruments import INSTRUMENTS
     from models.mechanisms import MECHANISMS
 
     inside = "\n".join(_mechanism(m, f"acts on {_acts_on(m)}") for m in MECHANISMS.values())
-    beside = "\n".join(_mechanism(m, "an instrument's effect, on every model") for m in SENSORS.values())
+    beside = "\n".join(_mechanism(m, "an instrument's effect, on every model") for m in INSTRUMENTS.values())
     return (
         "# Mechanisms\n\nWhat a base model may leave out. Those of the first part are usable in plans, specimens and "
         "diagnosis; those of instruments in specimens and diagnosis only. At its null a mechanism does nothing.\n\n"

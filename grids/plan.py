@@ -37,13 +37,14 @@ from grids.axes import Axis, Request, read_axis
 from grids.consistency import check_laws, check_names, replaced
 from grids.files import Schema, check, parse_toml, read_text
 from grids.grid import Grid
+from grids.instruments import INSTRUMENTS
 from grids.motions import Motion
 from grids.plan_checks import check_cells, check_scales, check_size
 from grids.plan_motions import MotionTable, read_motions
 from grids.specimen import Specimen, read_specimen
 from grids.targets import Targets, find_model
 from grids.units import to_si
-from models.base import Mechanism, Model
+from models.base import Model
 from models.errors import InputError, nearest
 
 
@@ -104,29 +105,29 @@ class Plan:
         return Grid(self.axes, frozenset(a.name for a in self.axes if any(taken_once(model, n) for n in a.sets)))
 
 
-def read_plan(path: str | Path, *, sensors: Mapping[str, Mechanism] | None = None) -> Plan:
+def read_plan(path: str | Path) -> Plan:
     """Read and check a plan file.
 
-    ``sensors``: mechanisms of instruments by name; a plan that names one is refused, a specimen's
-    are left out, since a study shows the wall and not what was recorded of it. Paths in the plan
-    are relative to its folder. Raises InputError with one sentence: file, key, value, cure.
+    A plan that names a mechanism of instruments is refused, a specimen's are left out, since a study shows
+    the wall and not what was recorded of it. Paths in the plan are relative to its folder.
+    Raises InputError with one sentence: file, key, value, cure.
     """
     path = Path(path)
     text = read_text(path, "plan")
     try:
-        return parse_plan(text, path.resolve().parent, sensors=sensors)
+        return parse_plan(text, path.resolve().parent)
     except InputError as error:
         raise InputError(f"{path.name}: {error}") from None
 
 
-def parse_plan(text: str, folder: Path, *, sensors: Mapping[str, Mechanism] | None = None) -> Plan:
+def parse_plan(text: str, folder: Path) -> Plan:
     """The plan of a TOML text, whose relative paths start at ``folder``. Raises InputError."""
     file = check(PlanFile, parse_toml(text))
     if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]*", file.study.name):
         raise InputError(f"[study] name = '{file.study.name}' becomes a folder; use letters, digits, '_', '-' and '.'.")
-    specimen = _specimen(file.study, folder, sensors or {})
+    specimen = _specimen(file.study, folder)
     model = find_model(specimen.model if specimen else file.study.model, "[study] model")
-    targets = Targets(model, sensors or {}, with_scales=True)
+    targets = Targets(model, with_scales=True)
     own = _fixed(file, targets)
     axes = _axes(file, targets, folder)
     varied = _varied(axes, own, file.options)
@@ -166,11 +167,11 @@ def parse_plan(text: str, folder: Path, *, sensors: Mapping[str, Mechanism] | No
     )
 
 
-def _specimen(table: StudyTable, folder: Path, sensors: Mapping[str, Mechanism]) -> Specimen | None:
+def _specimen(table: StudyTable, folder: Path) -> Specimen | None:
     if (table.model is None) == (table.specimen is None):
         held = "both" if table.model else "neither"
         raise InputError(f"[study] has {held} of model and specimen; give exactly one.")
-    return read_specimen(folder / table.specimen, sensors=sensors) if table.specimen else None
+    return read_specimen(folder / table.specimen) if table.specimen else None
 
 
 def _fixed(file: PlanFile, targets: Targets) -> dict[str, float]:
@@ -216,7 +217,7 @@ def _from_specimen(
     notes = []
     values = dict(specimen.parameters)
     for name, parameters in specimen.mechanisms.items():
-        if name in targets.sensors:
+        if name in INSTRUMENTS:
             notes.append(f"{name} of the specimen acts on its instruments; a study leaves it out")
             continue
         values |= {f"{name}.{parameter}": value for parameter, value in parameters.items()}

@@ -29,10 +29,11 @@ from pydantic import Field
 
 from grids.consistency import check_laws, check_names
 from grids.files import Schema, check, parse_toml, read_text
+from grids.instruments import INSTRUMENTS
 from grids.plan_checks import check_cells, check_vertical
 from grids.targets import Targets, find_model
 from grids.units import to_si, with_unit
-from models.base import Mechanism, Model
+from models.base import Model
 from models.errors import InputError, nearest
 
 MOST_TOLERANCE = 1.0
@@ -71,25 +72,24 @@ class Specimen:
     mechanisms: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
 
-def read_specimen(path: str | Path, *, sensors: Mapping[str, Mechanism] | None = None) -> Specimen:
-    """Read and check a specimen file.
+def read_specimen(path: str | Path) -> Specimen:
+    """Read and check a specimen file, with the mechanisms of the wall and of its instruments.
 
-    ``sensors``: mechanisms of instruments by name, usable in [mechanisms] beside the model's own.
     Raises InputError with one sentence: file, key, value, cure.
     """
     path = Path(path)
     text = read_text(path, "specimen")
     try:
-        return parse_specimen(text, sensors=sensors)
+        return parse_specimen(text)
     except InputError as error:
         raise InputError(f"{path.name}: {error}") from None
 
 
-def parse_specimen(text: str, *, sensors: Mapping[str, Mechanism] | None = None) -> Specimen:
+def parse_specimen(text: str) -> Specimen:
     """The specimen of a TOML text. Raises InputError."""
     file = check(SpecimenFile, parse_toml(text))
     model = find_model(file.model, "model")
-    targets = Targets(model, sensors or {}, with_sensors=True)
+    targets = Targets(model, with_instruments=True)
     parameters = {}
     for name, value in file.parameters.items():
         where = f"[parameters] {name}"
@@ -110,7 +110,7 @@ def parse_specimen(text: str, *, sensors: Mapping[str, Mechanism] | None = None)
     check_vertical(model, file.motion.vertical)
     fixed = {**parameters, **{f"{m}.{p}": v for m, values in mechanisms.items() for p, v in values.items()}}
     if not calibrate:
-        of_wall = {n: v for n, v in fixed.items() if n.partition(".")[0] not in targets.sensors}
+        of_wall = {n: v for n, v in fixed.items() if n.partition(".")[0] not in INSTRUMENTS}
         check_cells(model, of_wall, (), options)
     return Specimen(
         title=file.title,

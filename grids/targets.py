@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
+from grids.instruments import INSTRUMENTS
 from grids.units import to_si, with_unit
 from models.base import Mechanism, MechanismParameter, Model, Parameter
 from models.errors import InputError, nearest
@@ -87,21 +88,17 @@ def _of(parameter: Parameter, name: str) -> Target:
 
 @dataclass(frozen=True)
 class Targets:
-    """The names that a model, its mechanisms and (in a study) the motion's scales offer.
-
-    ``sensors``: mechanisms of instruments by name; usable where ``with_sensors``, else refused.
-    """
+    """What a model, its mechanisms, (in a study) the motion's scales and (in a specimen) instruments offer."""
 
     model: Model
-    sensors: Mapping[str, Mechanism] = field(default_factory=dict)
-    with_sensors: bool = False
+    with_instruments: bool = False
     with_scales: bool = False
 
     @property
     def mechanism_names(self) -> Collection[str]:
         from models.mechanisms import MECHANISMS
 
-        return {*MECHANISMS, *self.model.mechanisms, *self.sensors}
+        return {*MECHANISMS, *self.model.mechanisms, *INSTRUMENTS}
 
     def flatten(self, table: Mapping[str, Any]) -> dict[str, Any]:
         """Both TOML spellings of a mechanism's parameter, quoted or as a sub-table, as dotted names.
@@ -125,9 +122,9 @@ class Targets:
 
     def mechanism(self, name: str, where: str) -> Mechanism:
         """A mechanism that may be used here; InputError says why another may not."""
-        if name in self.sensors:
-            if self.with_sensors:
-                return self.sensors[name]
+        if name in INSTRUMENTS:
+            if self.with_instruments:
+                return INSTRUMENTS[name]
             raise InputError(
                 f"{where}: '{name}' acts on the instruments, not on the wall; a study cannot vary it: "
                 "put it in a specimen and use simulate."
@@ -140,7 +137,7 @@ class Targets:
                 f"{where}: mechanism '{name}' does not act on model '{self.model.name}'; "
                 f"acting: {', '.join(sorted(acting)) or 'none'}."
             )
-        usable = {*acting, *(self.sensors if self.with_sensors else ())}
+        usable = {*acting, *(INSTRUMENTS if self.with_instruments else ())}
         raise InputError(f"{where}: there is no mechanism '{name}'; {nearest(name, usable)}")
 
     def find(self, name: str, where: str) -> Target:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,6 +42,16 @@ class Shaking:
     def duration(self) -> float:
         """Time of the last sample, in s."""
         return (self.horizontal.size - 1) * self.time_step
+
+    @property
+    def time(self) -> NDArray[np.float64]:
+        """Times (n,) of the samples, in s."""
+        return np.asarray(np.arange(self.horizontal.size) * self.time_step, np.float64)
+
+    def scaled(self, factor: float) -> Shaking:
+        """The same motion with both components times ``factor``."""
+        vertical = None if self.vertical is None else factor * self.vertical
+        return replace(self, horizontal=factor * self.horizontal, vertical=vertical)
 
     @property
     def pga(self) -> float:

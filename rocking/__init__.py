@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from diagnosis import calibrate, diagnose
     from grids.motions import read_motion
     from grids.recordings import read_recording
+    from grids.specimen import read_specimen
     from rocking.catalogue import mechanisms, models
-    from rocking.instruments import read_specimen
     from rocking.simulation import simulate
-    from rocking.studies import run
     from study.open import open_study
+    from study.run import run
 
 _WHERE = {
     "calibrate": "diagnosis",
@@ -31,8 +31,8 @@ _WHERE = {
     "open_study": "study.open",
     "read_motion": "grids.motions",
     "read_recording": "grids.recordings",
-    "read_specimen": "rocking.instruments",
-    "run": "rocking.studies",
+    "read_specimen": "grids.specimen",
+    "run": "study.run",
     "simulate": "rocking.simulation",
 }
 """Module of every public name: a new name is one line here and one above."""

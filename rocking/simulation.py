@@ -33,10 +33,11 @@ def simulate(
     ``specimen`` and ``motion`` are what the readers return, or what they read: a specimen file; a
     shipped motion, a motion file, or a recording, whose measured base motion is used. Without a
     motion, ``duration`` (s) of free motion from the specimen's initial state. The specimen says
-    whether the vertical component acts (default: the model's). Its sensor mechanisms act on what is
-    written; the motion is then what the accelerometers of the base say. Raises InputError.
+    whether the vertical component acts (default: the model's). Its instruments act on what is
+    written; the motion is then what the accelerometers of the base read. Raises InputError.
     """
-    from rocking.instruments import read_specimen, simulate_recorded
+    from grids.specimen import read_specimen
+    from study.history import simulate_specimen
 
     if isinstance(specimen, str | Path):
         specimen = read_specimen(specimen)
@@ -48,7 +49,7 @@ def simulate(
         shaking = Shaking.silence(duration, FREE_TIME_STEP)
     else:
         shaking = _shaking(specimen, motion, component)
-    return simulate_recorded(specimen, shaking, scale, duration=duration, integrator=integrator)
+    return simulate_specimen(specimen, shaking, scale=scale, duration=duration, integrator=integrator)
 
 
 def _shaking(specimen: Specimen, motion: Motion | Recording | str | Path, component: str | None) -> Shaking:

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from grids.plan import Plan, parse_plan
-from models.base import Mechanism
 from models.errors import InputError
 from study.evaluate import evaluate
 from study.keys import Setting, motions_by_name
@@ -38,11 +36,8 @@ def check(
     *,
     cells: int = 100,
     seed: int | None = None,
-    sensors: Mapping[str, Mechanism] | None = None,
 ) -> CheckReport:
     """Recompute ``cells`` random cells (``seed`` None: others every time) and compare every output.
-
-    ``sensors`` are the mechanisms of instruments that the study's specimen may name.
 
     Raises InputError when the folder has no cube, or when the plan's motions or the model are no
     longer those of the study.
@@ -51,7 +46,7 @@ def check(
         raise InputError(f"cells is {cells}: give 1 or more")
     folder = Path(folder)
     cube = open_study(folder)
-    plan = load_plan(folder, sensors)
+    plan = load_plan(folder)
     known = np.flatnonzero(~cube["status"].isin([NOT_RUN, FAILED]).values.ravel())
     chosen = np.random.default_rng(seed).choice(known, min(cells, known.size), replace=False)
     setting = Setting.of(plan)
@@ -69,7 +64,7 @@ def check(
     return CheckReport(int(chosen.size), len(computed), tuple(differing))
 
 
-def load_plan(folder: Path, sensors: Mapping[str, Mechanism] | None = None) -> Plan:
+def load_plan(folder: Path) -> Plan:
     """The plan of a study's folder, with the motions it was started with.
 
     Raises InputError when there is no study, or when motions, model or declarations have changed.
@@ -77,7 +72,7 @@ def load_plan(folder: Path, sensors: Mapping[str, Mechanism] | None = None) -> P
     manifest = Manifest.load(folder)
     if manifest is None:
         raise InputError(f"{folder} holds no study: give a folder under results/ that a run has written")
-    plan = parse_plan((folder / "study.toml").read_text("utf-8"), Path(manifest.plan_folder), sensors=sensors)
+    plan = parse_plan((folder / "study.toml").read_text("utf-8"), Path(manifest.plan_folder))
     differences = manifest.differences(plan)
     if differences:
         raise InputError(f"{folder} was computed with something else: " + "; ".join(differences))

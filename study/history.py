@@ -9,6 +9,8 @@ import numpy as np
 import xarray as xr
 
 import models
+from grids.instruments import INSTRUMENTS, moved, recorded
+from grids.instruments.whole import Switched
 from grids.netcdf_lock import NETCDF_LOCK
 from grids.specimen import Specimen
 from models.base import Event, History, Model
@@ -17,6 +19,8 @@ from models.shaking import Shaking
 from study.provenance import as_json, attribute, commit, machine, now, versions
 from study.store import write_whole
 
+SHARE = "1"
+"""Unit of a share of contact, which no instrument measures."""
 EVENT_KINDS = ("onset", "impact", "uplift", "closing", "rest", "overturned", "change_of_pattern")
 
 
@@ -32,8 +36,9 @@ def simulate_specimen(
     """Every observable (and the base acceleration) over ``time``, the events over ``event``.
 
     ``scale`` multiplies the shaking; ``duration`` (s) fixes the length of the run, else it lasts
-    the record and at most ``tail`` s of free motion. Raises InputError for a specimen without a
-    value for every parameter and for an unknown integrator.
+    the record and at most ``tail`` s of free motion. With instruments among the specimen's mechanisms
+    the shaking is what the accelerometers of the base read, and the channels are what is recorded.
+    Raises InputError for a specimen without a value for every parameter and for an unknown integrator.
     """
     model = models.get(specimen.model)
     if specimen.calibrate:
@@ -43,20 +48,22 @@ def simulate_specimen(
         )
     if integrator not in model.integrators:
         raise InputError(f"integrator '{integrator}' is not known: {nearest(integrator, model.integrators)}")
+    instruments = {name: given for name, given in specimen.mechanisms.items() if name in INSTRUMENTS}
     values: dict[str, float] = dict(specimen.parameters)
     for mechanism, parameters in specimen.mechanisms.items():
-        values |= {f"{mechanism}.{name}": value for name, value in parameters.items()}
+        if mechanism not in instruments:
+            values |= {f"{mechanism}.{name}": value for name, value in parameters.items()}
+    read = shaking.scaled(scale)
     history = model.simulate(
         values,
-        shaking,
-        scale=scale,
+        moved(read, instruments),
         initial=dict(specimen.initial) or None,
         duration=duration,
         tail=tail,
         options=dict(specimen.options),
         integrator=integrator,
     )
-    dataset = _label(model, history, shaking, scale)
+    dataset = _label(model, history, read, instruments)
     dataset.attrs = {
         "Conventions": "CF-1.11",
         "title": specimen.title,
@@ -74,29 +81,29 @@ def simulate_specimen(
         ),
         "outputs": as_json(dict(history.outputs)),
     }
+    if instruments:
+        dataset.attrs["instruments"] = as_json(instruments)
     return dataset
 
 
-def _label(model: Model, history: History, shaking: Shaking, scale: float) -> xr.Dataset:
+def _label(model: Model, history: History, read: Shaking, instruments: Switched) -> xr.Dataset:
+    """The dataset of a run; ``read`` is the motion of the base as its accelerometers read it."""
     variables: dict[str, Any] = {}
     declared = {quantity.name: quantity for quantity in model.observables}
-    for name, values in history.channels.items():
+    base = np.interp(history.time, read.time, read.horizontal, left=0.0, right=0.0)
+    signals = {name: x for name, x in history.channels.items() if declared[name].unit != SHARE}
+    written = recorded(signals, instruments, read.time_step, base) if instruments else {}
+    for name, values in {**history.channels, **written}.items():
         quantity = declared[name]
         dims = ("time",) if values.ndim == 1 else ("level", "time")
         about = {"units": quantity.unit, "long_name": quantity.meaning}
         variables[name] = (dims, values, about)
-    sampled = np.arange(shaking.horizontal.size) * shaking.time_step
-    for name, component, direction in (
-        (
-            "base_acceleration_x",
-            shaking.horizontal,
-            "horizontal acceleration of the base, positive to the right",
-        ),
-        ("base_acceleration_z", shaking.vertical, "vertical acceleration of the base, positive up"),
-    ):
-        if component is not None:
-            values = np.interp(history.time, sampled, scale * component, left=0.0, right=0.0)
-            variables[name] = (("time",), values, {"units": "m s-2", "long_name": direction})
+    about = {"units": "m s-2", "long_name": "horizontal acceleration of the base, positive to the right"}
+    variables["base_acceleration_x"] = (("time",), base, about)
+    if read.vertical is not None:
+        upward = np.interp(history.time, read.time, read.vertical, left=0.0, right=0.0)
+        about = {"units": "m s-2", "long_name": "vertical acceleration of the base, positive up"}
+        variables["base_acceleration_z"] = (("time",), upward, about)
     time = ("time", history.time, {"units": "s", "long_name": "time since the first sample"})
     return xr.Dataset({**variables, **_events(history.events)}, coords={"time": time})
 

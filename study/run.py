@@ -18,7 +18,6 @@ from pathlib import Path
 
 from grids.grid import Rectangle
 from grids.plan import Plan, read_plan
-from models.base import Mechanism
 from models.errors import InputError
 from study.cube import write_cube
 from study.keys import Setting
@@ -86,21 +85,19 @@ def run(
     scheduler: str = "threads",
     workers: int | None = None,
     progress: Callable[[Progress], None] | None = None,
-    sensors: Mapping[str, Mechanism] | None = None,
 ) -> Report:
     """Run a plan, or continue it, in ``results/<name>`` and write its cube there.
 
     ``scheduler``: "synchronous", "threads", "processes" or the address of a dask cluster
     ("tcp://host:port", which must see the same folder); ``workers`` for threads and processes,
-    default one a core. ``progress`` is called after every block. ``sensors`` are the mechanisms of
-    instruments that a specimen may name (see `grids.plan.read_plan`). A failed block is noted in
+    default one a core. ``progress`` is called after every block. A failed block is noted in
     ``failed`` and its cells are flagged; the rest goes on.
 
     Raises InputError for a plan that differs from the folder's in more than added axis values.
     """
     check_scheduler(scheduler, workers)
     plan_folder = "" if isinstance(plan, Plan) else str(Path(plan).resolve().parent)
-    plan = plan if isinstance(plan, Plan) else read_plan(plan, sensors=sensors)
+    plan = plan if isinstance(plan, Plan) else read_plan(plan)
     folder = Path(results).resolve() / plan.name
     setting = Setting.of(plan)
     with _alone(folder):

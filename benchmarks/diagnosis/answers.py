@@ -33,11 +33,10 @@ def fingerprint() -> str:
 def diagnosed(folder: Path) -> dict[str, Any]:
     """What `diagnosis.diagnose` says of a case folder."""
     from diagnosis import diagnose
-    from diagnosis.sensors import SENSORS
     from grids.recordings import read_recording
     from grids.specimen import read_specimen
 
-    specimen = read_specimen(folder / "specimen.toml", sensors=SENSORS)
+    specimen = read_specimen(folder / "specimen.toml")
     training = [read_recording(folder / f"train_{k}.nc") for k in (1, 2)]
     return plain(diagnose(specimen, training, [read_recording(folder / "test_1.nc")]))
 

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from scipy.optimize import OptimizeResult, least_squares
 
 from benchmarks.diagnosis.answers import NOTHING
-from diagnosis.sensors import SENSORS, moved, recorded
+from grids.instruments import INSTRUMENTS, moved, recorded
 from grids.recordings import Recording, noise_of, read_recording
 from grids.specimen import Specimen, read_specimen
 from models import get
@@ -39,7 +39,7 @@ EVALUATIONS = 10
 
 def answer(folder: Path) -> dict[str, Any]:
     """The answer of this method to a case folder, in the form of `answers`."""
-    specimen = read_specimen(folder / "specimen.toml", sensors=SENSORS)
+    specimen = read_specimen(folder / "specimen.toml")
     fit = _Fit(specimen, [read_recording(folder / f"train_{k}.nc") for k in (1, 2)])
     base = fit.best(None)
     fitted = {m.name: (m, fit.best(m)) for m in fit.mechanisms()}
@@ -78,7 +78,7 @@ class _Fit:
             m for m in self.model.mechanisms.values()
             if m.name != "vertical_acceleration" or (measured and not self.specimen.vertical)
         ]  # fmt: skip
-        return [*found, *SENSORS.values()]
+        return [*found, *INSTRUMENTS.values()]
 
     def best(self, mechanism: Mechanism | None) -> dict[str, Any]:
         """The best fit of the base, with ``mechanism`` if given: BIC and the mechanism's parameters."""
@@ -138,7 +138,7 @@ class _Fit:
         primary = mechanism.parameters[0]
         given = {p.name: p.null for p in mechanism.parameters[1:]}
         values = np.array([_outer(float(v), primary) for v in points[:, count]])
-        if mechanism.name not in SENSORS:
+        if mechanism.name not in INSTRUMENTS:
             named = {**given, primary.name: values}
             return self._run({**base, **{f"{mechanism.name}.{k}": v for k, v in named.items()}}, {}, points)
         rows = []

@@ -23,7 +23,6 @@ from numpy.typing import NDArray
 from scipy.signal import savgol_filter
 
 from benchmarks.diagnosis.answers import NOTHING
-from diagnosis.sensors import SENSORS
 from grids.recordings import Recording, noise_of, read_recording
 from grids.specimen import Specimen, read_specimen
 from models import get
@@ -55,7 +54,7 @@ TERMS: Mapping[str, tuple[str, str]] = {
 
 def answer(folder: Path) -> dict[str, Any]:
     """The answer of this method to a case folder, in the form of `answers`."""
-    specimen = read_specimen(folder / "specimen.toml", sensors=SENSORS)
+    specimen = read_specimen(folder / "specimen.toml")
     recordings = [read_recording(folder / f"train_{k}.nc") for k in (1, 2)]
     blocks = [_rows(specimen, recording) for recording in recordings]
     names = [name for name in TERMS if all(name in columns for _, columns, _ in blocks)]

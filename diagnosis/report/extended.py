@@ -49,7 +49,7 @@ def extend(specimen: Specimen, diagnosis: Diagnosis) -> Specimen:
 def _off(name: str, model: str) -> dict[str, float]:
     """The null of a mechanism's own parameters: what acts through a shape alone (a high-pass) names them too."""
     import models
-    from diagnosis.sensors import SENSORS
+    from grids.instruments import INSTRUMENTS
 
-    mechanism = {**models.get(model).mechanisms, **SENSORS}[name]
+    mechanism = {**models.get(model).mechanisms, **INSTRUMENTS}[name]
     return {p.name: p.null for p in mechanism.parameters if not p.shape}

@@ -41,9 +41,9 @@ class Suspect:
 def suspect_of(name: str, model: str) -> Suspect:
     """The entry of the library as it acts on ``model``, or of another base model, by name."""
     import models
-    from diagnosis.sensors import SENSORS
+    from grids.instruments import INSTRUMENTS
 
-    found: Mechanism | None = {**models.get(model).mechanisms, **SENSORS}.get(name)
+    found: Mechanism | None = {**models.get(model).mechanisms, **INSTRUMENTS}.get(name)
     if found is None:
         return Suspect(name, OTHER_BASES.get(name, name.replace("_", " ")))
     meanings = {p.name: p.meaning for p in found.parameters}

@@ -27,7 +27,7 @@ def calibrate(
     """
     from rich.console import Console
 
-    from rocking.instruments import read_specimen
+    from grids.specimen import read_specimen
 
     wall = read_specimen(specimen)
     read = read_recordings(recordings)

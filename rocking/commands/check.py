@@ -16,10 +16,9 @@ def check(
     seed: Annotated[int | None, typer.Option(help="Choose the same cells every time.")] = None,
 ) -> None:
     """Recompute random cells and compare them with the cube bit for bit (exit code 1: they differ)."""
-    from diagnosis.sensors import SENSORS
     from study.check import check as check_study
 
-    report = check_study(folder, cells=cells, seed=seed, sensors=SENSORS)
+    report = check_study(folder, cells=cells, seed=seed)
     typer.echo(str(report))
     if report.differing:
         raise typer.Exit(FAILURES)

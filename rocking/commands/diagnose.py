@@ -27,7 +27,7 @@ def diagnose(
     bootstrap or the intervals after it, and writes what was found until then. The exit code is 0 whatever
     is found, 2 for unusable input.
     """
-    from rocking.instruments import read_specimen
+    from grids.specimen import read_specimen
 
     wall = read_specimen(specimen)
     read = read_recordings(recordings, holdout or [])

@@ -18,14 +18,13 @@ def plan(
     from rich.console import Console
     from rich.table import Table
 
-    from diagnosis.sensors import SENSORS
     from grids.plan import read_plan
     from study.keys import Setting
     from study.schedulers import check_scheduler, count_workers
     from study.timing import bytes_per_cell, cells_per_block, output_bytes, time_sample
 
     check_scheduler("threads", workers)
-    checked = read_plan(plan, sensors=SENSORS)
+    checked = read_plan(plan)
     setting = Setting.of(checked)
     sample = time_sample(checked, setting)
     n = count_workers("threads", workers)

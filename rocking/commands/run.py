@@ -29,8 +29,8 @@ def run(
     from rich.progress import BarColumn, MofNCompleteColumn, TextColumn
     from rich.progress import Progress as Bar
 
-    from rocking.studies import run as run_study
     from study.run import WorkerLost
+    from study.run import run as run_study
 
     columns = (
         TextColumn("cells"),

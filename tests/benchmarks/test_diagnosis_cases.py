@@ -15,7 +15,7 @@ from benchmarks.diagnosis.open_laws import LAWS
 from benchmarks.diagnosis.size import NOMINAL
 from benchmarks.diagnosis.suite import EVALUATION_SEED, GROUPS, TOO_SMALL, Wish, suite
 from benchmarks.diagnosis.unseen_laws import UNSEEN
-from diagnosis.sensors import SENSORS
+from grids.instruments import INSTRUMENTS
 from grids.recordings import noise_of, read_recording
 from grids.specimen import read_specimen
 from models import get
@@ -30,7 +30,7 @@ def gain_case():
 
 
 def test_catalogue_is_the_one_that_models_and_sensors_declare() -> None:
-    declared = {**get("housner").mechanisms, **SENSORS}
+    declared = {**get("housner").mechanisms, **INSTRUMENTS}
     assert set(CATALOGUE) == set(declared)
     for name, row in CATALOGUE.items():
         first = declared[name].parameters[0]
@@ -64,7 +64,7 @@ def test_nominal_size_holds_on_the_exact_motion(gain_case) -> None:
 
 def test_files_read_back_as_an_unsuspicious_recording_with_the_noise_asked_for(gain_case, tmp_path) -> None:
     write_case(gain_case, tmp_path / "case", tmp_path / "keys" / "case.json")
-    specimen = read_specimen(tmp_path / "case" / "specimen.toml", sensors=SENSORS)
+    specimen = read_specimen(tmp_path / "case" / "specimen.toml")
     assert set(specimen.parameters) == {"width", "height", "mass"}
     for name in ("train_1", "train_2", "test_1"):
         recording = read_recording(tmp_path / "case" / f"{name}.nc")

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
 import models
-from diagnosis.sensors import moved, recorded
+from grids.instruments import moved, recorded
 from grids.recordings.base import Recording
 from grids.specimen import Specimen
 from models.shaking import Shaking

@@ -12,8 +12,8 @@ from diagnosis.candidates import candidates, of_name
 from diagnosis.intervals import covariances
 from diagnosis.refit import Explanation, again, best_of, extend, with_memory
 from diagnosis.screen import open_screen, score
-from diagnosis.sensors import SENSORS
 from diagnosis.setup import base_fit, measure
+from grids.instruments import INSTRUMENTS
 from tests.diagnosis.made import SPECIMEN, recording
 
 EFFECTS: dict[str, dict[str, float]] = {
@@ -59,7 +59,7 @@ def base(name: str) -> Explanation:
 
 
 def test_every_mechanism_of_the_block_and_its_sensors_is_here() -> None:
-    assert set(EFFECTS) | set(NOT_HERE) == set(models.get("housner").mechanisms) | set(SENSORS)
+    assert set(EFFECTS) | set(NOT_HERE) == set(models.get("housner").mechanisms) | set(INSTRUMENTS)
 
 
 @pytest.mark.parametrize("name", EFFECTS)

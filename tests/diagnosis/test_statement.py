@@ -12,8 +12,8 @@ from diagnosis.report import diagnosis_json
 from diagnosis.report.page import headline
 from diagnosis.report.suspects import suspect_of
 from diagnosis.result import LEAST_P, Constancy, Diagnosis, Effect, Estimate, Fit, Undecided, Verdict
-from diagnosis.sensors import SENSORS
 from diagnosis.statement import effect_told, statement
+from grids.instruments import INSTRUMENTS
 from tests.diagnosis.report.example import diagnosis
 
 ORDER = {"order": Estimate(1.0, 1.0, 1.0, "1")}
@@ -27,12 +27,12 @@ LOW = Effect("filter", "filter", {"corner_hz": Estimate(12.0, 10.0, 15.0, "Hz"),
 )
 def test_a_filter_is_told_by_what_it_lets_through(effect: Effect, said: str, unsaid: str) -> None:
     values = {name: value.estimate for name, value in effect.parameters.items()}
-    for text in (effect_told(effect, SENSORS["filter"]), suspect_of("filter", "housner").says(values)):
+    for text in (effect_told(effect, INSTRUMENTS["filter"]), suspect_of("filter", "housner").says(values)):
         assert said in text and unsaid not in text and "inf" not in text
 
 
 def said(verdict: Verdict = "missing", **changes: object) -> str:
-    return statement(answer(verdict, **changes), {**models.get("housner").mechanisms, **SENSORS})
+    return statement(answer(verdict, **changes), {**models.get("housner").mechanisms, **INSTRUMENTS})
 
 
 def answer(verdict: Verdict = "missing", **changes: object) -> Diagnosis:

@@ -28,8 +28,6 @@ SLIP = _mechanism(
 KAPPA = _mechanism(
     "vertical_acceleration", MechanismParameter("kappa", "k", "1", "share of the vertical motion", 0.0, 1.5)
 )
-GAIN = _mechanism("gain", MechanismParameter("gain", "g", "1", "gain of the rotation channels", -0.12, 0.12))
-SENSORS: dict[str, Mechanism] = {"gain": GAIN}
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ import pytest
 
 from grids.plan import read_plan
 from models.errors import InputError
-from tests.grids.fakes import SENSORS, FakeWall
+from tests.grids.fakes import FakeWall
 
 GOOD = """
 [study]
@@ -213,14 +213,14 @@ def test_one_sentence(kind: str, fake_wall: FakeWall, written: Callable[[str, st
     if kind == "a block that cannot rock":
         text = text.replace('"0.3 m"', '"3 m"')
     with pytest.raises(InputError) as error:
-        read_plan(written("plan.toml", text), sensors=SENSORS)
+        read_plan(written("plan.toml", text))
     sentence = str(error.value)
     assert all(word in sentence for word in ("plan.toml", *words)), sentence
     assert "\n" not in sentence and len(sentence) < 400, sentence
 
 
 def test_the_good_plan_is_good(fake_wall: FakeWall, written: Callable[[str, str], Path]) -> None:
-    assert read_plan(written("plan.toml", GOOD), sensors=SENSORS).grid.size == 5
+    assert read_plan(written("plan.toml", GOOD)).grid.size == 5
 
 
 def test_missing_and_unreadable_files(tmp_path: Path) -> None:

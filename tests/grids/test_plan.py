@@ -10,7 +10,7 @@ import pytest
 
 from grids.changes import compare, describe
 from grids.plan import Plan, parse_plan, read_plan
-from tests.grids.fakes import SENSORS, FakeWall
+from tests.grids.fakes import FakeWall
 
 Write = Callable[[str, str], Path]
 
@@ -22,7 +22,7 @@ def plan(axes: str = "", parameters: str = "width = 0.3\nheight = 1.8\nmass = 50
 
 
 def read(text: str, folder: Path = Path()) -> Plan:
-    return parse_plan(text, folder, sensors=SENSORS)
+    return parse_plan(text, folder)
 
 
 def test_a_whole_plan() -> None:
@@ -138,7 +138,7 @@ def test_a_specimen_gives_the_fixed_values(written: Write) -> None:
     )
     text = plan("aspect_ratio = { linspace = [0.1, 0.2, 3] }", "mass = '0.6 t'")
     path = written("p.toml", text.replace("model = 'housner'", "specimen = 'wall.toml'"))
-    found = read_plan(path, sensors=SENSORS)
+    found = read_plan(path)
     assert found.fixed == {"height": 1.8, "mass": 600.0, "pivot_inset.inset_over_half_width": 0.1}
     assert found.options == {"formulation": "linear"}
     assert any("gain" in note for note in found.notes)

@@ -12,11 +12,12 @@ from hypothesis import strategies as st
 
 import models
 from grids.data_folder import data_folder
+from grids.instruments import INSTRUMENTS
 from grids.specimen import Specimen, parse_specimen, read_specimen, state_unit
 from grids.write_specimen import specimen_text, write_specimen
 from models.errors import InputError
 from models.shaking import Shaking
-from tests.grids.fakes import SENSORS, FakeWall
+from tests.grids.fakes import FakeWall
 
 GOOD = """
 title = "wall 3"
@@ -44,7 +45,7 @@ gain = 0.05
 
 
 def test_a_whole_specimen(fake_wall: FakeWall, written: Callable[[str, str], Path]) -> None:
-    found = read_specimen(written("wall.toml", GOOD), sensors=SENSORS)
+    found = read_specimen(written("wall.toml", GOOD))
     assert found == Specimen(
         title="wall 3",
         model="fake_wall",
@@ -98,13 +99,12 @@ def test_one_sentence(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     import models.mechanisms
-    from tests.grids.fakes import GAIN
 
-    monkeypatch.setitem(models.mechanisms.MECHANISMS, "foreign", GAIN)
+    monkeypatch.setitem(models.mechanisms.MECHANISMS, "foreign", INSTRUMENTS["gain"])
     old, new, words = BAD[kind]
     assert old in GOOD
     with pytest.raises(InputError) as error:
-        read_specimen(written("wall.toml", GOOD.replace(old, new, 1)), sensors=SENSORS)
+        read_specimen(written("wall.toml", GOOD.replace(old, new, 1)))
     sentence = str(error.value)
     assert all(word in sentence for word in ("wall.toml", *words)), sentence
     assert "\n" not in sentence and len(sentence) < 400, sentence
@@ -113,7 +113,7 @@ def test_one_sentence(
 def test_restitution_has_one_handle(fake_wall: FakeWall) -> None:
     text = GOOD.replace("height = 1.8", "height = 1.8\nrestitution = 0.9")
     with pytest.raises(InputError, match="two handles"):
-        parse_specimen(text + "[mechanisms.restitution]\nfactor_on_housner = 0.9\n", sensors=SENSORS)
+        parse_specimen(text + "[mechanisms.restitution]\nfactor_on_housner = 0.9\n")
 
 
 WALL_ON_RUBBER = """
@@ -187,13 +187,13 @@ def specimens(draw: st.DrawFn) -> Specimen:
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
 @given(specimens())
 def test_written_and_read_back_equal(fake_wall: FakeWall, specimen: Specimen) -> None:
-    assert parse_specimen(specimen_text(specimen), sensors=SENSORS) == specimen
+    assert parse_specimen(specimen_text(specimen)) == specimen
 
 
 def test_a_file_reads_back_equal(fake_wall: FakeWall, tmp_path: Path) -> None:
-    specimen = parse_specimen(GOOD, sensors=SENSORS)
+    specimen = parse_specimen(GOOD)
     write_specimen(specimen, tmp_path / "extended.toml")
-    assert read_specimen(tmp_path / "extended.toml", sensors=SENSORS) == specimen
+    assert read_specimen(tmp_path / "extended.toml") == specimen
 
 
 def test_the_specimens_at_hand() -> None:

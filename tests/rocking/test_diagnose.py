@@ -128,7 +128,7 @@ main()
 """
 
 
-@pytest.mark.parametrize("wanted", ["rocking.commands", "typer", "rocking.instruments", "grids.recordings.read"])
+@pytest.mark.parametrize("wanted", ["rocking.commands", "typer", "grids.specimen", "grids.recordings.read"])
 def test_ctrl_c_while_something_is_imported_is_one_word(wanted: str) -> None:
     words = [sys.executable, "-c", PRESSED, "calibrate", BLOCK, FIRST, wanted]
     ran = subprocess.run(words, capture_output=True, text=True, cwd=EXAMPLE.parents[1], timeout=60)

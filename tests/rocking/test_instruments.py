@@ -13,7 +13,9 @@ from diagnosis.report import extend
 from grids.motions import Motion
 from grids.write_specimen import write_specimen
 from models.errors import InputError
+from models.shaking import Shaking
 from rocking.commands import app
+from study.history import simulate_specimen
 from tests.diagnosis.report.example import diagnosis, specimen
 
 BLOCK = """
@@ -74,6 +76,17 @@ def test_the_wall_keeps_its_own_mechanisms(tmp_path: Path, motion: Motion) -> No
     read = rocking.simulate(block(tmp_path, inset + "[mechanisms.gain]\ngain = 0.05\n"), motion, duration=4.0)
     np.testing.assert_allclose(read["rotation_1"].values, 1.05 * true["rotation_1"].values, rtol=1e-12)
     assert "gain" in read.attrs["instruments"] and "instruments" not in true.attrs
+
+
+def test_instruments_leave_the_vertical_motion_to_its_mechanism(tmp_path: Path) -> None:
+    time = np.arange(800) * 0.005
+    shaking = Shaking(0.005, 3.0 * np.sin(8.0 * time), 4.0 * np.sin(11.0 * time), vertical_acts=False)
+    half = "[mechanisms.vertical_acceleration]\nkappa = 0.5\n"
+    true, read = (
+        simulate_specimen(rocking.read_specimen(block(tmp_path, mechanisms)), shaking, duration=4.0)
+        for mechanisms in (half, half + "[mechanisms.gain]\ngain = 0.05\n")
+    )
+    np.testing.assert_allclose(read["rotation_1"].values, 1.05 * true["rotation_1"].values, rtol=1e-12)
 
 
 def test_an_unknown_mechanism_is_named_with_the_nearest(tmp_path: Path) -> None:

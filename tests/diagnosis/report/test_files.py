@@ -19,7 +19,7 @@ from diagnosis.result import Effect, Estimate, Verdict
 from grids.write_specimen import write_specimen
 from models.shaking import Shaking
 from rocking import read_specimen
-from rocking.instruments import simulate_recorded
+from study.history import simulate_specimen
 from tests.diagnosis.report.example import diagnosis, recordings, specimen
 from tests.diagnosis.report.schema import AnswerFile
 
@@ -96,7 +96,7 @@ def test_a_high_pass_reads_back_and_is_simulated(tmp_path: Path) -> None:
     block = read_specimen(tmp_path / "extended.toml")
     assert block.mechanisms["filter"] == {"corner_hz": np.inf, "high_pass_hz": 3.6, "order": 1.0}
     shaking = Shaking(0.005, 3.0 * np.sin(np.arange(600) * 0.04))
-    plain, seen = (simulate_recorded(b, shaking, 1.0)["rotation_1"] for b in (specimen(), block))
+    plain, seen = (simulate_specimen(b, shaking, duration=shaking.duration)["rotation_1"] for b in (specimen(), block))
     assert float(abs(seen - plain).max()) > 0.1 * float(abs(plain).max())
 
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from diagnosis.sensors.base import Channels, Surroundings
+from grids.instruments.base import Channels, Surroundings
 from models.base import Mechanism
 from models.shaking import Shaking
 
@@ -15,9 +15,9 @@ Switched = Mapping[str, Mapping[str, float]]
 
 
 def switched_on(mechanisms: Switched) -> list[tuple[Mechanism, dict[str, float]]]:
-    from diagnosis.sensors import SENSORS
+    from grids.instruments import INSTRUMENTS
 
-    return [(s, {**s.nulls, **mechanisms[name]}) for name, s in SENSORS.items() if name in mechanisms]
+    return [(s, {**s.nulls, **mechanisms[name]}) for name, s in INSTRUMENTS.items() if name in mechanisms]
 
 
 def moved(shaking: Shaking, mechanisms: Switched) -> Shaking:

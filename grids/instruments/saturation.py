@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diagnosis.sensors.base import REFERENCE_MEANING, Channels, Surroundings, is_rotation, reference_peak
+from grids.instruments.base import REFERENCE_MEANING, Channels, Surroundings, is_rotation, reference_peak
 from models.base import Mechanism, MechanismParameter, Values
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from diagnosis.prediction import read_at
-from diagnosis.sensors import SENSORS, moved, recorded
-from diagnosis.sensors.base import Surroundings
+from grids.instruments import INSTRUMENTS, moved, recorded
+from grids.instruments.base import Surroundings
 from models.shaking import Shaking
 
 STEP = 0.002
@@ -16,9 +16,9 @@ TRUE = {"rotation_1": 0.02 * np.sin(2 * np.pi * 1.3 * TIME), "rotation_rate_1": 
 BASE = np.cos(2 * np.pi * 2.1 * TIME)
 
 
-@pytest.mark.parametrize("name", SENSORS)
+@pytest.mark.parametrize("name", INSTRUMENTS)
 def test_null_changes_nothing(name: str) -> None:
-    switched = {name: SENSORS[name].nulls}
+    switched = {name: INSTRUMENTS[name].nulls}
     found = recorded(TRUE, switched, STEP, BASE)
     for channel, values in TRUE.items():
         np.testing.assert_allclose(found[channel], values, rtol=0, atol=1e-16)
@@ -26,9 +26,9 @@ def test_null_changes_nothing(name: str) -> None:
     np.testing.assert_array_equal(moved(shaking, switched).horizontal, BASE)
 
 
-@pytest.mark.parametrize("name", SENSORS)
+@pytest.mark.parametrize("name", INSTRUMENTS)
 def test_declares_what_a_fit_needs(name: str) -> None:
-    sensor = SENSORS[name]
+    sensor = INSTRUMENTS[name]
     assert sensor.name == name
     assert sensor.acts and set(sensor.acts) <= {"base", "clock", "response", "lag", "windowed"}
     first = sensor.parameters[0]
@@ -91,7 +91,7 @@ def test_filter_is_butterworth(order: int, corner: float) -> None:
 @pytest.mark.parametrize("order", [1, 2, 4])
 def test_a_filter_in_windows_is_the_filter_of_the_record(order: int) -> None:
     """A smooth motion seen through a filter from a window's peak on, base and response clock apart."""
-    sensor = SENSORS["filter"]
+    sensor = INSTRUMENTS["filter"]
     values = {**sensor.nulls, "corner_hz": 8.0, "order": float(order)}
     lag = sensor.acts["lag"](values)
     frequency = 1.1

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from diagnosis.sensors.base import Channels, Surroundings, is_rotation
+from grids.instruments.base import Channels, Surroundings, is_rotation
 from models.base import Mechanism, MechanismParameter, Values
 
 

@@ -15,7 +15,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.sensors.base import Channels, Surroundings
+from grids.instruments.base import Channels, Surroundings
 from models.base import FloatArray, Mechanism, MechanismParameter, Values
 
 Kind = Literal["lowpass", "highpass"]

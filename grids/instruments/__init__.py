@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from diagnosis.sensors import (
+from grids.instruments import (
     accelerometer_offset,
     base_gain,
     clock,
@@ -16,10 +16,10 @@ from diagnosis.sensors import (
     offset,
     saturation,
 )  # fmt: skip
-from diagnosis.sensors.whole import moved, recorded
+from grids.instruments.whole import moved, recorded
 from models.base import Mechanism
 
-SENSORS: dict[str, Mechanism] = {
+INSTRUMENTS: dict[str, Mechanism] = {
     module.MECHANISM.name: module.MECHANISM
     for module in (
         accelerometer_offset, base_gain, delay, clock, cross_axis, gain, offset, filter, saturation
@@ -27,4 +27,4 @@ SENSORS: dict[str, Mechanism] = {
 }  # fmt: skip
 """In the order in which they act on a signal."""
 
-__all__ = ["SENSORS", "moved", "recorded"]
+__all__ = ["INSTRUMENTS", "moved", "recorded"]

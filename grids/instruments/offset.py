@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from diagnosis.sensors.base import REFERENCE_MEANING, Channels, Surroundings, is_rotation, reference_peak
+from grids.instruments.base import REFERENCE_MEANING, Channels, Surroundings, is_rotation, reference_peak
 from models.base import Mechanism, MechanismParameter, Values
 
 
