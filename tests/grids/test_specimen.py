@@ -153,11 +153,6 @@ def test_every_state_has_a_unit(name: str) -> None:
         assert state_unit(model, state, "") == unit
 
 
-def test_a_sensor_that_nobody_lists_is_unknown(fake_wall: FakeWall) -> None:
-    with pytest.raises(InputError, match="no mechanism 'gain'"):
-        parse_specimen(GOOD)
-
-
 POSITIVE = st.floats(1e-6, 1e6)
 TITLES = st.text(st.characters(exclude_categories=["Cs"]), max_size=30)
 
