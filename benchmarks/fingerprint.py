@@ -127,6 +127,9 @@ def drawn(model: Model, variant: str) -> tuple[Values, dict[str, str]]:
     values = random_cells(model.name, rng)
     for name in mechanisms:
         for parameter in model.mechanisms[name].parameters:
+            if parameter.name == "exponent":  # of Bouc-Wen, whole
+                values[f"{name}.exponent"] = rng.integers(1, 5, CELLS).astype(float)
+                continue
             low, high = RANGES.get(f"{name}.{parameter.name}", (parameter.low, parameter.high))
             values[f"{name}.{parameter.name}"] = rng.uniform(low, high, CELLS)
     return values, options

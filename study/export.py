@@ -10,14 +10,14 @@ import xarray as xr
 
 from grids.netcdf_lock import NETCDF_LOCK
 from models.errors import InputError, nearest
-from study.maps import select
+from study.selection import select
 from study.store import write_whole
 
 
 def export(
     cube: xr.Dataset, out: str | Path, *, outputs: Sequence[str] = (), at: Mapping[str, Any] | None = None
 ) -> Path:
-    """Write ``out`` (.csv or .nc): all outputs or the named ones, at the nearest selected values.
+    """Write ``out`` (.csv or .nc): all outputs or the named ones, at the selected values.
 
     The CSV has one row a cell, a column for every coordinate and output with its unit in brackets,
     numbers with all their digits. Raises InputError for unknown names and endings.

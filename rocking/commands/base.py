@@ -46,31 +46,23 @@ def _refusal(error: OSError) -> str:
     return f"{error.filename}: {what}; name another place, or make this one writable." if error.filename else f"{what}."
 
 
-def read_selection(cube: xr.Dataset, entries: Sequence[str]) -> dict[str, Any]:
-    """``["restitution=0.9", "pga=0.3 g"]`` as SI values by axis; InputError for what is no axis."""
-    from grids.units import to_si
+SELECT = "AXIS=VALUE with its unit, for instance 'pga=0.3 g'"
+NEAREST = "Take the nearest values of the grid for what --select gives off it."
+
+
+def read_selection(cube: xr.Dataset, entries: Sequence[str] | None, nearest: bool) -> dict[str, Any]:
+    """``["restitution=0.9", "pga=0.3 g"]`` as values of the grid by axis; errors as in `study.selection.select`."""
+    from study.selection import on_grid
 
     found: dict[str, Any] = {}
-    for entry in entries:
-        name, equals, text = entry.partition("=")
-        name, text = name.strip(), text.strip()
+    for entry in entries or ():
+        name, equals, text = (part.strip() for part in entry.partition("="))
         if not equals or not text:
             raise InputError(f"selection '{entry}': write axis=value, for instance restitution=0.9")
-        axis = cube.coords.get(name) if name in cube.dims else None
-        if axis is None or axis.dtype.kind not in "iuf":
-            found[name] = text
-        else:
-            unit = str(axis.attrs["units"])
-            found[name] = to_si(float(text) if _is_number(text) else text, unit, f"selection {name}")
-    return found
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
+        if name in found:
+            raise InputError(f"selection '{entry}': {name} is selected twice; leave one out")
+        found[name] = text
+    return on_grid(cube, found, nearest=nearest)
 
 
 def human_time(seconds: float) -> str:

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from rocking.commands.base import read_selection
+from rocking.commands.base import NEAREST, SELECT, read_selection
 
 
 def slices(
@@ -16,16 +16,21 @@ def slices(
     output: Annotated[str, typer.Argument(help="An output of the study, for instance peak_rotation.")],
     x: Annotated[str, typer.Option(help="Axis across.")],
     select: Annotated[
-        list[str] | None, typer.Option(help="AXIS=VALUE for all other axes but one, which gives a curve a value.")
+        list[str] | None,
+        typer.Option(help=f"{SELECT} (default: the first axis left gives a curve a value, others their middle ones)."),
     ] = None,
+    nearest: Annotated[bool, typer.Option("--nearest", help=NEAREST)] = False,
     out: Annotated[Path | None, typer.Option(help="File of the figure (default: OUTPUT.png in the study's).")] = None,
 ) -> None:
     """Draw an output along one axis, one curve for each value of the axis left open."""
+    from study import maps
     from study.figures import plot_slices, save_figure
     from study.open import open_study
 
     cube = open_study(folder)
-    at = read_selection(cube, select or [])
+    at = read_selection(cube, select, nearest)
     home = folder if folder.is_dir() else folder.parent
+    drawn = maps.slices(cube, output, x, at)
+    typer.echo(f"over {' and '.join(map(str, drawn.dims[::-1]))}, at {drawn.attrs['selection'] or 'all there is'}")
     path = save_figure(partial(plot_slices, cube, output, x, at), out or home / f"{output}.png")
     typer.echo(f"written: {path}")

@@ -10,7 +10,8 @@ from matplotlib.axes import Axes
 
 from study.figures.map_figure import draw_legend, plot_map
 from study.figures.style import COLOURS, positions, shown
-from study.maps import onset_map, select
+from study.maps import onset_map
+from study.selection import complete, select
 
 THRESHOLD = "threshold without vertical shaking"
 
@@ -25,7 +26,7 @@ def plot_onset_map(
     """
     ax = plot_map(onset_map(cube, x, y, at), words=("rocks", "does not rock"), ax=ax)
     if y == "pga" and "onset_acceleration" in cube.coords:
-        threshold = select(cube, at)["onset_acceleration"].squeeze()
+        threshold = select(cube, complete(cube, at, (x, y)))["onset_acceleration"].squeeze()
         if threshold.dims == (x,):
             low, high = ax.get_ylim()
             line = ax.plot(positions(cube[x])[0], shown(threshold)[0], "--", color=COLOURS[6], label=THRESHOLD)

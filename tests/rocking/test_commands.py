@@ -74,6 +74,12 @@ def test_status_check_export_and_map(finished: Path) -> None:
     result = rocking("slices", finished, "peak_rotation", "--x", "pga", "--select", "top_mass=1 t", "--out", "peak.png")
     assert result.exit_code == 0, result.output
     assert Path("peak.png").stat().st_size > 5000
+    assert "at ridgecrest_2019_clc, top mass 1000 kg" in result.stdout
+    for entry, words in (("top_mass=1", "has no unit"), ("top_mass=2 t", "1000 kg and 3000 kg"), ("pga=9 g", "0.8 g")):
+        refused = rocking("slices", finished, "peak_rotation", "--x", "aspect_ratio", "--select", entry)
+        assert refused.exit_code == 2 and words in refused.stderr
+    near = rocking("slices", finished, "peak_rotation", "--x", "pga", "--select", "top_mass=1.9 t", "--nearest")
+    assert near.exit_code == 0 and "top mass 1000 kg" in near.stdout
     wrong = rocking("slices", finished, "peak_rotaton", "--x", "pga")
     assert wrong.exit_code == 2 and "did you mean 'peak_rotation'" in wrong.stderr
 

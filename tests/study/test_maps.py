@@ -12,7 +12,7 @@ import xarray as xr
 import study.accessor  # noqa: F401
 from models.errors import InputError
 from study.figures import plot_onset_map, plot_overturning_map, plot_slices, save_figure
-from study.maps import default_axes, middle
+from study.maps import default_axes
 from study.status import OVERTURNED, ROCKING, UNKNOWN
 from tests.study.cubes import known_cube
 
@@ -49,7 +49,7 @@ def test_smallest_intensity_equals_brute_force(cube: xr.Dataset) -> None:
 
 
 def test_yes_or_no_over_the_intensity_equals_the_flags(cube: xr.Dataset) -> None:
-    drawn = cube.rocking.overturning_map(x="aspect_ratio", y="pga", top_mass=1900.0)
+    drawn = cube.rocking.overturning_map(x="aspect_ratio", y="pga", top_mass=2000.0)
     status = cube["status"].values[:, 2, :].T
     np.testing.assert_array_equal(drawn.values == 1.0, status == OVERTURNED)
     np.testing.assert_array_equal(np.isnan(drawn.values), np.isin(status, UNKNOWN))
@@ -63,7 +63,7 @@ def test_onset_never_lies_above_overturning(cube: xr.Dataset) -> None:
 
 
 def test_slices_are_the_cube(cube: xr.Dataset) -> None:
-    curve = cube.rocking.slices("peak_rotation", x="pga", aspect_ratio=0.1, top_mass=4100.0)
+    curve = cube.rocking.slices("peak_rotation", x="pga", aspect_ratio=0.1, top_mass="4 t")
     np.testing.assert_array_equal(curve.values, cube["peak_rotation"].values[0, -1])
     assert cube.rocking.slices("peak_rotation", x="pga", aspect_ratio=0.1).dims == ("top_mass", "pga")
 
@@ -73,11 +73,17 @@ def test_slices_are_the_cube(cube: xr.Dataset) -> None:
     [
         (lambda c: c.rocking.onset_map(x="aspect_ration", y="pga"), "did you mean 'aspect_ratio'"),
         (lambda c: c.rocking.onset_map(x="pga", y="pga"), "choose two axes"),
-        (lambda c: c.rocking.onset_map(x="pga", y="top_mass"), "aspect_ratio must be selected"),
+        (
+            lambda c: c.rocking.overturning_map(x="aspect_ratio", y="top_mass", pga="0.3"),
+            "pga=0.3 has no unit.*'0.3 g'",
+        ),
+        (lambda c: c.rocking.onset_map(x="pga", y="aspect_ratio", top_mass="2 m"), "'kg' is needed"),
         (lambda c: c.rocking.onset_map(x="pga", y="top_mass", pga=1.0), "leave it out"),
-        (lambda c: c.rocking.onset_map(x="pga", y="top_mass", aspect_ratio="wide"), "needs a number"),
+        (lambda c: c.rocking.onset_map(x="pga", y="top_mass", aspect_ratio="wide"), "give a number"),
         (lambda c: c.rocking.slices("peak_rotaton", x="pga"), "did you mean 'peak_rotation'"),
-        (lambda c: c.rocking.slices("peak_rotation", x="pga"), "select all but one"),
+        (lambda c: c.rocking.slices("peak_rotation", x="pga", top_mass=1900.0), "1900 kg.*1000 kg and 2000 kg"),
+        (lambda c: c.rocking.slices("peak_rotation", x="top_mass", pga="30 g"), "from 0.102 g to 0.6118 g"),
+        (lambda c: c.rocking.output_map("peak_rotation", x="pga", y="top_mass", aspect_ratio=0.15), "0.1 and 0.2"),
     ],
 )
 def test_a_wrong_question_gets_one_sentence(cube: xr.Dataset, ask: object, words: str) -> None:
@@ -89,8 +95,28 @@ def test_a_wrong_question_gets_one_sentence(cube: xr.Dataset, ask: object, words
 def test_default_axes_leave_the_intensity_to_be_searched(cube: xr.Dataset) -> None:
     assert default_axes(cube, None, None) == ("aspect_ratio", "top_mass")
     assert default_axes(cube, "pga", None) == ("pga", "aspect_ratio")
-    assert middle(cube, ("aspect_ratio", "top_mass")) == {}
-    assert middle(cube, ("aspect_ratio", "pga")) == {"top_mass": 2000.0}
+
+
+def test_an_axis_left_open_takes_its_middle_value_and_says_so(cube: xr.Dataset) -> None:
+    drawn = cube.rocking.overturning_map()
+    xr.testing.assert_identical(drawn, cube.rocking.overturning_map(x="aspect_ratio", y="top_mass"))
+    drawn = cube.rocking.onset_map(x="aspect_ratio", y="pga")
+    xr.testing.assert_identical(drawn, cube.rocking.onset_map(x="aspect_ratio", y="pga", top_mass=2000.0))
+    assert drawn.attrs["selection"] == "top mass 2000 kg"
+    curves = cube.rocking.slices("peak_rotation", x="pga")
+    assert curves.dims == ("aspect_ratio", "pga") and curves.attrs["selection"] == "top mass 2000 kg"
+
+
+def test_a_value_is_one_of_the_grid_or_the_nearest_if_asked_for(cube: xr.Dataset) -> None:
+    pga = float(cube["pga"].values[3])
+    by_number = cube.rocking.overturning_map(x="aspect_ratio", y="top_mass", pga=pga)
+    text = f"{pga / 9.80665:.4g} g"  # as figures and messages print it
+    xr.testing.assert_identical(by_number, cube.rocking.overturning_map(x="aspect_ratio", y="top_mass", pga=text))
+    assert by_number.attrs["selection"] == f"PGA {text}"
+    with pytest.raises(InputError, match="not on the grid"):
+        cube.rocking.overturning_map(x="aspect_ratio", y="top_mass", pga=1.01 * pga)
+    near = cube.rocking.overturning_map(x="aspect_ratio", y="top_mass", pga=1.01 * pga, nearest=True)
+    xr.testing.assert_identical(near, by_number)
 
 
 def test_axes_by_equal_factors_are_logarithmic_and_in_engineers_units(tmp_path: Path) -> None:
