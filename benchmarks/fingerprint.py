@@ -45,6 +45,7 @@ RANGES = {
     "mullins.softening": (0.05, 0.5),
     "payne.softening": (0.05, 0.5),
     "hardening.beta2": (0.1, 5.0),
+    "permanent_set.strain_limit": (0.6, 2.0),
 }
 """Narrower than declared where the declared range holds cells that cannot stand at rest."""
 Values = dict[str, Any]

@@ -69,7 +69,7 @@ def _shaking(specimen: Specimen, motion: Motion | Recording | str | Path, compon
             )
         vertical = True
     if isinstance(motion, str | Path) and is_recording(Path(motion)):
-        motion = read_recording(motion, whole=True)
+        motion = read_recording(motion, base_only=True)
     if isinstance(motion, Recording):
         if component is not None:
             raise InputError(f"recording {motion.name}: its base motion has one component: leave '{component}' out")

@@ -16,13 +16,14 @@ from models.errors import InputError, nearest
 READERS = (netcdf, csv_toml)
 
 
-def read_recording(path: str | Path, *, whole: bool = False) -> Recording:
+def read_recording(path: str | Path, *, base_only: bool = False) -> Recording:
     """Read and check a recording: netCDF, or CSV with a TOML beside it (either may be named).
 
     Samples without a value are cut off where they stand at the start or the end of the record;
     inside it they are an error, because a filled gap is not a measurement. A recording of a body that
-    overturned is cut before its fall, with a note, unless ``whole``. Nothing is filtered,
-    interpolated or detrended. Raises InputError with one sentence: file, channel, place, cure.
+    overturned is cut before its fall, with a note. ``base_only``: the motion of the base is all that is wanted;
+    nothing is cut before a fall, and no response is asked for. Nothing is filtered, interpolated or detrended.
+    Raises InputError with one sentence: file, channel, place, cure.
     """
     path = Path(path)
     table = path.with_suffix(".csv") if path.suffix == ".toml" else path
@@ -35,8 +36,8 @@ def read_recording(path: str | Path, *, whole: bool = False) -> Recording:
         raise InputError(f"recording {table.name}: ending '{table.suffix}' is not known; known: {', '.join(suffixes)}.")
     reader = next(r for r in READERS if table.suffix.lower() in r.SUFFIXES)
     try:
-        recording = _checked(table.stem, reader.read(table))
-        if not whole:
+        recording = _checked(table.stem, reader.read(table), base_only)
+        if not base_only:
             recording = cut_before_fall(recording)
         return replace(
             recording,
@@ -47,13 +48,13 @@ def read_recording(path: str | Path, *, whole: bool = False) -> Recording:
         raise InputError(f"recording {table.name}: {str(error).removeprefix(f'{table.name}: ')}") from None
 
 
-def _checked(name: str, raw: Raw) -> Recording:
+def _checked(name: str, raw: Raw, base_only: bool) -> Recording:
     if REQUIRED not in raw.channels:
         found = ", ".join([*raw.channels, *(note.partition(" is no")[0] for note in raw.notes)])
         raise InputError(
             f"has no {REQUIRED} (found: {found or 'no channel'}); name or map it so, zeros for free rocking."
         )
-    if not any(CHANNELS[channel].response for channel in raw.channels):
+    if not base_only and not any(CHANNELS[channel].response for channel in raw.channels):
         responses = [channel for channel, declared in CHANNELS.items() if declared.response]
         raise InputError(f"has no response (channels: {', '.join(raw.channels)}); add one of {', '.join(responses)}.")
     first, last = _measured_span(raw)

@@ -33,7 +33,7 @@ def fall(lying: float, side: float) -> np.ndarray:
     return side * np.minimum(rising, lying)
 
 
-def read(folder: Path, rotation: np.ndarray, *, whole: bool = False, **more: np.ndarray) -> Recording:
+def read(folder: Path, rotation: np.ndarray, *, base_only: bool = False, **more: np.ndarray) -> Recording:
     rng = np.random.default_rng(5)
     base = np.sin(2 * np.pi * 1.1 * TIME)
     channels = {"base_acceleration_x": (base, "m s-2"), "rotation_1": (rotation, "rad")}
@@ -43,7 +43,7 @@ def read(folder: Path, rotation: np.ndarray, *, whole: bool = False, **more: np.
         for name, (values, unit) in channels.items()
     }
     xr.Dataset(noisy, coords={"time": ("time", TIME, {"units": "s"})}).to_netcdf(folder / "test.nc")
-    return read_recording(folder / "test.nc", whole=whole)
+    return read_recording(folder / "test.nc", base_only=base_only)
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
@@ -60,7 +60,7 @@ def test_an_overturned_record_ends_where_its_last_swing_leaves_the_known_range(
     assert np.max(np.abs(found.channels["rotation_1"])) < 1.02 * EARLIER
     assert 5.9 < found.time[-1] < 6.3
     assert all(values.shape == found.time.shape for values in found.channels.values())
-    kept = read(tmp_path, rotation, whole=True)
+    kept = read(tmp_path, rotation, base_only=True)
     assert kept.time.size == TIME.size and kept.notes == ()
 
 

@@ -139,6 +139,20 @@ def test_simulate_writes_a_history_that_is_a_recording() -> None:
         np.testing.assert_allclose(two["rotation_1"][:n], one["rotation_1"], atol=1e-9)
 
 
+def test_simulate_takes_a_motion_that_holds_the_base_alone() -> None:
+    Path("wall.toml").write_text(SPECIMEN)
+    time = 0.01 * np.arange(201)
+    base = xr.Dataset(
+        {"base_acceleration_x": ("time", 3.0 * np.sin(6.0 * time), {"units": "m s-2"})},
+        {"time": ("time", time, {"units": "s"})},
+    )
+    base.to_netcdf("table.nc")
+    result = rocking("simulate", "wall.toml", "--motion", "table.nc", "--out", "history.nc", "--duration", 2)
+    assert result.exit_code == 0, result.output
+    with xr.open_dataset("history.nc") as history:
+        np.testing.assert_allclose(history["base_acceleration_x"], base["base_acceleration_x"], rtol=0, atol=1e-12)
+
+
 def test_simulate_free_rocking() -> None:
     Path("wall.toml").write_text(SPECIMEN)
     assert rocking("simulate", "wall.toml", "--duration", 2, "--out", "free.nc").exit_code == 0
