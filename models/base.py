@@ -20,8 +20,8 @@ Values = Mapping[str, Any]
 FloatArray = NDArray[np.float64]
 
 
-STATUS = ("not_run", "rest", "rocking", "overturned", "not_converged", "failed")
-"""What can become of a cell: the words of a cube's ``status`` flags, by their values 0 to 5."""
+STATUS = ("not_run", "rest", "rocking", "overturned", "outside_model", "not_converged", "failed")
+"""What can become of a cell: the words of a cube's ``status`` flags, by their values 0 to 6."""
 
 
 @dataclass(frozen=True)

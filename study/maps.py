@@ -60,9 +60,18 @@ def output_map(
     x, y = default_axes(cube, x, y)
     taken = complete(cube, at, (x, y), nearest=nearest)
     chosen = select(cube, taken)
-    known = chosen[output].where(~chosen["status"].isin(UNKNOWN))
-    result = known.squeeze([dim for dim in known.dims if dim not in (x, y)]).transpose(y, x)
-    return result.assign_attrs(cube[output].attrs, selection=place(cube, taken))
+    known = _over(chosen[output].where(~chosen["status"].isin(UNKNOWN)), x, y)
+    return known.assign_attrs(cube[output].attrs, selection=place(cube, taken))
+
+
+def status_map(cube: xr.Dataset, x: str | None = None, y: str | None = None, at: At | None = None) -> xr.DataArray:
+    """The flags of ``status`` over ``x`` and ``y``, dimensions ``(y, x)``; axes and selection as in `output_map`."""
+    x, y = default_axes(cube, x, y)
+    return _over(select(cube, complete(cube, at, (x, y)))["status"], x, y)
+
+
+def _over(values: xr.DataArray, x: str, y: str) -> xr.DataArray:
+    return values.squeeze([dim for dim in values.dims if dim not in (x, y)]).transpose(y, x)
 
 
 def slices(cube: xr.Dataset, output: str, x: str, at: At | None = None, *, nearest: bool = False) -> xr.DataArray:
@@ -139,7 +148,8 @@ def _map(
     result.attrs = {
         "units": cube[along].attrs["units"],
         "long_name": f"smallest {along} of the grid that {verb}",
-        "comment": "nan: no value of the grid does, or the outcome at a lower one is unknown",
+        "comment": "nan: no value of the grid does, or, where the coordinate unknown is true, the outcome at a lower "
+        "one is unknown",
         "selection": place(cube, taken),
         "smallest": float(cube[along].min()),
         "largest": float(cube[along].max()),
@@ -148,9 +158,10 @@ def _map(
 
 
 def _smallest(happens: xr.DataArray, along: str) -> xr.DataArray:
-    """Smallest coordinate with 1, nan where none or where an unknown comes before it."""
+    """Smallest coordinate with 1, nan where none or (``unknown`` true) where an unknown comes before it."""
     ordered = happens.sortby(along)
     hit = ordered != 0.0  # a 1 or an unknown
     first = hit.argmax(along)
     found = hit.any(along) & (ordered.isel({along: first}) == 1.0)
-    return ordered[along].isel({along: first}).where(found).drop_vars(along)
+    smallest = ordered[along].isel({along: first}).where(found).drop_vars(along)
+    return smallest.assign_coords(unknown=(hit.any(along) & ~found).drop_vars(along, errors="ignore"))

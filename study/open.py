@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from pathlib import Path
 
+import numpy as np
 import xarray as xr
 
 import study.accessor  # noqa: F401  (registers cube.rocking)
 from grids.netcdf_lock import NETCDF_LOCK
+from models.base import STATUS
 from models.errors import InputError
+from study.labels import flags
 
 
-def open_study(folder: str | Path) -> xr.Dataset:
-    """The cube of a study, in memory: ``folder`` is ``results/<name>`` or the path of a cube file.
+def open_study(folder: str | Path, outputs: Collection[str] | None = None) -> xr.Dataset:
+    """The cube of a study, in memory: ``folder`` is ``results/<name>`` or the path of a cube file; all of
+    its outputs, or those named.
 
     Maps and slices hang on it: ``cube.rocking.overturning_map(x="aspect_ratio", y="top_mass")``.
     Raises InputError when there is no cube yet.
@@ -24,6 +29,16 @@ def open_study(folder: str | Path) -> xr.Dataset:
         raise InputError(f"{path} does not exist: run the study first, or correct the folder")
     try:
         with NETCDF_LOCK, xr.open_dataset(path, engine="netcdf4") as cube:
-            return cube.load()
+            return _of_today((cube if outputs is None else cube[list(outputs)]).load())
     except (OSError, ValueError) as error:
         raise InputError(f"{path} is not a readable cube ({error}): run the study again") from None
+
+
+def _of_today(cube: xr.Dataset) -> xr.Dataset:
+    """The cube with the flags of `models.base.STATUS`, whose numbers have changed since the first version."""
+    stored = str(cube["status"].attrs.get("flag_meanings", "")).split()
+    if stored == list(STATUS) or not set(stored) <= set(STATUS):
+        return cube
+    codes = np.array([STATUS.index(word) for word in stored], dtype=np.int8)
+    status = cube["status"]
+    return cube.assign(status=status.copy(data=codes[status.values]).assign_attrs(flags(STATUS)))

@@ -25,6 +25,7 @@ from study.manifest import Manifest
 from study.provenance import now
 from study.schedulers import check_scheduler, count_workers, open_executor
 from study.store import BlockStore, write_text
+from study.tally import tally, tally_line
 from study.task import Outcome, Task, make_task, run_task
 from study.timing import cells_per_block, time_sample
 
@@ -57,7 +58,8 @@ class Progress:
 
 @dataclass(frozen=True)
 class Report:
-    """What a run did. ``cube`` is the file; ``failed`` counts blocks whose cells are flagged."""
+    """What a run did. ``cube`` is the file; ``failed`` counts blocks whose cells are flagged; ``tally`` all cells
+    by what became of them."""
 
     folder: Path
     cube: Path
@@ -69,13 +71,15 @@ class Report:
     seconds: float
     compute_seconds: float
     store_seconds: float
+    tally: Mapping[str, int]
 
     def __str__(self) -> str:
         text = (
             f"{self.cube}: {self.cells} cells in {self.blocks} blocks "
             f"({self.computed} computed, {self.reused} reused) in {self.seconds:.1f} s"
         )
-        return text + (f"; {self.failed} blocks failed, see {self.folder / 'failed'}" if self.failed else "")
+        text += f"; {self.failed} blocks failed, see {self.folder / 'failed'}" if self.failed else ""
+        return f"{text}\n{tally_line(self.tally)}"
 
 
 def run(
@@ -124,6 +128,7 @@ def run(
         seconds=time.perf_counter() - clock,
         compute_seconds=counter.compute_seconds,
         store_seconds=counter.store_seconds,
+        tally=tally(cube),
     )
 
 

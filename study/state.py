@@ -9,11 +9,12 @@ from pathlib import Path
 from models.errors import InputError
 from study.manifest import Manifest
 from study.store import BlockStore
+from study.tally import tally, tally_line
 
 
 @dataclass(frozen=True)
 class State:
-    """``failures``: the reason by block key; ``cube``: whether a cube was written."""
+    """``failures``: the reason by block key; ``tally``: cells of the cube by what became of them, None without one."""
 
     folder: Path
     cells: int
@@ -21,7 +22,7 @@ class State:
     blocks: int
     blocks_done: int
     failures: Mapping[str, str]
-    cube: bool
+    tally: Mapping[str, int] | None
 
     def __str__(self) -> str:
         share = self.cells_done / self.cells
@@ -29,7 +30,9 @@ class State:
             f"{self.folder}: {self.blocks_done} of {self.blocks} blocks, "
             f"{self.cells_done} of {self.cells} cells ({share:.1%})",
             f"failed blocks: {len(self.failures)}",
-            "cube.nc is written" if self.cube else "no cube yet: run the plan to go on",
+            "no cube yet: run the plan to go on"
+            if self.tally is None
+            else f"cube.nc is written; {tally_line(self.tally)}",
         ]
         lines += [f"  failed/{key}.txt: {text.strip().splitlines()[-1]}" for key, text in self.failures.items()]
         return "\n".join(lines)
@@ -50,5 +53,5 @@ def state(folder: str | Path) -> State:
         blocks=len(manifest.blocks),
         blocks_done=len(done),
         failures=store.failures(),
-        cube=(folder / "cube.nc").exists(),
+        tally=tally(folder) if (folder / "cube.nc").exists() else None,
     )

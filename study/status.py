@@ -1,13 +1,13 @@
 """What can become of a cell: the flags of the cube's ``status``.
 
-A model writes these numbers (0 to 5 in this order); `not_run` marks the cells of a block that has
-not been computed, `failed` those of a block that raised an error and single lanes a model gave up.
+A model writes these numbers, in the order of `models.base.STATUS`; ``not_run`` marks the cells of a block that has
+not been computed, ``failed`` those of a block that raised an error.
 """
 
 from __future__ import annotations
 
 from models.base import STATUS
 
-NOT_RUN, REST, ROCKING, OVERTURNED, NOT_CONVERGED, FAILED = range(len(STATUS))
-UNKNOWN = (NOT_RUN, NOT_CONVERGED, FAILED)
+NOT_RUN, REST, ROCKING, OVERTURNED, OUTSIDE_MODEL, NOT_CONVERGED, FAILED = range(len(STATUS))
+UNKNOWN = (NOT_RUN, OUTSIDE_MODEL, NOT_CONVERGED, FAILED)
 """Flags of cells whose outputs say nothing."""

@@ -196,5 +196,5 @@ class _Run:
             self.account.close(self.time, self.equation.toppled(self.y[:4], self.y[4:8]))
         outputs = self.account.outputs(self.y[:4])
         if outputs["minimum_contact"] == 0.0 and not self.account.failed:
-            outputs["status"] = float(STATUS.index("failed"))
+            outputs["status"] = float(STATUS.index("outside_model"))
         return ReferenceResult(outputs, self.grid, self.history, tuple(self.account.events))

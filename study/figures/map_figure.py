@@ -57,13 +57,18 @@ def frame(values: xr.DataArray, ax: Axes | None) -> tuple[Axes, np.ndarray, tupl
     y, x = (values[str(dim)] for dim in values.dims)
     across, x_words = positions(x)
     up, y_words = positions(y)
-    # a map needs ascending borders; the axes of a cube may come in any order
-    ordered = values.values[np.argsort(up)][:, np.argsort(across)]
+    ordered = ascending(values)
     borders = edges(np.sort(across)), edges(np.sort(up))
     for which, axis, points, wording in (("x", x, across, x_words), ("y", y, up, y_words)):
         set_scale(ax, which, points, wording)
         (ax.set_xlabel if which == "x" else ax.set_ylabel)(label(axis))
     return ax, ordered, borders
+
+
+def ascending(values: xr.DataArray) -> np.ndarray:
+    """The values of a map with both axes ascending, as drawing needs them; those of a cube may come in any order."""
+    up, across = (np.argsort(positions(values[str(dim)])[0]) for dim in values.dims)
+    return np.asarray(values.values[up][:, across])
 
 
 def _draw_smallest(
@@ -89,9 +94,16 @@ def _draw_smallest(
             texts = [f"{mark}{factor * value:.3g}" for mark, value in zip(at_most, levels, strict=True)]
             bar.set_ticks(np.arange(levels.size).tolist(), labels=texts)
             bar.ax.tick_params(which="both", length=0)
-    if np.isnan(ordered).any():
+    unknown = ascending(values["unknown"])
+    ax.pcolormesh(*borders, np.ma.masked_not_equal(unknown, True), cmap=ListedColormap([UNKNOWN]))
+    patches = []
+    if (np.isnan(ordered) & ~unknown).any():
         text = f"{nothing} up to {factor * values.attrs['largest']:.3g}" + ("" if unit == "1" else f" {unit}")
-        draw_legend(ax, [Patch(facecolor=NOTHING, edgecolor="0.4", label=text)])
+        patches.append(Patch(facecolor=NOTHING, edgecolor="0.4", label=text))
+    if unknown.any():
+        patches.append(Patch(facecolor=UNKNOWN, edgecolor="0.4", label="unknown"))
+    if patches:
+        draw_legend(ax, patches)
 
 
 def _verb(values: xr.DataArray) -> str:

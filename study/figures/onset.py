@@ -10,20 +10,26 @@ from matplotlib.axes import Axes
 
 from study.figures.map_figure import draw_legend, plot_map
 from study.figures.style import COLOURS, positions, shown
-from study.maps import onset_map
+from study.maps import default_axes, onset_map
 from study.selection import complete, select
 
 THRESHOLD = "threshold without vertical shaking"
 
 
 def plot_onset_map(
-    cube: xr.Dataset, x: str, y: str, at: Mapping[str, Any] | None = None, *, ax: Axes | None = None
+    cube: xr.Dataset,
+    x: str | None = None,
+    y: str | None = None,
+    at: Mapping[str, Any] | None = None,
+    *,
+    ax: Axes | None = None,
 ) -> Axes:
     """Draw where rocking starts over two axes, or the smallest intensity that starts it.
 
     Arguments as in `study.maps.onset_map`. Over PGA, a dashed line marks the onset acceleration of
     the wall under horizontal shaking alone.
     """
+    x, y = default_axes(cube, x, y)
     ax = plot_map(onset_map(cube, x, y, at), words=("rocks", "does not rock"), ax=ax)
     if y == "pga" and "onset_acceleration" in cube.coords:
         threshold = select(cube, complete(cube, at, (x, y)))["onset_acceleration"].squeeze()

@@ -13,7 +13,12 @@ from study.maps import overturning_map
 
 
 def plot_overturning_map(
-    cube: xr.Dataset, x: str, y: str, at: Mapping[str, Any] | None = None, *, ax: Axes | None = None
+    cube: xr.Dataset,
+    x: str | None = None,
+    y: str | None = None,
+    at: Mapping[str, Any] | None = None,
+    *,
+    ax: Axes | None = None,
 ) -> Axes:
     """Draw what overturns over two axes, or the smallest intensity that overturns.
 

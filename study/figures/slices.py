@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm, Normalize
 
+from study.figures.outcomes import marked
 from study.figures.style import (
     COLOURS,
     MAP_COLOURS,
@@ -25,14 +26,10 @@ from study.figures.style import (
     shown,
 )
 from study.maps import slices
-from study.status import OVERTURNED
 
 MARKERS = "osD^vPX*"
 FEW = 8
-
-
-ALWAYS = ("overturned", "overturning_time", "status")
-"""Outputs that say something of an overturned wall, too."""
+"""Up to so many curves have a colour and a line of the legend each; more have a colour bar."""
 
 
 def plot_slices(
@@ -40,35 +37,43 @@ def plot_slices(
 ) -> Axes:
     """Draw an output over ``x``, one curve for each value of the axis left open (at most one).
 
-    Arguments as in `study.maps.slices`. Overturned cells are gaps in the curve, marked by a cross on
-    the upper border: their values (a peak rotation of pi/2) would hide the others.
+    Arguments as in `study.maps.slices`. Overturned cells, whose values (a peak rotation of pi/2) would hide the
+    others, and cells without an answer are gaps in the curve and a mark each on the upper border.
     """
     ax = new_axes(ax)
     curves = slices(cube, output, x, at)
-    fallen = slices(cube, "status", x, at).values == OVERTURNED
     across, words = positions(curves[x])
     order = across.argsort()
-    values = np.array(shown(curves)[0], dtype=float)
-    if output not in ALWAYS:
-        values[fallen] = np.nan
-    rows, flags = np.atleast_2d(values)[:, order], np.atleast_2d(fallen)[:, order]
-    names, few = _names(curves), len(rows) <= FEW
-    others = positions(curves[str(curves.dims[0])])[0]
+    rows = np.atleast_2d(np.array(shown(curves)[0], dtype=float))[:, order]
+    status = np.atleast_2d(slices(cube, "status", x, at).values)[:, order]
+    outcomes = marked(output, status)
+    rows = np.where(np.isin(status, [outcome.flag for outcome in outcomes]), np.nan, rows)
+    few = len(rows) <= FEW
+    names = _names(curves)
+    others, other_words = positions(curves[str(curves.dims[0])])
     scale = (LogNorm if geometric(np.sort(others)) else Normalize)(others.min(), others.max())
-    for k, (row, gone) in enumerate(zip(rows, flags, strict=True)):
+    for k, (row, flags) in enumerate(zip(rows, status, strict=True)):
         colour = COLOURS[k] if few else colormaps[MAP_COLOURS](scale(others[k]))
         ax.plot(across[order], row, f"{MARKERS[k] if few else ''}-", color=colour, markersize=3, label=names[k])
-        if output not in ALWAYS and gone.any():
-            border = np.ones(int(gone.sum()))
-            place = ax.get_xaxis_transform()
-            ax.plot(across[order][gone], border, "x", color=colour, clip_on=False, transform=place)
-    if output not in ALWAYS and fallen.any():
-        ax.plot([], [], "x", color="0.3", label="overturned")
+        for outcome in outcomes:
+            there = across[order][flags == outcome.flag]
+            ax.plot(
+                there,
+                np.ones(there.size),
+                outcome.marker,
+                color=colour,
+                clip_on=False,
+                transform=ax.get_xaxis_transform(),
+            )
+    for outcome in outcomes:
+        ax.plot([], [], outcome.marker, color="0.3", label=outcome.words)
     handles, texts = ax.get_legend_handles_labels()
     if not few:
         bar = ax.figure.colorbar(ScalarMappable(scale, colormaps[MAP_COLOURS]), ax=ax)
         bar.set_label(label(curves[str(curves.dims[0])]))
-        if isinstance(scale, LogNorm):
+        if other_words is not None:
+            bar.set_ticks(others.tolist(), labels=other_words)
+        elif isinstance(scale, LogNorm):
             set_log_ticks(bar.ax.yaxis)
         handles, texts = handles[len(rows) :], texts[len(rows) :]
     if texts and (curves.ndim > 1 or len(texts) > 1):

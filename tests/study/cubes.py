@@ -5,8 +5,6 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from study.status import OVERTURNED, REST, ROCKING
-
 
 def assert_identical(one: xr.Dataset, two: xr.Dataset) -> None:
     """Data variables and coordinates equal in every bit, attributes of the variables too."""
@@ -23,7 +21,7 @@ def assert_identical(one: xr.Dataset, two: xr.Dataset) -> None:
 
 def known_cube(random: np.random.Generator, shape: tuple[int, int, int] = (4, 5, 6)) -> xr.Dataset:
     """A cube of random outcomes over aspect_ratio, top_mass and pga (not sorted)."""
-    status = random.choice([0, REST, ROCKING, OVERTURNED, 4, 5], size=shape, p=[0.02, 0.4, 0.3, 0.24, 0.02, 0.02])
+    status = random.choice(range(7), size=shape, p=[0.02, 0.4, 0.3, 0.22, 0.02, 0.02, 0.02])
     pga = random.permutation(np.linspace(1.0, 6.0, shape[2]))
     cube = xr.Dataset(
         {"status": (("aspect_ratio", "top_mass", "pga"), status.astype(np.int8))},

@@ -92,7 +92,7 @@ def test_records_as_an_axis(tmp_path: Path) -> None:
 
 
 def test_export_keeps_every_digit(cube: xr.Dataset, tmp_path: Path) -> None:
-    path = export(cube, tmp_path / "cells.csv", outputs=["peak_rotation"], at={"pga": 2.0})
+    path = export(cube, tmp_path / "cells.csv", outputs=["peak_rotation"], at={"pga": "0.2 g"})
     with path.open(newline="") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 21

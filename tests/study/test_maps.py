@@ -8,10 +8,11 @@ import matplotlib
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib.axes import Axes
 
 import study.accessor  # noqa: F401
 from models.errors import InputError
-from study.figures import plot_onset_map, plot_overturning_map, plot_slices, save_figure
+from study.figures import plot_onset_map, plot_output_map, plot_overturning_map, plot_slices, save_figure
 from study.maps import default_axes
 from study.status import OVERTURNED, ROCKING, UNKNOWN
 from tests.study.cubes import known_cube
@@ -165,3 +166,71 @@ def test_figures_are_written_with_units_on_their_axes(cube: xr.Dataset, tmp_path
     with pytest.raises(InputError, match="end the name in"):
         save_figure(lambda: plot_onset_map(cube, "aspect_ratio", "top_mass"), tmp_path / "map.xyz")
     assert not matplotlib.pyplot.get_fignums()
+
+
+def drawn_patches(ax: Axes) -> dict[str, tuple[float, float, float, float]]:
+    """Colours of the legend by their words."""
+    legend = ax.get_legend()
+    assert legend is not None
+    return {
+        text.get_text(): patch.get_facecolor() for text, patch in zip(legend.texts, legend.get_patches(), strict=True)
+    }
+
+
+def test_a_map_of_an_output_shows_overturned_and_unknown_cells_as_what_they_are(tmp_path: Path) -> None:
+    cube = xr.Dataset(
+        {
+            "status": (("aspect_ratio", "pga"), np.array([[1, 2, 3], [4, 5, 6]], np.int8)),
+            "peak_rotation": (("aspect_ratio", "pga"), [[0.0, 0.02, np.pi / 2], [np.nan, np.nan, np.nan]]),
+        },
+        {"aspect_ratio": [0.1, 0.2], "pga": [1.0, 2.0, 3.0]},
+    )
+    seen: list[Axes] = []
+
+    def draw() -> Axes:
+        seen.append(plot_output_map(cube, "peak_rotation"))
+        return seen[-1]
+
+    save_figure(draw, tmp_path / "map.png")
+    legend = drawn_patches(seen[0])
+    assert set(legend) == {"overturned", "outside the model", "not converged", "failed"}
+    assert len(set(legend.values())) == 4
+    values = seen[0].collections[0].get_array()
+    assert values is not None
+    # the colours span what stands, not pi/2
+    assert float(np.ma.max(values)) == 0.02 and int(np.ma.count(values)) == 2
+    curves = plot_slices(cube, "peak_rotation", "pga")
+    assert {"overturned", "outside the model", "not converged"} <= {t.get_text() for t in curves.get_legend().texts}
+    matplotlib.pyplot.close("all")
+
+
+def test_a_smallest_intensity_hidden_by_an_unknown_cell_is_not_painted_as_standing() -> None:
+    status = np.array([[[1, 1], [5, 3]], [[2, 3], [1, 3]]], np.int8)
+    cube = xr.Dataset(
+        {"status": (("aspect_ratio", "top_mass", "pga"), status)},
+        {"aspect_ratio": [0.1, 0.2], "top_mass": [0.0, 1.0], "pga": [1.0, 2.0]},
+    )
+    for name, unit in (("aspect_ratio", "1"), ("top_mass", "kg"), ("pga", "m s-2")):
+        cube[name].attrs["units"] = unit
+    found = cube.rocking.overturning_map()
+    np.testing.assert_array_equal(found["unknown"].values, [[False, False], [True, False]])
+    np.testing.assert_array_equal(found.values, [[np.nan, 2.0], [np.nan, 2.0]])
+    legend = drawn_patches(plot_overturning_map(cube))
+    assert set(legend) == {"does not overturn up to 0.204 g", "unknown"}
+    matplotlib.pyplot.close("all")
+
+
+def test_an_axis_of_many_motions_shows_their_names() -> None:
+    names = [f"record {k}" for k in range(12)]
+    cube = xr.Dataset(
+        {
+            "status": (("motion", "pga"), np.full((12, 3), ROCKING, np.int8)),
+            "peak_rotation": (("motion", "pga"), np.arange(36.0).reshape(12, 3)),
+        },
+        {"motion": names, "pga": ("pga", [1.0, 2.0, 3.0], {"units": "m s-2"})},
+    )
+    curves = plot_slices(cube, "peak_rotation", "pga")
+    assert [text.get_text() for text in curves.figure.axes[1].get_yticklabels()] == names
+    for drawn in (plot_output_map(cube, "peak_rotation"), plot_overturning_map(cube)):
+        assert [text.get_text() for text in drawn.get_xticklabels()] == names
+    matplotlib.pyplot.close("all")

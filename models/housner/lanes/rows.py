@@ -60,7 +60,7 @@ N_RESULT = 13
 # flight, ringing with the base in full contact; only a rocking lane moves in the vector loop
 UP, DOWN, HELD, SLIDING, FLIGHT, RINGING = 0.0, 1.0, 2.0, 3.0, 4.0, 5.0
 
-REST, ROCKING, OVERTURNED, NOT_CONVERGED = 1.0, 2.0, 3.0, 4.0
+REST, ROCKING, OVERTURNED, NOT_CONVERGED = 1.0, 2.0, 3.0, 5.0
 
 # kinds of events in a log, in the order of `models.housner.lanes.run.EVENTS`
 LOG_ONSET, LOG_IMPACT, LOG_REST, LOG_OVERTURNED = 0.0, 1.0, 2.0, 3.0

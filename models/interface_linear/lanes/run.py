@@ -121,4 +121,4 @@ def outputs(wall: LayeredWall, table: NDArray[np.float64]) -> dict[str, NDArray[
     """The declared outputs, arrays ``(n,)``, from the table of results."""
     found = of_layers(wall, table)
     apart = (found["minimum_contact"] == 0.0) & (found["status"] != STATUS.index("not_converged"))
-    return {**found, "status": np.where(apart, STATUS.index("failed"), found["status"]).astype(np.int8)}
+    return {**found, "status": np.where(apart, STATUS.index("outside_model"), found["status"]).astype(np.int8)}
