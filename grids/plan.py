@@ -79,7 +79,7 @@ class Plan:
     """A checked plan. Numbers are SI; ``fixed`` holds "mechanism.parameter" keys too.
 
     An axis `motion` (or a case that sets `motion`) holds names of ``motions``; without one there is
-    a single motion. ``notes`` say what a reader decided.
+    a single motion. ``notes`` say what a reader decided; ``given_in_run``: the keys that [run] states itself.
     """
 
     name: str
@@ -95,6 +95,7 @@ class Plan:
     text: str
     specimen: Specimen | None = None
     notes: tuple[str, ...] = field(default=())
+    given_in_run: frozenset[str] = frozenset()
 
     @cached_property
     def grid(self) -> Grid:
@@ -164,6 +165,7 @@ def parse_plan(text: str, folder: Path) -> Plan:
         text=text,
         specimen=specimen,
         notes=notes,
+        given_in_run=frozenset(file.run.model_fields_set),
     )
 
 

@@ -14,9 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 import models
+from grids.entering import entering
 from grids.netcdf_lock import NETCDF_LOCK
 from grids.plan import Plan
-from models.base import Model, Quantity
+from models.base import Quantity
 from study.derived import derived_coordinates
 from study.keys import Setting
 from study.labels import Coordinate, axis_coordinates, describe, motion_coordinates
@@ -161,11 +162,12 @@ def _attributes(plan: Plan, setting: Setting, path: Path, started: str, schedule
         }
         for motion in plan.motions
     }
+    entries = entering(plan)
     provenance = {
         "plan": plan.text,
         "plan_sha256": sha256(plan.text),
         "setting": setting.record(),
-        "options": _words(plan, model),
+        "values": {e.name: {"value": e.value, "unit": e.unit, "source": e.source} for e in entries},
         "inputs": inputs,
         "versions": versions(),
         "commit": commit(),
@@ -179,15 +181,10 @@ def _attributes(plan: Plan, setting: Setting, path: Path, started: str, schedule
         "title": f"{plan.name}: {model.title}",
         "source": f"rocking-study {versions()['rocking-study']}, model {setting.model} {setting.version}",
         "model": setting.model,
+        "fixed_values": "; ".join(map(str, entries)),
         "history": "\n".join([*_old_history(path), f"{now()} rocking run {plan.name}"]),
         "provenance": as_json(provenance),
     }
-
-
-def _words(plan: Plan, model: Model) -> dict[str, str]:
-    """Every word that holds for all cells, defaults too."""
-    varied = {name for axis in plan.axes for name in axis.sets}
-    return {name: word for name, word in model.words(plan.options).items() if name not in varied}
 
 
 def _old_history(path: Path) -> list[str]:

@@ -14,10 +14,11 @@ def plan(
     plan: Annotated[Path, typer.Argument(help="Plan file (TOML).")],
     workers: Annotated[int | None, typer.Option(help="Blocks at once (default: one a core).")] = None,
 ) -> None:
-    """Check a plan and print axes, cells, blocks, bytes, memory a task and an estimate of the time."""
+    """Check a plan and print its axes, every value of its cells, blocks, bytes, memory a task and the time."""
     from rich.console import Console
     from rich.table import Table
 
+    from grids.entering import entering
     from grids.plan import read_plan
     from study.keys import Setting
     from study.schedulers import check_scheduler, count_workers
@@ -49,5 +50,10 @@ def plan(
     }
     for name, text in rows.items():
         console.print(f"{name:<14} {text}", highlight=False, soft_wrap=True)
+    values = Table("value of all cells", "", "unit", "from", "meaning")
+    for entry in entering(checked):
+        value = entry.value if isinstance(entry.value, str) else f"{entry.value:.6g}"
+        values.add_row(entry.name, value, entry.unit, entry.source, entry.meaning)
+    console.print(values)
     for note in checked.notes:
         console.print(f"note: {note}", highlight=False, soft_wrap=True)

@@ -51,6 +51,9 @@ def test_plan_prints_what_it_costs() -> None:
     assert result.exit_code == 0
     for word in ("aspect_ratio", "top_mass", "168", "blocks", "cube", "memory a task", "time", "on one core"):
         assert word in result.stdout
+    lines = result.stdout.splitlines()
+    for name, value, source in (("height", "1.8", "plan"), ("gravity", "9.80665", "default"), ("tail", "2", "plan")):
+        assert any(name in line and value in line and source in line for line in lines), name
     assert not Path("results").exists()
 
 

@@ -73,7 +73,12 @@ def test_provenance_stands_in_one_place(cube: xr.Dataset) -> None:
     assert found["plan"] == plan_text() and found["plan_sha256"] == sha256(plan_text())
     assert found["inputs"]["ridgecrest_2019_clc"]["fingerprint"]
     assert {"versions", "commit", "host", "started", "finished"} <= found.keys()
-    assert found["options"] == {"formulation": "nonlinear"}, "the words that the plan leaves to the model"
+    values = {name: (entry["value"], entry["unit"], entry["source"]) for name, entry in found["values"].items()}
+    assert values["height"] == (1.8, "m", "plan") and values["tail"] == (2.0, "s", "plan")
+    assert values["gravity"] == (9.80665, "m s-2", "default"), "the values that the plan leaves to the model too"
+    assert values["formulation"] == ("nonlinear", "1", "default") and values["integrator"] == ("lanes", "1", "default")
+    assert not {"pga", "aspect_ratio", "top_mass"} & values.keys()
+    assert "gravity = 9.80665 m s-2 (default)" in cube.attrs["fixed_values"]
     for name in cube.variables:
         assert found["host"] not in str(cube[name].attrs)
 
