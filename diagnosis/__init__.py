@@ -13,10 +13,10 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from diagnosis.answer import diagnose
-    from diagnosis.calibration import calibrate
+    from diagnosis.answer.calibration import calibrate
+    from diagnosis.answer.diagnose import diagnose
 
-_WHERE = {"calibrate": "diagnosis.calibration", "diagnose": "diagnosis.answer"}
+_WHERE = {"calibrate": "diagnosis.answer.calibration", "diagnose": "diagnosis.answer.diagnose"}
 
 __all__ = ["calibrate", "diagnose"]
 

@@ -13,15 +13,19 @@ FILES = sorted(path for room in ORDER for path in (ROOT / room).rglob("*.py"))
 LONGEST = 400
 
 
-def imported_rooms(path: Path) -> set[str]:
+def imported_modules(path: Path) -> set[str]:
     found: set[str] = set()
     for node in ast.walk(ast.parse(path.read_text())):
         if isinstance(node, ast.Import):
-            found.update(alias.name.split(".")[0] for alias in node.names)
+            found.update(alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{path.relative_to(ROOT)}: relative import"
-            found.add((node.module or "").split(".")[0])
-    return found & set(ORDER)
+            found.add(node.module or "")
+    return found
+
+
+def imported_rooms(path: Path) -> set[str]:
+    return {module.split(".")[0] for module in imported_modules(path)} & set(ORDER)
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda p: p.relative_to(ROOT).as_posix())
@@ -34,3 +38,16 @@ def test_a_room_imports_only_rooms_below_it(path: Path) -> None:
 @pytest.mark.parametrize("path", FILES, ids=lambda p: p.relative_to(ROOT).as_posix())
 def test_no_file_is_too_long(path: Path) -> None:
     assert len(path.read_text().splitlines()) <= LONGEST
+
+
+FOLDERS = ("data", "fit", "forces", "search", "answer", "report")
+"""Of the diagnosis, the way of a recording: each imports those before it. ``progress`` serves all of them."""
+STEPS = sorted(path for folder in FOLDERS for path in (ROOT / "diagnosis" / folder).rglob("*.py"))
+
+
+@pytest.mark.parametrize("path", STEPS, ids=lambda p: p.relative_to(ROOT).as_posix())
+def test_the_diagnosis_imports_in_the_order_of_its_folders(path: Path) -> None:
+    allowed = {"progress", *FOLDERS[: FOLDERS.index(path.relative_to(ROOT).parts[1]) + 1]}
+    for module in imported_modules(path):
+        room, _, rest = module.partition(".")
+        assert room != "diagnosis" or rest.partition(".")[0] in allowed, module

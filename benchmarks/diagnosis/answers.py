@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.diagnosis.files import read_json, write_json
-from diagnosis.result import Diagnosis, Effect
+from diagnosis.answer.result import Diagnosis, Effect
 
 ROOMS = ("models", "grids/recordings", "diagnosis")
 ROOT = Path(__file__).resolve().parents[2]

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from diagnosis.answer.result import Diagnosis
 from diagnosis.report.extended import extend
 from diagnosis.report.fit_file import write_fit
 from diagnosis.report.json_file import as_mapping, diagnosis_json
-from diagnosis.result import Diagnosis
 from grids.recordings import Recording
 from grids.specimen import Specimen
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from diagnosis.result import Diagnosis
+from diagnosis.answer.result import Diagnosis
 from grids.specimen import Specimen
 
 BASES = {"second_body": "stacked", "compliant_base": "interface"}

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from diagnosis.result import Diagnosis, Trace, Windows
+from diagnosis.answer.result import Diagnosis, Trace, Windows
 
 if TYPE_CHECKING:
     import xarray as xr

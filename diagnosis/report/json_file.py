@@ -6,7 +6,8 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from diagnosis.result import Diagnosis, Estimate, Fit, Undecided
+from diagnosis.answer.result import Diagnosis, Fit, Undecided
+from diagnosis.fit.intervals import Estimate
 from study.provenance import as_json
 
 

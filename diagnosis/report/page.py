@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import models
-from diagnosis.heldout import HORIZON
+from diagnosis.answer.heldout import HORIZON
+from diagnosis.answer.result import Diagnosis, Rival, Windows
 from diagnosis.report import words
 from diagnosis.report.suspects import Suspect, suspect_of
-from diagnosis.result import Diagnosis, Rival, Windows
 from grids.recordings import CHANNELS, Recording, noise_levels
 from grids.specimen import Specimen
 
@@ -123,7 +123,7 @@ def _rivals(diagnosis: Diagnosis) -> list[tuple[Rival, Suspect, str]]:
 
 def _window_counts(windows: Sequence[Windows]) -> dict[str, int]:
     """Windows in all, and those where the models miss the recording by more than the noise explains."""
-    from diagnosis.figures.levels import BORDERS
+    from diagnosis.report.figures.levels import BORDERS
 
     return {
         "all": sum(strip.before.size for strip in windows),

@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
-from diagnosis.figures import (
+from diagnosis.answer.result import Diagnosis
+from diagnosis.report.figures import (
     plot_before_after,
     plot_fits,
     plot_missing_force,
@@ -17,7 +18,6 @@ from diagnosis.figures import (
     plot_suspects,
 )
 from diagnosis.report.svg import Draw, Picture, picture
-from diagnosis.result import Diagnosis
 from grids.recordings import Recording
 from grids.specimen import Specimen
 from study.store import write_text

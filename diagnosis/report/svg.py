@@ -10,8 +10,8 @@ from typing import Protocol
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 
-from diagnosis.figures.palette import PAPER, Palette
-from diagnosis.figures.panels import NARROW, WIDE, figure_of
+from diagnosis.report.figures.palette import PAPER, Palette
+from diagnosis.report.figures.panels import NARROW, WIDE, figure_of
 
 ROLES = {"#000001": "ink", "#000002": "before", "#000003": "accent", "#000004": "faint", "#000005": "band"}
 """Colours that stand for the page's custom properties while a figure is drawn."""
@@ -20,7 +20,7 @@ NAMESPACES = 'xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/
 
 
 class Draw(Protocol):
-    """A figure function of `diagnosis.figures` that has its data."""
+    """A figure function of `diagnosis.report.figures` that has its data."""
 
     def __call__(self, *, width: float = ..., palette: Palette = ...) -> Axes | tuple[Axes, ...]: ...
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from diagnosis.forces import KINDS
-from diagnosis.result import LEAST_P, Estimate
-from diagnosis.statement import WHERE
+from diagnosis.answer.statement import WHERE
+from diagnosis.fit.intervals import Estimate
+from diagnosis.forces.columns import KINDS
+from diagnosis.search.null import LEAST_P
 
 CHANNEL_WORDS = {
     "base_acceleration_x": "base acceleration, horizontal",

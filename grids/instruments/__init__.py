@@ -1,6 +1,6 @@
 """The catalogue of what instruments do to a signal, one file a sensor mechanism.
 
-`moved` and `recorded` apply them to whole records; windows are treated in `diagnosis.prediction`.
+`moved` and `recorded` apply them to whole records; windows are treated in `diagnosis.fit.prediction`.
 """
 
 from __future__ import annotations

@@ -12,8 +12,8 @@ from rocking.commands.recordings import read_recordings, stages
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from diagnosis.calibration import Calibration
-    from diagnosis.result import Estimate
+    from diagnosis.answer.calibration import Calibration
+    from diagnosis.fit.intervals import Estimate
 
 
 def calibrate(

@@ -13,7 +13,7 @@ from models.errors import InputError
 from rocking.command import INTERRUPTED
 
 if TYPE_CHECKING:
-    from diagnosis.select import Progress
+    from diagnosis.progress import Progress
     from grids.recordings import Recording
 
 
@@ -22,7 +22,7 @@ def read_recordings(paths: Sequence[Path], held_out: Sequence[Path] = ()) -> lis
 
     Raises InputError for a recording given twice, or two that share a name.
     """
-    from diagnosis.measured import left_out
+    from diagnosis.data.measured import left_out
     from grids.recordings import read_recording
 
     seen: dict[str, Path] = {}

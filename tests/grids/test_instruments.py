@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diagnosis.prediction import read_at
+from diagnosis.fit.prediction import read_at
 from grids.instruments import INSTRUMENTS, moved, recorded
 from grids.instruments.base import Surroundings
 from models.shaking import Shaking

@@ -33,7 +33,7 @@ def run(*words: str) -> tuple[int, str, str]:
 @pytest.fixture
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """The engine answers at once."""
-    monkeypatch.setattr("diagnosis.answer.diagnose", lambda *_, **__: diagnosis("nothing_missing"))
+    monkeypatch.setattr("diagnosis.answer.diagnose.diagnose", lambda *_, **__: diagnosis("nothing_missing"))
 
 
 @pytest.mark.usefixtures("quick")
@@ -174,6 +174,6 @@ def test_ctrl_c_elsewhere_ends_the_command(tmp_path: Path, monkeypatch: pytest.M
     def interrupted(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("diagnosis.answer.diagnose", interrupted)
+    monkeypatch.setattr("diagnosis.answer.diagnose.diagnose", interrupted)
     code, _, err = run("diagnose", BLOCK, FIRST, "--out", str(tmp_path))
     assert code == 130 and "nothing was written" in err

@@ -8,19 +8,9 @@ from typing import Any
 import numpy as np
 
 import models
-from diagnosis.result import (
-    Constancy,
-    Diagnosis,
-    Effect,
-    Estimate,
-    Fit,
-    Located,
-    Rival,
-    Screened,
-    Trace,
-    Verdict,
-    Windows,
-)
+from diagnosis.answer.result import Diagnosis, Effect, Fit, Located, Rival, Screened, Trace, Verdict, Windows
+from diagnosis.fit.intervals import Estimate
+from diagnosis.forces.constancy import Constancy
 from grids.motions import read_motion
 from grids.recordings import Recording
 from grids.specimen import Specimen

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.patches import PathPatch
 
-from diagnosis.figures import (
+from diagnosis.report.figures import (
     plot_before_after,
     plot_fits,
     plot_missing_force,
@@ -19,9 +19,9 @@ from diagnosis.figures import (
     plot_raster,
     plot_suspects,
 )
-from diagnosis.figures.curve import MOST_POINTS, thin
-from diagnosis.figures.levels import BORDERS, DEPTHS, level_of
-from diagnosis.figures.phase_plane import noise_of_trace
+from diagnosis.report.figures.curve import MOST_POINTS, thin
+from diagnosis.report.figures.levels import BORDERS, DEPTHS, level_of
+from diagnosis.report.figures.phase_plane import noise_of_trace
 from diagnosis.report.svg import _relative, picture
 from tests.diagnosis.report.example import FORCE, SIGMA, diagnosis, specimen
 

@@ -12,10 +12,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from diagnosis.answer.result import Effect, Verdict
+from diagnosis.fit.intervals import Estimate
 from diagnosis.report import diagnosis_json, extend
 from diagnosis.report.pictures import write_figures
 from diagnosis.report.svg import Picture
-from diagnosis.result import Effect, Estimate, Verdict
 from grids.write_specimen import write_specimen
 from models.shaking import Shaking
 from rocking import read_specimen

@@ -11,11 +11,11 @@ from typing import get_args
 
 import pytest
 
-from diagnosis.figures import plot_raster
+from diagnosis.answer.result import Diagnosis, Verdict
+from diagnosis.report.figures import plot_raster
 from diagnosis.report.page import report_page
 from diagnosis.report.pictures import drawings
 from diagnosis.report.svg import Picture, picture
-from diagnosis.result import Diagnosis, Verdict
 from tests.diagnosis.report.example import diagnosis, recordings, specimen
 
 VOID = {"meta", "br", "hr", "img", "link", "input"}

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from diagnosis.fit.intervals import Estimate
 from diagnosis.report import words
-from diagnosis.result import Estimate
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,139 @@
+"""Calibrating a specimen's base model on recordings: estimates, intervals, correlation, drift."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from diagnosis.answer.heldout import frozen, relative_misfit
+from diagnosis.data.measured import Measured
+from diagnosis.fit.intervals import Estimate, correlation, estimates, profile_rise
+from diagnosis.fit.setup import base_fit, measure
+from diagnosis.fit.solver import Fitted
+from diagnosis.progress import Progress, silent
+from diagnosis.search.refit import Explanation
+from grids.recordings.base import Recording
+from grids.specimen import Specimen
+from models.base import FloatArray
+from models.errors import InputError
+
+PROFILE_POINTS = (-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0)
+"""Half widths of the interval at which a profile is evaluated, over 1.96."""
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """Fitted base parameters.
+
+    ``correlation`` (k, k) in the order of ``parameters``; ``misfit`` relative rms, states estimated as
+    `diagnose` does for its "before", ``noise_floor`` the same of the noise; ``profiles``: by parameter,
+    values and the rise of the loss (-2 log likelihood) over the optimum; ``by_recording``: the same
+    estimates from each recording alone (the drift), with several recordings.
+    """
+
+    parameters: Mapping[str, Estimate]
+    correlation: FloatArray
+    misfit: float
+    noise_floor: float
+    misfit_per_sample: float
+    windows: int
+    profiles: Mapping[str, tuple[FloatArray, FloatArray]] = field(default_factory=dict)
+    by_recording: Mapping[str, Mapping[str, Estimate]] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        lines = [f"{'parameter':<24}{'estimate':>12}{'low 95 %':>12}{'high 95 %':>12}  unit"]
+        for name, value in self.parameters.items():
+            bound = f"  at its {value.at_bound} bound" if value.at_bound else ""
+            lines.append(
+                f"{name:<24}{value.estimate:>12.6g}{value.low95:>12.6g}{value.high95:>12.6g}  {value.unit}{bound}"
+            )
+        lines.append(
+            f"misfit {self.misfit:.4f} of the signal (noise {self.noise_floor:.4f}), "
+            f"{self.misfit_per_sample:.3f} times the noise variance, {self.windows} windows"
+        )
+        return "\n".join(lines)
+
+
+def calibrate(
+    specimen: Specimen,
+    recordings: Sequence[Recording],
+    *,
+    profile: bool = True,
+    seed: int = 0,
+    progress: Progress = silent,
+) -> Calibration:
+    """Fit the toleranced parameters and those of [calibrate]; no mechanism is looked for.
+
+    ``progress`` is called with (what is being done, share done). Raises InputError when nothing is
+    uncertain or nothing can be compared.
+    """
+    if not specimen.tolerance and not specimen.calibrate:
+        raise InputError(
+            f"nothing to calibrate in '{specimen.title}': no parameter has a [tolerance] or a range in [calibrate]; "
+            "give one, for instance [tolerance] width = 0.005 (one sigma, relative)."
+        )
+    measured = measure(specimen, recordings)
+    alone = list(recordings) if len(recordings) > 1 else []
+    profiles = len(specimen.tolerance) + len(specimen.calibrate) if profile else 0
+    steps = _steps(progress, 1 + len(alone) + 2 * profiles)
+    steps("fitting all recordings together")
+    fitted = base_fit(specimen, measured, seed)
+    by_recording = {}
+    for recording in alone:
+        steps(f"fitting {recording.name} alone")
+        by_recording[recording.name] = estimates(
+            base_fit(specimen, measure(specimen, [recording], measured.reference_peak), seed)
+        )
+    return _summary(fitted, measured, profile, by_recording, steps)
+
+
+def _steps(progress: Progress, count: int) -> Callable[[str], None]:
+    """Tells ``progress`` of ``count`` steps of about the same length, as each begins."""
+    begun = iter(range(count))
+    return lambda text: progress(text, next(begun) / count)
+
+
+def _summary(
+    fitted: Fitted,
+    measured: Measured,
+    profile: bool,
+    by_recording: Mapping[str, Mapping[str, Estimate]],
+    steps: Callable[[str], None],
+) -> Calibration:
+    misfit = fitted.misfit
+    names = [x.name for x in misfit.unknowns]
+    point = fitted.point
+    residual = misfit.residuals([point])[0]
+    found = estimates(fitted)
+    profiles = {}
+    if profile:
+        for name in names:
+            steps(f"interval of {name} by profile likelihood")
+            found[name] = estimates(fitted, [name])[name]
+        for i, name in enumerate(names):
+            steps(f"profile of {name}")
+            profiles[name] = _profile(fitted, i, found[name])
+    _, predicted = frozen(Explanation((), fitted), measured)
+    return Calibration(
+        parameters=found,
+        correlation=correlation(fitted),
+        misfit=relative_misfit(measured, predicted),
+        noise_floor=relative_misfit(measured, None),
+        misfit_per_sample=float(np.sum(residual**2) / measured.count.sum()),
+        windows=len(measured.windows),
+        profiles=profiles,
+        by_recording=by_recording,
+    )
+
+
+def _profile(fitted: Fitted, index: int, estimate: Estimate) -> tuple[FloatArray, FloatArray]:
+    """Values of one parameter and the rise of the loss with all others refitted."""
+    unknown = fitted.misfit.unknowns[index]
+    low, high = unknown.bounds
+    ends = sorted(unknown.coordinate(end) for end in (estimate.low95, estimate.high95))
+    half = 0.5 * (ends[1] - ends[0]) / 1.96
+    at = np.unique(np.clip(fitted.u[index] + half * np.array(PROFILE_POINTS), low, high))
+    rise = [profile_rise(fitted, index, float(u)) for u in at]
+    return np.array([unknown.value(float(u)) for u in at]), np.array(rise)

@@ -1,0 +1,235 @@
+"""The whole chain: calibrate, screen, name, test, locate, show, say."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from diagnosis.answer.experiment import next_experiment
+from diagnosis.answer.heldout import Shown, compare, fit_figures, horizons, traces_of, windows_of
+from diagnosis.answer.judgement import explains, p_of_effects, p_of_missing, undecided, verdict_of
+from diagnosis.answer.locate import locate
+from diagnosis.answer.rescale import to_true_peak
+from diagnosis.answer.result import Diagnosis, Effect, Located, Rival, Screened
+from diagnosis.answer.statement import statement
+from diagnosis.answer.whole_runs import with_runs_from_rest
+from diagnosis.data.measured import Measured
+from diagnosis.fit.intervals import Estimate, estimates
+from diagnosis.fit.setup import base_fit, measure
+from diagnosis.forces.columns import Forces, forces
+from diagnosis.forces.constancy import Tested, flags, tests
+from diagnosis.forces.missing_force import missing_force
+from diagnosis.progress import Progress, Stages, silent
+from diagnosis.search import bootstrap as bootstrapping
+from diagnosis.search.candidates import candidates
+from diagnosis.search.found import Search, evidence, misfit_per_sample, rivals
+from diagnosis.search.refit import Explanation
+from diagnosis.search.select import search, take_best_single
+from grids.instruments import INSTRUMENTS
+from grids.recordings.base import Recording
+from grids.specimen import Specimen
+
+
+def diagnose(
+    specimen: Specimen,
+    training: Sequence[Recording],
+    holdout: Sequence[Recording] = (),
+    *,
+    bootstrap: int = 0,
+    progress: Progress = silent,
+    seed: int = 0,
+) -> Diagnosis:
+    """What the model leaves out, from ``training``, shown on ``holdout``.
+
+    ``bootstrap``: draws of a parametric bootstrap for the p-value (0: the score's null distribution).
+    ``progress`` is called with (what is being done, share done). A KeyboardInterrupt during the search
+    ends it: the answer holds what was found so far and has ``finished`` false. One after the search leaves
+    out what the answer can do without (``skipped``); a second one is raised. Raises InputError.
+    """
+    progress("calibrating the base model", 0.02)
+    measured = measure(specimen, training)
+    held = measure(specimen, holdout, measured.reference_peak) if holdout else None  # a poor one is told at once
+    base = Explanation((), base_fit(specimen, measured, seed))
+    found = Search(base, candidates(measured, specimen))
+    finished = True
+    try:
+        for stage in search(base, found.candidates, progress):
+            found = stage
+    except KeyboardInterrupt:
+        finished = False
+        if found.best is None:
+            take_best_single(found)
+    return _assemble(specimen, found, held, bootstrap, progress, seed, finished)
+
+
+def _assemble(
+    specimen: Specimen,
+    found: Search,
+    to_show: Measured | None,
+    draws: int,
+    progress: Progress,
+    seed: int,
+    finished: bool,
+) -> Diagnosis:
+    stages = Stages(stopped=not finished)
+    measured = found.measured
+    shown = [stages.needed(lambda: compare(found.base, found.chosen, measured))]
+    unexplained = not explains(shown[0])
+    if unexplained:  # what a model says that explains nothing is no name
+        found = replace(found, best=None, outside=None)
+        shown = [replace(shown[0], after=shown[0].before, point_after=shown[0].point_before)]
+    chosen = found.chosen
+
+    def of_chosen() -> Forces:
+        progress("testing constancy", 0.85)
+        return forces(chosen.fitted)
+
+    about = stages.needed(of_chosen)
+    tested = stages.needed(lambda: tests(about))
+    flagged = () if unexplained else flags(tested, found.more)
+    if found.outside is not None:
+        flagged = (found.outside, *(f for f in flagged if f.parameter != found.outside.parameter))
+    near = rivals(found)
+    verdict = verdict_of(found, near, bool(flagged), not unexplained, finished)
+    gains = stages.needed(lambda: evidence(found).tolist())
+    p_value = p_of_missing(found, gains, finished)
+    if draws and finished:
+        score_p = p_value
+        p_value = stages.optional(
+            "the bootstrap (the p-value is that of the score)",
+            lambda: bootstrapping.p_value(specimen, found, draws, seed, progress),
+            lambda: score_p,
+        )
+    effects, base = stages.optional(
+        "the profile likelihood (the intervals are symmetric instead)",
+        lambda: _estimates(found, gains, p_value, progress),
+        lambda: _estimates(found, gains, p_value, None),
+    )
+
+    def of_held(recordings: Measured) -> Shown:
+        progress("before and after", 0.95)
+        return compare(found.base, chosen, recordings)
+
+    held = stages.needed(lambda: of_held(to_show)) if to_show else None
+    if held:
+        shown.append(held)
+    missing = verdict != "nothing_missing" and (finished or bool(effects))
+    train = fit_figures(shown[0], missing)
+    held_fit = fit_figures(held, missing) if held else None
+
+    def where() -> tuple[Located, ...]:
+        at_base = tests(forces(found.base.fitted)) if found.best is not None else tested
+        sensors_only = bool(effects) and all(e.name in INSTRUMENTS for e in effects)
+        explained = found.best is not None and verdict != "not_in_library"
+        return locate(shown[0], at_base, sensors_only, explained, seed) if missing else ()
+
+    experiment, force = None, None
+    if finished and verdict == "cannot_tell_apart":
+        experiment = stages.optional("the next experiment", lambda: next_experiment(found, near), lambda: None)
+    if verdict == "not_in_library" and not unexplained:
+        force = stages.optional("the shape of the missing force", lambda: missing_force(about, tested), lambda: None)
+    answer = Diagnosis(
+        verdict=verdict,
+        statement="",
+        effects=effects,
+        rivals=tuple(Rival(c.name, c.effect_class, gap) for _, c, gap in near),
+        located=stages.needed(where),
+        constancy=flagged,
+        train=train,
+        holdout=held_fit,
+        base=base,
+        screen=_screened(found),
+        null_band=found.null.band if found.null else 0.0,
+        p_value=p_value,
+        next_experiment=experiment,
+        windows=tuple(w for k, s in enumerate(shown) for w in windows_of(s, k == 1)),
+        traces=stages.optional(
+            "runs from rest",
+            lambda: with_runs_from_rest(specimen, shown, found.base, chosen),
+            lambda: tuple(t for k, s in enumerate(shown) for t in traces_of(s, k == 1)),
+        ),
+        prediction_horizon=stages.optional("prediction horizons", lambda: _horizons(shown, specimen), dict),
+        missing_force=force,
+        provenance=_provenance(specimen, found, tested, seed),
+        finished=finished,
+        undecided=undecided(found, p_value) if verdict == "nothing_missing" else None,
+        unexplained=unexplained,
+        suspicions={r.name: r.suspicions for s in shown for r in s.measured.recordings if r.suspicions},
+    )
+    known = {**measured.model.mechanisms, **INSTRUMENTS}
+    answer = replace(answer, skipped=tuple(stages.skipped) if finished else ())
+    return replace(answer, statement=statement(answer, known))
+
+
+def _estimates(
+    found: Search, gains: Sequence[float], p_missing: float | None, progress: Progress | None
+) -> tuple[tuple[Effect, ...], dict[str, Estimate]]:
+    """Effects, strongest first, and base parameters; by profile likelihood where there is a ``progress`` to tell."""
+    chosen = found.chosen
+    if progress:
+        progress("intervals", 0.9)
+    named = [x.name for c in chosen.candidates for x in c.unknowns[:1]]
+    values = estimates(chosen.fitted, named if progress else ())
+    chances = p_of_effects(found, gains)
+    if len(chances) == 1 and p_missing is not None:  # of the one effect it may be the bootstrap's
+        chances = [p_missing]
+    effects = []
+    order = sorted(zip(chosen.candidates, gains, chances, strict=True), key=lambda entry: -entry[1])
+    for candidate, gain, chance in order:
+        parameters = {x.name.partition(".")[2]: values.pop(x.name) for x in candidate.unknowns}
+        for name, value in candidate.held.items():
+            short = name.partition(".")[2]
+            parameters[short] = Estimate(value, value, value, candidate.mechanism.parameter(short).unit)
+        parameters = to_true_peak(chosen, candidate, parameters)
+        effects.append(Effect(candidate.name, candidate.effect_class, parameters, gain, chance))
+    return tuple(effects), values
+
+
+def _screened(found: Search) -> tuple[Screened, ...]:
+    fits = {e.candidates[0]: e for e in reversed(found.singles)}
+    lines: dict[str, Screened] = {}
+    for entry in found.scores:
+        fit = fits.get(entry.candidate)
+        estimate = None
+        if fit is not None:
+            own = {x.name for x in entry.candidate.unknowns}
+            estimate = {k.partition(".")[2]: v for k, v in fit.fitted.values.items() if k in own}
+        line = Screened(
+            entry.candidate.name,
+            entry.candidate.effect_class,
+            entry.statistic,
+            found.base.loss - fit.loss if fit else None,
+            estimate,
+        )
+        if line.name not in lines or (line.gain or 0.0) > (lines[line.name].gain or 0.0):
+            lines[line.name] = line
+    return tuple(sorted(lines.values(), key=lambda s: -max(s.score, s.gain or 0.0)))
+
+
+def _horizons(shown: Sequence[Shown], specimen: Specimen) -> dict[str, tuple[float, float]]:
+    return {k: v for s in shown for k, v in horizons(s, dict(specimen.options)).items()}
+
+
+def _provenance(specimen: Specimen, found: Search, tested: Sequence[Tested], seed: int) -> Mapping[str, Any]:
+    measured = found.measured
+    units = {q.name: q.unit for q in measured.model.observables}
+    return {
+        "specimen": specimen.title,
+        "model": specimen.model,
+        "model_version": measured.model.version,
+        "recordings": [r.name for r in measured.recordings],
+        "windows": len(measured.windows),
+        "channels": list(measured.channels),
+        "noise": {
+            c: {"sigma": np.unique(measured.sigma[:, k]).tolist(), "unit": units[c]}
+            for k, c in enumerate(measured.channels)
+        },
+        "misfit_per_sample": misfit_per_sample(found.chosen),
+        "constancy_threshold": found.more,
+        "largest_constancy": tested[0].statistic if tested else 0.0,
+        "largest_constancy_of": f"{tested[0].kind} / {tested[0].depends_on}" if tested else "",
+        "seed": seed,
+    }

@@ -1,0 +1,150 @@
+"""What would tell the rivals apart: a recording, a sensor, or a test that needs no shaking.
+
+For an explanation A and its rival B the expected evidence of an experiment is what B, refitted within
+what it has learnt (covariance V of its estimates), misses of A's noise-free windows:
+
+    gain = min over du of |r + J du|^2 + du' V^-1 du
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from diagnosis.answer.whole_runs import sensed_run
+from diagnosis.data.measured import arrange
+from diagnosis.fit.intervals import covariances
+from diagnosis.fit.misfit import Misfit, reduce
+from diagnosis.fit.prediction import Predictor
+from diagnosis.fit.whitening import sensor_noise_only
+from diagnosis.search.candidates import Candidate
+from diagnosis.search.found import Search
+from diagnosis.search.refit import Explanation
+from grids.recordings.base import REQUIRED, Recording
+from models.errors import InputError
+
+SCALES = (0.7, 1.0, 1.4)
+NEW_SENSOR_NOISE = 0.01
+"""Of the peak of a channel that is not measured yet."""
+
+STATIC_TESTS: Mapping[str, str] = {
+    "gain": "calibrate the rotation sensors statically",
+    "offset": "read the rotation sensors at rest before and after a run",
+    "saturation": "look up the range of the rotation sensors",
+    "base_gain": "calibrate the accelerometer of the base",
+    "accelerometer_offset": "read the accelerometer of the base at rest",
+    "cross_axis": "shake the table with the block tied down and read the rotation sensors",
+    "delay": "put one signal on a response and a base channel and compare the times",
+    "clock": "put one signal on a response and a base channel and compare the times at start and end",
+    "filter": "look up the filter settings of the logger",
+    "tilt": "put a level on the base",
+    "eccentricity": "turn the block by 180 degrees and repeat a run",
+    "table_pitch": "measure the pitch of the table with the block on it",
+    "pivot_inset": "push the block over slowly and read the force at which it lifts",
+    "rounded_corner": "push the block over slowly and read force over rotation",
+    "crushing": "inspect the corners and push the block over slowly before and after a run",
+    "added_stiffness": "push the block over slowly and read force over rotation",
+    "flexible_joint": "push the block slowly and read the rotation before it lifts",
+    "restitution": "let the block rock freely from a held rotation",
+    "velocity_restitution": "let the block rock freely from several held rotations",
+    "viscous_damping": "let the block rock freely from several held rotations",
+    "coulomb_damping": "let the block rock freely and follow the last small swings",
+    "quadratic_damping": "let the block rock freely from several held rotations",
+    "degradation": "repeat a run and compare",
+    "sliding": "mark the base before a run and look for a shift after it",
+    "wall_flexibility": "tap the standing wall and read its first frequency",
+    "bounce": "film an impact, or add a vertical accelerometer at a corner",
+    "vertical_acceleration": "repeat a run without vertical shaking",
+}
+
+
+def next_experiment(found: Search, near: Sequence[tuple[Explanation, Candidate, float]]) -> Mapping[str, Any] | None:
+    """The best recording, the best extra sensor and a static test that would separate the first rivals."""
+    best = found.chosen
+    own = set(best.classes)
+    other = next((e for e, c, _ in near if c.effect_class not in own), None)
+    if other is None:
+        return None
+    measured = best.measured
+    bank = {}
+    for recording in measured.recordings:
+        for scale in SCALES:
+            made = _made(best, recording, scale, measured.channels)
+            gain = _expected(best, other, made) if made is not None else 0.0
+            bank[recording.name, scale] = gain
+    (name, scale), expected = max(bank.items(), key=lambda item: item[1])
+    mine = [c for c in best.candidates if c.name not in other.names]
+    theirs = [c for c in other.candidates if c.name not in best.names]
+    pair = [c.name for c in (*mine, *theirs)]
+    return {
+        "separates": pair,
+        "recording": {"base_motion": name, "scale": scale, "expected_evidence": expected},
+        "sensor": _sensor(best, other),
+        "static_test": "; or ".join(dict.fromkeys(STATIC_TESTS[n] for n in pair if n in STATIC_TESTS)),
+    }
+
+
+def _sensor(best: Explanation, other: Explanation) -> Mapping[str, Any] | None:
+    """The channel of the model that is not recorded yet and would say most, on the same runs."""
+    measured = best.measured
+    free = [q.name for q in measured.model.observables if q.name not in (*measured.channels, "contact_1", "contact_2")]
+    gains = {}
+    for name in free:
+        made = [_made(best, r, 1.0, (*measured.channels, name)) for r in measured.recordings]
+        gains[name] = sum(_expected(best, other, m) for m in made if m is not None)
+    if not gains:
+        return None
+    name, expected = max(gains.items(), key=lambda item: item[1])
+    return {"channel": name, "noise": f"{NEW_SENSOR_NOISE:.0%} of its peak", "expected_evidence": expected}
+
+
+def _made(explanation: Explanation, recording: Recording, scale: float, channels: Sequence[str]) -> Recording | None:
+    """What the explanation predicts for a base motion, with noise as recorded or assumed."""
+    measured = explanation.measured
+    base = {k: v * scale for k, v in recording.channels.items() if k.startswith("base_acceleration")}
+    motion = replace(recording, channels={**recording.channels, **base})
+    ran = sensed_run(explanation, measured, motion, channels)
+    rng = np.random.default_rng(0)
+    found = dict(base)
+    for name, values in ran.items():
+        known = [c for c in measured.channels if c == name]
+        sigma = float(measured.sigma[:, measured.channels.index(name)].mean()) if known else 0.0
+        sigma = sigma or NEW_SENSOR_NOISE * float(np.max(np.abs(values)))
+        found[name] = values + sigma * rng.normal(size=values.size)
+    if not np.all(np.isfinite(found[measured.channels[0]])) or np.max(np.abs(ran[measured.channels[0]])) > 1.0:
+        return None
+    return replace(recording, channels={**found, REQUIRED: base[REQUIRED]})
+
+
+def _expected(truth: Explanation, rival: Explanation, made: Recording) -> float:
+    """Expected evidence for ``truth`` over ``rival`` from one more recording."""
+    fitted = rival.fitted
+    measured = fitted.measured
+    acts = measured.shakings[0].vertical is not None and measured.shakings[0].vertical_acts
+    try:
+        windows = arrange(measured.model, [made], acts, measured.reference_peak)
+    except InputError:
+        return 0.0
+    options = fitted.misfit.predictor.options
+    predictor = Predictor(windows, options)
+    misfit = Misfit(predictor, sensor_noise_only(predictor), fitted.misfit.unknowns, fitted.misfit.fixed)
+    true = truth.fitted
+    own = Misfit(predictor, misfit.whitening, true.misfit.unknowns, true.misfit.fixed)
+    from diagnosis.fit.solver import fit
+
+    states = fit(replace(own, unknowns=(), fixed={**own.fixed, **true.values}), np.zeros(0), windows.states).states
+    clean = predictor.predict([own.point(true.u, states)])[0]
+    exact = replace(misfit, predictor=replace(predictor, measured=replace(windows, values=clean * windows.mask)))
+    linear = exact.linearise(fitted.u, states)
+    reduced = reduce(linear)
+    weights = exact.weights(linear.residual)
+    j = reduced.by_unknown
+    sandwich, _ = covariances(fitted)
+    known = np.linalg.pinv(sandwich, hermitian=True)
+    hessian = np.einsum("w,wmi,wmj->ij", weights, j, j, optimize=True) + known
+    gradient = np.einsum("w,wmi,wm->i", weights, j, reduced.residual, optimize=True)
+    left = np.einsum("w,wm,wm->", weights, reduced.residual, reduced.residual, optimize=True)
+    return float(max(left - gradient @ np.linalg.pinv(hessian, hermitian=True) @ gradient, 0.0))

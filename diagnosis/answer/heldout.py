@@ -1,0 +1,169 @@
+"""Before and after: windowed misfit, on the recordings fitted to and on those held out.
+
+Parameters stay frozen; only the windows' initial states are estimated anew. The misfit is the rms
+residual over all windows, each channel over the rms of its recording; the noise floor is the same
+of the sensors' noise.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.answer.result import Fit, Trace, Windows
+from diagnosis.data.measured import Measured
+from diagnosis.data.noise import RELATIVE_FLOOR
+from diagnosis.fit.memory import counted
+from diagnosis.fit.misfit import Misfit
+from diagnosis.fit.prediction import Point, Predictor
+from diagnosis.fit.solver import fit_thoroughly
+from diagnosis.fit.whitening import sensor_noise_only
+from diagnosis.search.refit import Explanation
+from models.base import FloatArray
+
+HORIZON = 4.0
+"""s that a prediction is followed beyond a window's start."""
+LEAVES = 4.0
+"""Levels over the noise at which a prediction has left the measurement."""
+AVERAGED = 5
+
+
+@dataclass(frozen=True)
+class Shown:
+    """Predictions (W, C, N) of the windows of ``measured`` before and after, with the points used."""
+
+    measured: Measured
+    before: FloatArray
+    after: FloatArray
+    point_before: Point
+    point_after: Point
+
+
+def frozen(explanation: Explanation, measured: Measured) -> tuple[Point, FloatArray]:
+    """The explanation's parameters on other windows: the point with fitted states, and channels (W, C, N)."""
+    misfit = explanation.fitted.misfit
+    fixed = {**misfit.fixed, **explanation.fitted.values}
+    predictor = Predictor(measured, misfit.predictor.options)
+    states = measured.states
+    for _ in range(2):
+        alone = Misfit(predictor, sensor_noise_only(predictor), (), fixed)
+        states = fit_thoroughly(alone, np.zeros(0), states).states
+        point = alone.point(np.zeros(0), states)
+        predictor = replace(predictor, measured=counted(predictor, point))
+    return point, predictor.predict([point])[0]
+
+
+def compare(before: Explanation, after: Explanation, measured: Measured) -> Shown:
+    """Both explanations on some recordings, states estimated anew."""
+    one, other = frozen(before, measured), frozen(after, measured)
+    return Shown(measured, one[1], other[1], one[0], other[0])
+
+
+def relative_misfit(measured: Measured, predicted: FloatArray | None) -> float:
+    """Rms over windows and channels of the residual over the recording's rms; of the noise for None."""
+    squares, counts = 0.0, 0.0
+    for r, recording in enumerate(measured.recordings):
+        windows = np.flatnonzero(measured.recording_of == r)
+        for c, channel in enumerate(measured.channels):
+            mask = measured.mask[windows, c]
+            rms = float(np.sqrt(np.mean(recording.channels[channel] ** 2)))
+            if not mask.any() or rms == 0.0:
+                continue
+            if predicted is None:
+                square = float(np.sum(mask * measured.sigma[windows, c][:, None] ** 2))
+            else:
+                rest = (predicted - measured.values)[windows, c]
+                square = float(np.sum(np.where(np.isfinite(rest), rest, rms)[mask] ** 2))
+            squares += square / rms**2
+            counts += float(mask.sum())
+    return float(np.sqrt(squares / max(counts, 1.0)))
+
+
+def fit_figures(shown: Shown, missing: bool) -> Fit:
+    before, after = (relative_misfit(shown.measured, p) for p in (shown.before, shown.after))
+    floor = relative_misfit(shown.measured, None)
+    share = (before - after) / (before - floor) if missing and before > floor else None
+    return Fit(before, after, floor, share, _noise_free(shown.measured))
+
+
+def _noise_free(m: Measured) -> bool:
+    """Whether the noise of every channel is the least that is assumed."""
+    peak = np.array([[np.max(np.abs(r.channels[c])) for c in m.channels] for r in m.recordings])
+    return bool(np.all(m.sigma <= 1.001 * RELATIVE_FLOOR * peak[m.recording_of]))
+
+
+def windows_of(shown: Shown, held_out: bool) -> list[Windows]:
+    """Rms residual over noise of every window, by recording and channel."""
+    m = shown.measured
+    found = []
+    for r, recording in enumerate(m.recordings):
+        own = np.flatnonzero(m.recording_of == r)
+        start = np.array([m.windows[w].first for w in own]) * recording.time_step
+        length = np.array([m.windows[w].samples for w in own]) * recording.time_step
+        for c, channel in enumerate(m.channels):
+            sizes = [_over_noise(m, p, own, c) for p in (shown.before, shown.after)]
+            found.append(Windows(recording.name, channel, held_out, start, start + length, *sizes))
+    return found
+
+
+def _over_noise(m: Measured, predicted: FloatArray, own: NDArray[np.intp], c: int) -> FloatArray:
+    rest = np.where(m.mask[own, c], (predicted - m.values)[own, c], 0.0)
+    return np.asarray(np.sqrt((rest**2).sum(axis=1) / m.mask[own, c].sum(axis=1)) / m.sigma[own, c])
+
+
+def traces_of(shown: Shown, held_out: bool) -> list[Trace]:
+    """Measured and predicted channels over time, nan outside windows."""
+    m = shown.measured
+    units = {q.name: q.unit for q in m.model.observables}
+    found = []
+    for r, recording in enumerate(m.recordings):
+        own = np.flatnonzero(m.recording_of == r)
+        for c, channel in enumerate(m.channels):
+            pair = []
+            for predicted in (shown.before, shown.after):
+                trace = np.full(recording.time.size, np.nan)
+                for w in own:
+                    window = m.windows[w]
+                    trace[window.first : window.first + window.samples] = predicted[w, c, : window.samples]
+                pair.append(trace)
+            found.append(
+                Trace(recording.name, channel, units[channel], held_out, recording.time,
+                      recording.channels[channel], pair[0], pair[1])
+            )  # fmt: skip
+    return found
+
+
+def horizons(shown: Shown, options: dict[str, str]) -> dict[str, tuple[float, float]]:
+    """By recording: median seconds from a window's start until a prediction leaves the noise."""
+    from scipy.ndimage import uniform_filter1d
+
+    m = shown.measured
+    longer = lengthened(m)
+    times = []
+    for point in (shown.point_before, shown.point_after):
+        predicted = Predictor(longer, options).predict([point])[0]
+        rest = np.where(longer.mask, predicted - longer.values, 0.0) / longer.sigma[..., None]
+        smooth = uniform_filter1d(rest, AVERAGED, axis=-1)
+        out = np.any(np.abs(smooth) > LEAVES, axis=1)
+        end = longer.mask.any(axis=1).sum(axis=1)
+        first = np.where(np.any(out, axis=1), np.argmax(out, axis=1), end)
+        times.append(first)
+    found = {}
+    for r, recording in enumerate(m.recordings):
+        own = m.recording_of == r
+        if own.any():
+            pair = [float(np.median(t[own])) * recording.time_step for t in times]
+            found[recording.name] = (pair[0], pair[1])
+    return found
+
+
+def lengthened(m: Measured) -> Measured:
+    """The same windows, each followed for HORIZON seconds or to the end of its recording."""
+    windows = tuple(
+        replace(w, samples=min(int(HORIZON / m.recordings[w.recording].time_step),
+                               m.recordings[w.recording].time.size - w.first))
+        for w in m.windows
+    )  # fmt: skip
+    return m.cut_again(windows)

@@ -1,0 +1,75 @@
+"""What a search amounts to: verdict, p-values, what stays undecided, whether anything is explained at all."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from diagnosis.answer.heldout import Shown
+from diagnosis.answer.result import Undecided, Verdict
+from diagnosis.search.candidates import Candidate
+from diagnosis.search.found import MISSING, PER_SHAPE, Search, adjusted, misfit_per_sample
+from diagnosis.search.null import LEAST_P
+from diagnosis.search.refit import Explanation, gain_by_window
+
+INADEQUATE = 1.35
+"""Misfit per sample of the final model beyond which no mechanism of the library is adequate."""
+UNEXPLAINED = 0.5
+"""Share of the squared motion in the windows that, left over by the best model, makes any name meaningless."""
+CHANCE = 0.05
+"""p-value from which on the strongest suspect is no stronger than chance."""
+
+
+def explains(shown: Shown) -> bool:
+    """Whether the model with all that was found explains more than it leaves, channels weighed alike."""
+    m = shown.measured
+    rest = np.where(m.mask & np.isfinite(shown.after), shown.after - m.values, m.values)
+    left, whole = ((np.where(m.mask, x, 0.0) ** 2).sum(axis=(0, 2)) for x in (rest, m.values))
+    return float(np.mean(left / np.maximum(whole, 1e-300))) < UNEXPLAINED
+
+
+def verdict_of(
+    found: Search, near: Sequence[tuple[Explanation, Candidate, float]], flagged: bool, explained: bool, finished: bool
+) -> Verdict:
+    """One of the four. ``near``: the rivals; ``flagged``: something is not constant."""
+    if not finished:  # what was not tried may explain it as well
+        return "cannot_tell_apart"
+    if flagged or not explained or misfit_per_sample(found.chosen) >= INADEQUATE:
+        return "not_in_library"
+    if found.best is None:
+        return "nothing_missing"
+    others = {c.effect_class for _, c, _ in near}
+    return "cannot_tell_apart" if others - set(found.best.classes) else "missing"
+
+
+def p_value(found: Search, gain: float) -> float:
+    """Chance of a gain, shapes paid for, by the score's null distribution; told down to LEAST_P."""
+    return max(found.null.p_value(gain), LEAST_P) if found.null else 1.0
+
+
+def p_of_effects(found: Search, gains: Sequence[float]) -> list[float]:
+    """Of each effect of the answer, from its evidence less what its shapes cost."""
+    price = [PER_SHAPE * (len(c.unknowns) - 1 + len(c.held)) for c in found.chosen.candidates]
+    return [p_value(found, gain - cost) for gain, cost in zip(gains, price, strict=True)]
+
+
+def p_of_missing(found: Search, gains: Sequence[float], finished: bool) -> float | None:
+    """Of "something is missing": of the strongest effect, else suspect. None if a stopped search has not tested it."""
+    if gains:
+        return min(p_of_effects(found, gains))
+    if found.null is None or not finished:
+        return None
+    return p_value(found, max((found.gain(e) for e in found.singles), default=0.0))
+
+
+def undecided(found: Search, p_missing: float | None) -> Undecided | None:
+    """The strongest suspect where nothing is named although chance hardly brings its gain."""
+    if found.best is not None or p_missing is None or p_missing >= CHANCE or not found.singles:
+        return None
+    suspect = min(found.singles, key=adjusted)
+    gain, rests_on = found.gain(suspect), ""
+    if gain >= MISSING:
+        loudest = float(gain_by_window(found.base, suspect).max(initial=0.0))
+        rests_on = "one window" if gain - loudest < MISSING else "one recording"
+    return Undecided(suspect.names[0], suspect.classes[0], gain, rests_on)

@@ -1,0 +1,161 @@
+"""What a diagnosis says: small frozen objects, written as ``diagnosis.json``."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.fit.intervals import Estimate
+from diagnosis.forces.constancy import Constancy
+
+Verdict = Literal["missing", "nothing_missing", "not_in_library", "cannot_tell_apart"]
+
+
+@dataclass(frozen=True)
+class Effect:
+    """A mechanism that the recordings ask for.
+
+    ``evidence``: its gain in 2 log likelihood, refitted; ``p_value``: chance of it, LEAST_P for at most that.
+    """
+
+    name: str
+    effect_class: str
+    parameters: Mapping[str, Estimate]
+    evidence: float
+    p_value: float
+
+
+@dataclass(frozen=True)
+class Rival:
+    """A mechanism that explains nearly as much: ``evidence_gap`` is how much less."""
+
+    name: str
+    effect_class: str
+    evidence_gap: float
+
+
+@dataclass(frozen=True)
+class Undecided:
+    """A suspect that is not named although chance hardly brings its ``gain`` (2 log likelihood, shapes paid for).
+
+    ``rests_on``: "one window" or "one recording" without which too little is left; "" where the gain is
+    under what a name takes.
+    """
+
+    name: str
+    effect_class: str
+    gain: float
+    rests_on: str
+
+
+@dataclass(frozen=True)
+class Located:
+    """An interval of a recording in which the base model misses; ``share`` of the excess misfit."""
+
+    recording: str
+    channel: str
+    start: float
+    end: float
+    where: tuple[str, ...]
+    share: float
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Relative rms misfit over windows and channels before and after, on one set of recordings.
+
+    ``noise_free``: these recordings have no noise of their own, the floor is that of rounding.
+    """
+
+    before: float
+    after: float
+    noise_floor: float
+    share_of_achievable: float | None = None
+    noise_free: bool = False
+
+
+@dataclass(frozen=True)
+class Screened:
+    """One line of the screen: the score statistic and, where refitted, the gain."""
+
+    name: str
+    effect_class: str
+    score: float
+    gain: float | None
+    estimate: Mapping[str, float] | None
+
+
+@dataclass(frozen=True)
+class Windows:
+    """Residuals window by window, for the raster: one entry a window of one recording and channel.
+
+    ``start`` and ``end`` in s; ``before`` and ``after`` are rms residuals over the noise;
+    ``held_out`` tells recordings that were not fitted.
+    """
+
+    recording: str
+    channel: str
+    held_out: bool
+    start: NDArray[np.float64]
+    end: NDArray[np.float64]
+    before: NDArray[np.float64]
+    after: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Trace:
+    """Measured and predicted channel over time of one recording (nan outside windows)."""
+
+    recording: str
+    channel: str
+    unit: str
+    held_out: bool
+    time: NDArray[np.float64]
+    measured: NDArray[np.float64]
+    before: NDArray[np.float64]
+    after: NDArray[np.float64]
+    from_rest_before: NDArray[np.float64] | None = None
+    from_rest_after: NDArray[np.float64] | None = None
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """The answer. Everything the report shows is here; nothing in the report is computed anew."""
+
+    verdict: Verdict
+    statement: str
+    effects: tuple[Effect, ...]
+    rivals: tuple[Rival, ...]
+    located: tuple[Located, ...]
+    constancy: tuple[Constancy, ...]
+    train: Fit
+    holdout: Fit | None
+    base: Mapping[str, Estimate]
+    """Calibrated base parameters (of the extended model if something is missing)."""
+    screen: tuple[Screened, ...]
+    null_band: float
+    """The gain that chance alone exceeds with 5 % probability."""
+    p_value: float | None
+    """Of "something is missing"; None where a stopped search has tested nothing."""
+    next_experiment: Mapping[str, Any] | None
+    windows: tuple[Windows, ...]
+    traces: tuple[Trace, ...]
+    prediction_horizon: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    """By recording: seconds until the prediction from a window's start leaves the noise, before and after."""
+    missing_force: Mapping[str, Any] | None = None
+    """Shape of the force that is not in the library: terms over (theta, theta', contact, a) and curves."""
+    provenance: Mapping[str, Any] = field(default_factory=dict)
+    finished: bool = True
+    """False when the user stopped the search: what stands is what was found so far."""
+    undecided: Undecided | None = None
+    """With ``nothing_missing``: what is not named although chance hardly brings it."""
+    unexplained: bool = False
+    """The best model leaves so much of the motion that a name would mean nothing; then there are no effects."""
+    suspicions: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """By recording: what looked wrong with it when it was read."""
+    skipped: tuple[str, ...] = ()
+    """What a Ctrl-C after the search has left out."""

@@ -1,0 +1,184 @@
+"""One paragraph in plain words, as a laboratory engineer would write it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from string import Formatter
+
+from diagnosis.answer.result import Diagnosis, Effect, Fit, Located
+from diagnosis.forces.columns import KINDS
+from diagnosis.forces.constancy import Constancy
+from diagnosis.search.null import LEAST_P
+from models.base import Mechanism
+
+WHERE = {
+    "impact": "at impacts",
+    "between_impacts": "between impacts",
+    "large_rotation": "at large rotations",
+    "small_rotation": "at small rotations",
+    "left": "while rocking to the left",
+    "right": "while rocking to the right",
+    "late": "more so late in the recording",
+    "above_10_hz": "above 10 Hz",
+    "everywhere": "throughout",
+}
+CONFIRMED = 0.5
+"""Share of the achievable on held-out recordings under which the reader is warned."""
+
+
+def statement(found: Diagnosis, known: Mapping[str, Mechanism]) -> str:
+    """The paragraph; every number in it stands in the other fields too."""
+    parts = [_suspicion(name, what) for name, all_of in found.suspicions.items() for what in all_of]
+    if not found.finished and not found.effects:
+        parts.append(
+            "The search was stopped before anything was found: the base model is calibrated, and whether something is "
+            "missing from it is not known. Run it again."
+        )
+        return " ".join(parts)
+    if found.verdict == "nothing_missing":
+        parts.append(_nothing(found))
+        return " ".join([*parts, *_skipped(found)])
+    parts.append(f"The model leaves something out ({_beyond_chance(found.p_value)}).")
+    if found.located:
+        parts.append(_where(found.located))
+    if found.unexplained:
+        parts.append(
+            "Even the best model of the library leaves most of the motion unexplained, so a name would mean nothing: "
+            "check the signs, units and clocks of the recordings, and the specimen."
+        )
+    if found.effects:
+        told = [effect_told(effect, known[effect.name]) for effect in found.effects]
+        opening = "What the library can say" if found.verdict == "not_in_library" else "Best explanation"
+        parts.append(f"{opening}: {'; and '.join(told)}.")
+    if found.verdict == "not_in_library" and not found.unexplained:
+        parts.append("That does not settle it: what is missing is not in the library of mechanisms.")
+        parts += [_flag(flag) for flag in _distinct(found.constancy)[:2]]
+    if found.verdict == "cannot_tell_apart" and found.rivals:
+        names = ", ".join(f"{r.name.replace('_', ' ')} ({r.evidence_gap:.1f} less)" for r in found.rivals)
+        parts.append(f"These recordings cannot tell it apart from: {names}.")
+    elif found.rivals:
+        names = ", ".join(r.name.replace("_", " ") for r in found.rivals)
+        parts.append(f"{names[0].upper()}{names[1:]} would explain nearly as much.")
+    parts.append(_fit(found.train, found.holdout))
+    if found.next_experiment and found.next_experiment.get("static_test"):
+        parts.append(f"To settle it: {found.next_experiment['static_test']}.")
+    if not found.finished:
+        parts.append(
+            "The search was stopped before its end: this is what stood by then, and what was not tried may explain "
+            "the recordings as well."
+        )
+    return " ".join([*parts, *_skipped(found)])
+
+
+def _suspicion(recording: str, what: str) -> str:
+    return f"Check this first: {recording}: {what}{'' if what.endswith(('.', '?', '!')) else '.'}"
+
+
+def _nothing(found: Diagnosis) -> str:
+    """Nothing is named, because there is nothing or because a suspect is not sure enough."""
+    suspect = found.undecided
+    if suspect is None:
+        chance = f", {p_text(found.p_value)}" if found.p_value is not None else ""
+        return (
+            "The model explains the recordings within their noise; nothing is missing "
+            f"(the strongest suspect is no stronger than chance{chance})."
+        )
+    why = (
+        f"but that rests on {suspect.rests_on}"
+        if suspect.rests_on
+        else "less than a name takes: a weak effect, or a rare chance"
+    )
+    return (
+        "Nothing is named as missing from the model, but one thing is not decided: "
+        f"{suspect.name.replace('_', ' ')} gains {suspect.gain:.0f} in 2 log likelihood ({p_text(found.p_value)}), "
+        f"{why}. Another recording would decide."
+    )
+
+
+def p_text(p_value: float | None) -> str:
+    """A p-value as papers print it."""
+    if p_value is None:
+        return "not tested"
+    return "p < 1e-6" if p_value <= LEAST_P else f"p = {p_value:.2g}"
+
+
+def _beyond_chance(p_value: float | None) -> str:
+    far = p_value is not None and p_value <= LEAST_P
+    return f"far beyond chance, {p_text(p_value)}" if far else p_text(p_value)
+
+
+def _skipped(found: Diagnosis) -> list[str]:
+    return [f"Stopped after the search; left out: {', '.join(found.skipped)}."] if found.skipped else []
+
+
+_NOUNS = ("side", "amplitude of the motion", "size of the rotation", "time", "direction of motion")
+
+
+def _distinct(found: Sequence[Constancy]) -> list[Constancy]:
+    """The strongest of each dependence: forces that depend on the same thing are mostly one force seen twice."""
+    strongest: dict[str, Constancy] = {}
+    for flag in found:
+        strongest.setdefault(flag.depends_on, flag)
+    return list(strongest.values())
+
+
+def _flag(found: Constancy) -> str:
+    what = f"What acts is a {KINDS[found.parameter]}"
+    stronger = f", stronger {found.stronger}" if found.stronger else ""
+    if found.depends_on in _NOUNS:
+        return f"{what} that depends on the {found.depends_on}{stronger}."
+    if found.depends_on == "a spell of time":
+        return f"{what} that is there for a while only."
+    if found.depends_on.startswith("recording"):
+        return f"{what} that is not the same in {found.depends_on}."
+    return f"{what} ({found.depends_on})."
+
+
+def _where(located: Sequence[Located]) -> str:
+    first = located[0]
+    words = " and ".join(WHERE[w] for w in first.where)
+    return (
+        f"The mismatch lives {words}, most of it in {first.recording} from {first.start:.1f} s to {first.end:.1f} s "
+        f"({first.channel}, {first.share:.0%} of the excess)."
+    )
+
+
+def effect_told(effect: Effect, mechanism: Mechanism) -> str:
+    """An effect in the library's sentence, with its interval and evidence."""
+    values = {name: e.estimate for name, e in effect.parameters.items()}
+    sentence = mechanism.sentence_for(values)
+    name, main = next(iter(effect.parameters.items()))
+    form = _form(sentence, name)
+    low, high = (format(end, form or ".4g") for end in (main.low95, main.high95))
+    unit = "" if main.unit == "1" or form else f" {main.unit}"
+    bound = ", at the end of its range" if main.at_bound else ""
+    said = sentence.format_map({**mechanism.nulls, **values})
+    interval = f"95 % interval {low} to {high}{unit}{bound}"
+    return f"{effect.name.replace('_', ' ')}: {said} ({interval}; evidence {effect.evidence:.0f})"
+
+
+def _form(sentence: str, parameter: str) -> str:
+    """How the sentence writes the parameter where it writes it in percent, else empty."""
+    forms = (form or "" for _, name, form, _ in Formatter().parse(sentence) if name == parameter)
+    return next((form for form in forms if form.endswith("%")), "")
+
+
+def _fit(train: Fit, holdout: Fit | None) -> str:
+    text = f"The misfit {_change(train)} of the signal on the recordings fitted to"
+    if holdout is None:
+        return text + "; no recording was held out."
+    verb = _change(train).split()[0]
+    text += f", and {_change(holdout).removeprefix(f'{verb} ')} on those held out"
+    if holdout.share_of_achievable is not None and holdout.after != holdout.before:
+        share = f"{holdout.share_of_achievable:.0%}"
+        of = "of it; they have no noise of their own" if holdout.noise_free else "of what the noise allows"
+        text += f" ({share} {of})"
+        if holdout.share_of_achievable < CONFIRMED:
+            text += ", so they hardly bear the explanation out"
+    return text + "."
+
+
+def _change(fit: Fit) -> str:
+    if fit.after == fit.before:
+        return f"is {fit.after:.3f}"
+    return f"{'falls' if fit.after < fit.before else 'rises'} from {fit.before:.3f} to {fit.after:.3f}"

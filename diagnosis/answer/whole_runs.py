@@ -1,0 +1,64 @@
+"""Runs from rest, shown last: where rocking is chaotic they part from the recording after a while."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from diagnosis.answer.heldout import Shown, traces_of
+from diagnosis.answer.result import Trace
+from diagnosis.data.measured import Measured
+from diagnosis.fit.unknowns import split
+from diagnosis.search.candidates import REFERENCE
+from diagnosis.search.refit import Explanation
+from grids.instruments import INSTRUMENTS, moved, recorded
+from grids.recordings.base import REQUIRED, FloatArray, Recording
+from grids.specimen import Specimen
+
+
+def with_runs_from_rest(
+    specimen: Specimen, shown: Sequence[Shown], before: Explanation, after: Explanation
+) -> tuple[Trace, ...]:
+    """The traces of all recordings with the runs from the specimen's initial state beside them."""
+    found: list[Trace] = []
+    for k, each in enumerate(shown):
+        runs: dict[str, list[dict[str, FloatArray]]] = {}
+        for recording in each.measured.recordings:
+            runs[recording.name] = [
+                sensed_run(e, each.measured, recording, each.measured.channels, specimen.initial)
+                for e in (before, after)
+            ]
+        for trace in traces_of(each, held_out=k == 1):
+            pair = [run[trace.channel] for run in runs[trace.recording]]
+            found.append(replace(trace, from_rest_before=pair[0], from_rest_after=pair[1]))
+    return tuple(found)
+
+
+def sensed_run(
+    explanation: Explanation,
+    measured: Measured,
+    recording: Recording,
+    channels: Sequence[str],
+    initial: Mapping[str, float] | None = None,
+) -> dict[str, FloatArray]:
+    """Channels of one run under the recording's base motion, as the sensors would record them."""
+    misfit = explanation.fitted.misfit
+    values = {**misfit.fixed, **explanation.fitted.values}
+    sensors = split(values, tuple(INSTRUMENTS))
+    for name, given in sensors.items():
+        if any(p.name == REFERENCE for p in INSTRUMENTS[name].parameters):
+            given.setdefault(REFERENCE, measured.reference_peak)
+    of_wall = {k: v for k, v in values.items() if k.partition(".")[0] not in INSTRUMENTS}
+    like = measured.shakings[0]
+    shaking = recording.shaking(like.vertical is not None, vertical_acts=like.vertical_acts)
+    history = measured.model.simulate(
+        of_wall,
+        moved(shaking, sensors),
+        initial=dict(initial or {}) or None,
+        duration=shaking.duration,
+        options=misfit.predictor.options,
+    )
+    found = {c: np.asarray(history.channels[c]).reshape(-1) for c in channels}
+    return dict(recorded(found, sensors, shaking.time_step, recording.channels[REQUIRED]))

@@ -1,0 +1,92 @@
+"""The noise of the channels that a fit weighs its residuals with.
+
+Responses: the local-polynomial level of `grids.recordings.noise` where that noise is white. A filter in
+the instrument leaves less at the high frequencies which that level is taken from, and all of it where
+the effects of mechanisms lie: then it is the white level of equal spectral density below `BAND`, from
+stretches in which nothing moves. Base: earthquakes are not smooth over nine samples everywhere, so the
+level is that of the record's quietest tenth; it acts on the model as a disturbance (see
+`diagnosis.fit.whitening`), not as a residual.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from grids.recordings.base import REQUIRED, FloatArray, Recording
+from grids.recordings.noise import noise_of
+
+BLOCK = 40
+QUIET_SHARE = 0.1
+RELATIVE_FLOOR = 1e-4
+"""Of the channel's peak: the least noise assumed, for computed channels."""
+BAND = 15.0
+"""Hz: the effects of mechanisms lie under it."""
+STILL, FEWEST = 0.35, 3
+"""s that nothing moves, and how many such stretches must follow one another."""
+LIKE = 1.5
+"""Range of a still stretch over that of the stillest ones."""
+MOST = 200.0
+"""Density over what a filter leaves of it at the highest frequencies: beyond, the channel is a motion without noise."""
+FLAT = 0.25
+"""Geometric over arithmetic mean of a spectrum that is noise: .56 if white, next to nothing if motion."""
+
+
+def response_noise(recording: Recording, channel: str) -> float:
+    """Standard deviation of a response channel's noise, in its unit, of equal density where effects lie."""
+    values = recording.channels[channel]
+    noise = noise_of(values)
+    level = max(noise.sigma, RELATIVE_FLOOR * float(np.max(np.abs(values))))
+    if noise.white or noise.lag_one < noise.lag_one_if_white:
+        return level
+    density = density_level(values, recording.time_step)
+    return max(level, density) if density < MOST * noise.sigma else level
+
+
+def density_level(values: FloatArray, time_step: float) -> float:
+    """Standard deviation of the white noise as dense below `BAND` as a channel's while it is still; 0 if never.
+
+    With the periodogram P(f) = |sum_j (x_j - mean) exp(-2 pi i f t_j)|^2/n of n samples white noise has
+    E P = sigma^2 at every frequency. A spectrum that is not flat is that of a motion.
+    """
+    found = []
+    for stretch in still(values, time_step):
+        x = values[stretch]
+        frequency = np.fft.rfftfreq(x.size, time_step)
+        inside = (frequency > 0.0) & (frequency < BAND)
+        found.append(np.abs(np.fft.rfft(x - x.mean())[inside]) ** 2 / x.size)
+    power = np.concatenate(found) if found else np.zeros(1)
+    mean = float(np.mean(power))
+    if mean == 0.0 or float(np.exp(np.mean(np.log(np.maximum(power, 1e-30 * mean))))) < FLAT * mean:
+        return 0.0
+    return float(np.sqrt(mean))
+
+
+def still(values: FloatArray, time_step: float) -> list[slice]:
+    """Stretches at one level in which the channel's range stays like that of its stillest second."""
+    size = max(8, round(STILL / time_step))
+    blocks = values[: values.size // size * size].reshape(-1, size)
+    if len(blocks) < FEWEST:
+        return []
+    ranges, levels = np.ptp(blocks, axis=1), np.median(blocks, axis=1)
+    runs = np.lib.stride_tricks.sliding_window_view(ranges, FEWEST).max(axis=1)
+    stillest = int(np.argmin(runs))
+    level = float(np.median(levels[stillest : stillest + FEWEST]))
+    like = (ranges < LIKE * runs[stillest]) & (np.abs(levels - level) < runs[stillest])
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], like, [False]]).astype(int)))
+    return [slice(a * size, b * size) for a, b in edges.reshape(-1, 2).tolist() if b - a >= FEWEST]
+
+
+def base_noise(recording: Recording) -> float:
+    """Standard deviation (m s-2) of the noise of the horizontal base acceleration."""
+    values = recording.channels[REQUIRED]
+    blocks = max(values.size // BLOCK, 1)
+    levels = [noise_of(part).sigma for part in np.array_split(values, blocks)]
+    return float(np.quantile(levels, QUIET_SHARE)) if np.any(values) else 0.0
+
+
+def smooth(values: FloatArray, time_step: float, width: float) -> FloatArray:
+    """Local cubic over ``width`` seconds, at least 7 samples."""
+    from scipy.signal import savgol_filter
+
+    count = min(max(7, round(width / time_step) | 1), (values.size - 1) | 1)
+    return np.asarray(savgol_filter(values, count, 3))

@@ -1,0 +1,130 @@
+"""95 % intervals: a sandwich clustered by windows, and the profile likelihood for named parameters.
+
+With the Gauss-Newton Hessian H and the windows' scores s_w (states eliminated) the covariance is
+
+    V = H^-1 (sum_w s_w s_w' W/(W - k) + P) H^-1,      P the priors' part of H,
+
+which stays right when residuals within a window are correlated or the noise level is off; the larger
+of V and H^-1 is taken. The profile raises the loss by 3.84 V/H^-1 on either side, so a curved loss
+gives a lopsided interval.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from diagnosis.fit.misfit import reduce
+from diagnosis.fit.solver import Fitted, fit, normal
+from diagnosis.fit.unknowns import Unknown
+from models.base import FloatArray
+
+QUANTILE = 1.959963984540054
+LEVEL = QUANTILE**2
+PROFILE_ITERATIONS = 4
+PROFILE_TRIES = 3
+UNINFORMED = 1e-9
+"""Standard deviation of a coordinate that the pseudo-inverse gives when nothing depends on it."""
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A fitted parameter with its 95 % interval; ``at_bound`` names a bound the fit ran into."""
+
+    estimate: float
+    low95: float
+    high95: float
+    unit: str
+    at_bound: Literal["", "low", "high"] = ""
+
+
+def covariances(fitted: Fitted) -> tuple[FloatArray, FloatArray]:
+    """Sandwich and inverse Hessian (k, k) of the coordinates."""
+    misfit = fitted.misfit
+    linear = misfit.linearise(fitted.u, fitted.states)
+    reduced = reduce(linear)
+    weights = misfit.weights(linear.residual)
+    hessian, _ = normal(misfit, reduced, weights, fitted.u)
+    _, slopes = misfit.prior_rows(fitted.u)
+    each = np.einsum("w,wmi,wm->wi", weights, reduced.by_unknown, reduced.residual, optimize=True)
+    windows, k = each.shape
+    spread = each.T @ each * windows / max(windows - k, 1)
+    inverse = np.asarray(np.linalg.pinv(hessian, hermitian=True), np.float64)
+    return np.asarray(inverse @ (spread + slopes.T @ slopes) @ inverse), inverse
+
+
+def correlation(fitted: Fitted) -> FloatArray:
+    """Correlation (k, k) of the estimates, from the sandwich."""
+    cover, _ = covariances(fitted)
+    sd = np.sqrt(np.maximum(np.diag(cover), 1e-300))
+    return np.asarray(cover / np.outer(sd, sd))
+
+
+def estimates(fitted: Fitted, profiled: Sequence[str] = ()) -> dict[str, Estimate]:
+    """Every unknown with its 95 % interval, in its own unit; a profile for the names in ``profiled``."""
+    sandwich, laplace = covariances(fitted)
+    found = {}
+    for i, unknown in enumerate(fitted.misfit.unknowns):
+        naive = float(np.sqrt(max(laplace[i, i], 0.0)))
+        sd = max(naive, float(np.sqrt(max(sandwich[i, i], 0.0))))
+        if naive < UNINFORMED:
+            ends = unknown.bounds
+        elif unknown.name in profiled:
+            ends = _profile(fitted, i, sd, (sd / naive) ** 2)
+        else:
+            ends = (fitted.u[i] - QUANTILE * sd, fitted.u[i] + QUANTILE * sd)
+        found[unknown.name] = _estimate(unknown, float(fitted.u[i]), ends, fitted.at_bound(i))
+    return found
+
+
+def _estimate(unknown: Unknown, u: float, ends: tuple[float, float], at_bound: str) -> Estimate:
+    low, high = unknown.bounds
+    values = sorted(unknown.value(float(np.clip(end, low, high))) for end in ends)
+    if unknown.kind == "inverse" and at_bound:
+        at_bound = "high" if at_bound == "low" else "low"
+    return Estimate(unknown.value(u), values[0], values[1], unknown.unit, at_bound)  # type: ignore[arg-type]
+
+
+def _profile(fitted: Fitted, index: int, sd: float, inflation: float) -> tuple[float, float]:
+    """Coordinates at which the profile loss has risen by LEVEL times ``inflation``."""
+    wanted = float(np.sqrt(LEVEL * inflation))
+    bounds = fitted.misfit.unknowns[index].bounds
+    ends = []
+    for sign, bound in ((-1.0, bounds[0]), (1.0, bounds[1])):
+        step, best = QUANTILE * sd, QUANTILE * sd
+        for _ in range(PROFILE_TRIES):
+            at = fitted.u[index] + sign * step
+            if sign * (at - bound) >= 0.0:
+                best = abs(bound - fitted.u[index])
+                if profile_rise(fitted, index, bound) > wanted**2:
+                    best *= 0.999
+                    step = 0.5 * best
+                    continue
+                break
+            rise = float(np.sqrt(max(profile_rise(fitted, index, at), 1e-12)))
+            best = step * wanted / rise
+            if abs(rise - wanted) < 0.05 * wanted:
+                break
+            step = float(np.clip(best, 0.3 * step, 3.0 * step))
+        ends.append(fitted.u[index] + sign * best)
+    return ends[0], ends[1]
+
+
+def profile_rise(fitted: Fitted, index: int, at: float) -> float:
+    """How much the loss rises when one coordinate is held at ``at`` and all others are refitted."""
+    misfit = fitted.misfit
+    unknown = misfit.unknowns[index]
+    keep = [i for i in range(fitted.u.size) if i != index]
+    held = replace(
+        misfit,
+        unknowns=tuple(misfit.unknowns[i] for i in keep),
+        fixed={**misfit.fixed, unknown.name: unknown.value(at)},
+    )
+    own = 0.0
+    if unknown.prior is not None:
+        mean, sd = unknown.prior
+        own = ((unknown.value(at) - mean) / sd) ** 2
+    return fit(held, fitted.u[keep], fitted.states, PROFILE_ITERATIONS).loss + own - fitted.loss

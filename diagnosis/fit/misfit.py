@@ -1,0 +1,138 @@
+"""The loss of a parameter point, and its derivatives with the windows' states eliminated.
+
+    loss = sum_w nu n_w log(1 + chi2_w/(nu n_w)) + sum_i ((x_i - mean_i)/sd_i)^2,   nu = 10
+
+chi2_w is the squared whitened residual of window w, n_w its number of samples, the second sum runs
+over the priors. One wrong impact must not decide: a window far off counts with its logarithm. The
+states of a window appear in its own residuals only; projecting these off the states' derivatives
+(Schur complement) leaves a least-squares problem in the shared parameters alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnosis.data.measured import Measured
+from diagnosis.fit.prediction import Point, Predictor
+from diagnosis.fit.unknowns import Unknown, values_of
+from diagnosis.fit.whitening import Whitening
+from models.base import FloatArray
+
+NU = 10.0
+STEP = 0.05
+"""Difference step of a coordinate."""
+STATE_STEP = 2e-3
+"""Difference step of a state over its scatter among the windows."""
+
+
+@dataclass(frozen=True)
+class Linear:
+    """A point's residuals (W, M) and derivatives (W, M, k), (W, M, S), both by central differences."""
+
+    residual: FloatArray
+    by_unknown: FloatArray
+    by_state: FloatArray
+
+
+@dataclass(frozen=True)
+class Reduced:
+    """The same, projected off the states; ``solve_states`` (W, S, M) gives the states' answer -dx."""
+
+    residual: FloatArray
+    by_unknown: FloatArray
+    solve_states: FloatArray
+    basis: FloatArray
+    """Orthonormal (W, M, S) directions that the states can reach."""
+
+
+@dataclass(frozen=True)
+class Misfit:
+    """The loss over ``unknowns`` with everything else at ``fixed``."""
+
+    predictor: Predictor
+    whitening: Whitening
+    unknowns: tuple[Unknown, ...]
+    fixed: Mapping[str, float]
+
+    @property
+    def measured(self) -> Measured:
+        return self.predictor.measured
+
+    def point(self, u: FloatArray, states: FloatArray) -> Point:
+        return Point({**self.fixed, **values_of(self.unknowns, u)}, states)
+
+    def residuals(self, points: Sequence[Point]) -> FloatArray:
+        """Whitened residuals (P, W, M), predicted minus measured."""
+        predicted = self.predictor.predict(points)
+        difference = predicted - self.measured.values
+        return self.whitening(np.where(np.isfinite(difference), difference, 1e3))
+
+    def losses(self, residuals: FloatArray) -> FloatArray:
+        """Loss of every window (..., W), without the priors."""
+        n = self.measured.count
+        return np.asarray(NU * n * np.log1p(np.sum(residuals**2, axis=-1) / (NU * n)))
+
+    def prior(self, u: FloatArray) -> float:
+        r, _ = self.prior_rows(u)
+        return float(r @ r)
+
+    def prior_rows(self, u: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Residual (p,) and derivative (p, k) of the priors."""
+        rows, slopes = [], []
+        for i, unknown in enumerate(self.unknowns):
+            if unknown.prior is not None:
+                mean, sd = unknown.prior
+                rows.append((unknown.value(float(u[i])) - mean) / sd)
+                slope = np.zeros(len(self.unknowns))
+                slope[i] = unknown.scale / sd
+                slopes.append(slope)
+        return np.array(rows), np.array(slopes).reshape(len(rows), len(self.unknowns))
+
+    def loss(self, u: FloatArray, states: FloatArray) -> float:
+        return float(self.losses(self.residuals([self.point(u, states)])).sum()) + self.prior(u)
+
+    def linearise(self, u: FloatArray, states: FloatArray) -> Linear:
+        """Residuals and derivatives at a point; steps that would leave the bounds are one-sided."""
+        m = self.measured
+        points, widths = [self.point(u, states)], []
+        for i, unknown in enumerate(self.unknowns):
+            low, high = unknown.bounds
+            down, up = u.copy(), u.copy()
+            down[i], up[i] = max(u[i] - STEP, low), min(u[i] + STEP, high)
+            points += [self.point(down, states), self.point(up, states)]
+            widths.append(up[i] - down[i])
+        for s in range(states.shape[1]):
+            for sign in (-1.0, 1.0):
+                moved = states.copy()
+                moved[:, s] += sign * STATE_STEP * m.state_size[s]
+                points.append(self.point(u, moved))
+            widths.append(2.0 * STATE_STEP * m.state_size[s])
+        r = self.residuals(points)
+        columns = np.stack([(r[2 + 2 * i] - r[1 + 2 * i]) / width for i, width in enumerate(widths)], axis=-1)
+        k = len(self.unknowns)
+        return Linear(r[0], columns[..., :k], columns[..., k:])
+
+    def weights(self, residual: FloatArray) -> FloatArray:
+        """Weight of each window (W,) in the least squares that has the loss's gradient."""
+        n = self.measured.count
+        return np.asarray(1.0 / (1.0 + np.sum(residual**2, axis=-1) / (NU * n)))
+
+
+def reduce(linear: Linear) -> Reduced:
+    """Project residuals and derivatives off the states, window by window."""
+    q, r = np.linalg.qr(linear.by_state)
+    diagonal = np.abs(np.diagonal(r, axis1=1, axis2=2))
+    tiny = 1e-9 * np.max(diagonal, axis=1, keepdims=True) + 1e-300
+    safe = r + np.where(diagonal < tiny, tiny, 0.0)[:, :, None] * np.eye(r.shape[-1])
+    solve = np.linalg.solve(safe, np.swapaxes(q, 1, 2))
+    along = np.einsum("wms,wm->ws", q, linear.residual)
+    residual = linear.residual - np.einsum("wms,ws->wm", q, along)
+    return Reduced(residual, project(q, linear.by_unknown), solve, q)
+
+
+def project(basis: FloatArray, columns: FloatArray) -> FloatArray:
+    """Columns (W, M, k) without their part along ``basis`` (W, M, S)."""
+    return columns - basis @ (np.swapaxes(basis, 1, 2) @ columns)

@@ -1,0 +1,149 @@
+"""Levenberg-Marquardt over the shared parameters, the windows' states eliminated.
+
+Each iteration runs all windows for all differences in one batch, then for some dampings and state
+steps in another. Given the parameters the windows are independent, so every window keeps the state
+step that suits it best: one stuck window does not hold up the others.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import qmc
+
+from diagnosis.data.measured import Measured
+from diagnosis.fit.misfit import NU, Misfit, Reduced, reduce
+from diagnosis.fit.prediction import Point
+from diagnosis.fit.unknowns import clip, values_of
+from models.base import FloatArray
+
+DAMPINGS = (0.0, 0.1, 3.0)
+STATE_STEPS = (1.0, 0.3, 0.0)
+ITERATIONS = 14
+TOLERANCE = 0.02
+"""Gain in 2 log likelihood under which an iteration ends the fit."""
+BADLY, SCATTERED = 1.5, 256
+"""Squared misfit per sample of a stuck window (over that of most windows), and the states tried for it."""
+SCATTERINGS = 3
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A minimum: coordinates (k,), states (W, S), loss of each window (W,) and in all (with priors)."""
+
+    misfit: Misfit
+    u: FloatArray
+    states: FloatArray
+    window_losses: FloatArray
+    loss: float
+
+    @property
+    def measured(self) -> Measured:
+        return self.misfit.measured
+
+    @property
+    def point(self) -> Point:
+        return self.misfit.point(self.u, self.states)
+
+    @property
+    def values(self) -> dict[str, float]:
+        return values_of(self.misfit.unknowns, self.u)
+
+    def at_bound(self, index: int) -> str:
+        low, high = self.misfit.unknowns[index].bounds
+        slack = 1e-6 * (high - low)
+        return "low" if self.u[index] <= low + slack else "high" if self.u[index] >= high - slack else ""
+
+
+def fit_thoroughly(misfit: Misfit, u: FloatArray, states: FloatArray) -> Fitted:
+    """The minimum; windows that are stuck there start again from scattered states."""
+    found = fit(misfit, u, states)
+    for seed in range(SCATTERINGS):
+        scattered = scatter(found, seed)
+        if scattered is None:
+            break
+        found = fit(misfit, found.u, scattered)
+    return found
+
+
+def scatter(found: Fitted, seed: int) -> FloatArray | None:
+    """States (W, S) with better ones for windows that misfit badly; None if there are none."""
+    misfit, m = found.misfit, found.measured
+    each = np.expm1(found.window_losses / (NU * m.count)) * NU
+    bad = each > BADLY * max(1.0, float(np.median(each)))
+    if not bad.any():
+        return None
+    draws = qmc.MultivariateNormalQMC(np.zeros(found.states.shape[1]), seed=seed).random(SCATTERED)
+    width = m.state_size * np.where(np.arange(SCATTERED) % 2 == 0, 0.05, 0.25)[:, None]
+    trials = found.states[None] + (draws * width)[:, None, :]
+    losses = misfit.losses(misfit.residuals([misfit.point(found.u, x) for x in trials]))
+    pick = np.argmin(losses, axis=0)
+    better = bad & (losses.min(axis=0) < found.window_losses - 1.0)
+    if not better.any():
+        return None
+    return np.where(better[:, None], trials[pick, np.arange(pick.size)], found.states)
+
+
+def fit(misfit: Misfit, u: FloatArray, states: FloatArray, iterations: int = ITERATIONS) -> Fitted:
+    """The minimum of the loss next to (u, states)."""
+    u = clip(misfit.unknowns, np.asarray(u, float))
+    window = misfit.losses(misfit.residuals([misfit.point(u, states)]))[0]
+    loss = float(window.sum()) + misfit.prior(u)
+    damping = 1.0
+    small = 0
+    for _ in range(iterations):
+        linear = misfit.linearise(u, states)
+        reduced = reduce(linear)
+        weights = misfit.weights(linear.residual)
+        hessian, gradient = normal(misfit, reduced, weights, u)
+        steps = [clip(misfit.unknowns, u + _step(misfit, hessian, gradient, u, damping * d)) for d in DAMPINGS]
+        points, moved = [], []
+        for candidate in steps:
+            ahead = linear.residual + linear.by_unknown @ (candidate - u)
+            shift = -np.einsum("wsm,wm->ws", reduced.solve_states, ahead)
+            largest = np.maximum(np.abs(states), misfit.measured.state_size)
+            shift = np.clip(shift, -largest, largest)
+            moved.append([states + share * shift for share in STATE_STEPS])
+            points += [misfit.point(candidate, x) for x in moved[-1]]
+        losses = misfit.losses(misfit.residuals(points)).reshape(len(steps), len(STATE_STEPS), -1)
+        pick = np.argmin(losses, axis=1)
+        each = np.take_along_axis(losses, pick[:, None, :], axis=1)[:, 0]
+        totals = each.sum(axis=1) + np.array([misfit.prior(c) for c in steps])
+        best = int(np.argmin(totals))
+        gain = loss - float(totals[best])
+        if gain <= 0.0:
+            damping *= 10.0
+            small += 1
+            if small >= 2:
+                break
+            continue
+        u, loss, window = steps[best], float(totals[best]), each[best]
+        states = np.stack(moved[best])[pick[best], np.arange(states.shape[0])]
+        damping = max(damping * (0.3 if best == 0 else 1.0 if best == 1 else 3.0), 1e-6)
+        small = small + 1 if gain < TOLERANCE else 0
+        if small >= 2:
+            break
+    return Fitted(misfit, u, states, window, loss)
+
+
+def normal(misfit: Misfit, reduced: Reduced, weights: FloatArray, u: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Gauss-Newton Hessian (k, k) and gradient (k,) of half the loss, priors included."""
+    j = reduced.by_unknown
+    hessian = np.einsum("w,wmi,wmj->ij", weights, j, j, optimize=True)
+    gradient = np.einsum("w,wmi,wm->i", weights, j, reduced.residual, optimize=True)
+    rows, slopes = misfit.prior_rows(u)
+    return hessian + slopes.T @ slopes, gradient + slopes.T @ rows
+
+
+def _step(misfit: Misfit, hessian: FloatArray, gradient: FloatArray, u: FloatArray, damping: float) -> FloatArray:
+    """The damped step, with coordinates that push against a bound held."""
+    step = np.zeros(u.size)
+    bounds = np.array([x.bounds for x in misfit.unknowns]).reshape(-1, 2)
+    held = ((u <= bounds[:, 0]) & (gradient > 0.0)) | ((u >= bounds[:, 1]) & (gradient < 0.0))
+    free = np.flatnonzero(~held)
+    if free.size:
+        part = hessian[np.ix_(free, free)]
+        scale = np.diag(part) + 1e-9 * (np.max(np.diag(part)) + 1e-12)
+        step[free] = -np.linalg.solve(part + damping * np.diag(scale) + 1e-12 * np.eye(free.size), gradient[free])
+    return step

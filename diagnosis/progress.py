@@ -1,0 +1,43 @@
+"""Progress that is shown, and stages after the search: a Ctrl-C there costs the stage under way, not the answer."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TypeVar
+
+T = TypeVar("T")
+Progress = Callable[[str, float], None]
+"""Called with what is being done and the share of the whole that is done."""
+
+
+def silent(text: str, share: float) -> None:
+    """No progress shown."""
+
+
+@dataclass
+class Stages:
+    """``stopped``: someone pressed Ctrl-C, so nothing that can be left out is begun; ``skipped`` names it."""
+
+    stopped: bool = False
+    skipped: list[str] = field(default_factory=list)
+
+    def optional(self, what: str, stage: Callable[[], T], instead: Callable[[], T]) -> T:
+        """The result of ``stage``, or of ``instead`` once a Ctrl-C was pressed."""
+        if not self.stopped:
+            try:
+                return stage()
+            except KeyboardInterrupt:
+                self.stopped = True
+        self.skipped.append(what)
+        return instead()
+
+    def needed(self, stage: Callable[[], T]) -> T:
+        """The result of ``stage``, without which there is no answer: begun anew after a first Ctrl-C."""
+        if self.stopped:
+            return stage()
+        try:
+            return stage()
+        except KeyboardInterrupt:
+            self.stopped = True
+            return stage()

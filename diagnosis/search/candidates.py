@@ -1,0 +1,121 @@
+"""The mechanisms that may be missing, as unknowns with places to start from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+
+from diagnosis.data.measured import Measured
+from diagnosis.fit.unknowns import Unknown, of_parameter
+from grids.instruments import INSTRUMENTS
+from grids.specimen import Specimen
+from models.base import FloatArray, Mechanism
+
+GRID = (0.03, 0.1, 0.3, 0.6, 0.95)
+"""Shares of the way from the null to a bound."""
+FINE_GRID = tuple(np.geomspace(0.01, 0.95, 32).tolist())
+"""The same where the effect sets in at a threshold somewhere on the way."""
+SHAPE_GRID = 3
+REFERENCE = "reference_peak"
+ORDERS = (1.0, 2.0, 4.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """One mechanism, or one variant of it with some parameters held.
+
+    ``unknowns``: the effect's parameter first, then those that shape it; ``held``: the others.
+    """
+
+    mechanism: Mechanism
+    unknowns: tuple[Unknown, ...]
+    held: dict[str, float]
+
+    @property
+    def name(self) -> str:
+        return self.mechanism.name
+
+    @property
+    def effect_class(self) -> str:
+        return self.mechanism.effect_class
+
+    @property
+    def null(self) -> FloatArray:
+        """Coordinates (d,) at which the effect is off."""
+        return np.array([u.coordinate(u.start) for u in self.unknowns])
+
+    @property
+    def one_sided(self) -> bool:
+        """Whether the null is a bound of the effect's parameter."""
+        low, high = self.unknowns[0].bounds
+        return bool(self.null[0] <= low or self.null[0] >= high)
+
+    def grid(self, by_threshold: bool = False) -> Iterator[FloatArray]:
+        """Coordinates (d,) spread over the range, on both sides of the null; finely for a ``by_threshold`` effect."""
+        null = self.null
+        shapes = [_spread(u) for u in self.unknowns[1:]]
+        low, high = self.unknowns[0].bounds
+        inner = float(np.clip(null[0], low, high))
+        for bound in (low, high):
+            reach = bound - inner
+            if reach == 0.0:
+                continue
+            for share in FINE_GRID if by_threshold else GRID:
+                for rest in product(*shapes):
+                    yield np.array([inner + share * reach, *rest])
+
+
+def _spread(unknown: Unknown) -> FloatArray:
+    low, high = unknown.bounds
+    return np.linspace(low, high, SHAPE_GRID + 2)[:-1] if low == 0.0 else np.linspace(low, high, SHAPE_GRID)
+
+
+def candidates(measured: Measured, specimen: Specimen) -> tuple[Candidate, ...]:
+    """Every mechanism that can act on the model or its sensors and is not switched on already."""
+    known = {**measured.model.mechanisms, **INSTRUMENTS}
+    found: list[Candidate] = []
+    for name, mechanism in known.items():
+        if name in specimen.mechanisms or not _usable(name, measured):
+            continue
+        if name == "filter":
+            found += _filters(mechanism)
+        else:
+            found.append(_generic(mechanism, measured))
+    return tuple(found)
+
+
+def _usable(name: str, measured: Measured) -> bool:
+    if name != "vertical_acceleration":
+        return True
+    return all(s.vertical is not None and not s.vertical_acts for s in measured.shakings)
+
+
+def _generic(mechanism: Mechanism, measured: Measured) -> Candidate:
+    unknowns = []
+    for parameter in mechanism.parameters:
+        if parameter.name == REFERENCE:
+            continue
+        unknown = of_parameter(mechanism, parameter)
+        if parameter.shape and parameter.unit == "rad":
+            high = min(unknown.high, 0.9 * measured.reference_peak)
+            unknown = replace(unknown, high=high, scale=high / 20.0)
+        elif parameter.shape and unknown.low > 0.0 and unknown.high / unknown.low > 3.0:
+            unknown = replace(unknown, kind="log", scale=0.1)
+        unknowns.append(unknown)
+    return Candidate(mechanism, tuple(unknowns), {})
+
+
+def _filters(mechanism: Mechanism) -> list[Candidate]:
+    """A low-pass of each order, and a high-pass: the order is no continuous unknown."""
+    found = []
+    for parameter, orders in (("corner_hz", ORDERS), ("high_pass_hz", (1.0, 2.0))):
+        unknown = of_parameter(mechanism, mechanism.parameter(parameter))
+        found += [Candidate(mechanism, (unknown,), {f"{mechanism.name}.order": order}) for order in orders]
+    return found
+
+
+def of_name(found: Sequence[Candidate], name: str) -> tuple[Candidate, ...]:
+    return tuple(c for c in found if c.name == name)

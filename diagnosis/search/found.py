@@ -1,0 +1,145 @@
+"""What a search has found, and what counts in it: gains, thresholds, adequacy, rivals.
+
+An effect counts when its gain in 2 log likelihood passes the threshold and still does without
+the window that speaks loudest for it (and, with more than two recordings, without any one of them),
+or when it alone makes that window fit (`settles`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from diagnosis.data.measured import Measured
+from diagnosis.forces.constancy import Constancy
+from diagnosis.search.candidates import Candidate
+from diagnosis.search.null import Null
+from diagnosis.search.refit import Explanation, from_other, gain_by_window, without
+from diagnosis.search.screen import Score
+from models.base import FloatArray
+
+MISSING = 15.0
+"""Gain in 2 log likelihood that one more mechanism must bring."""
+DETAIL = 0.0025
+"""Share of the evidence that the details of a named effect's law may leave: 5 % of its amplitude."""
+GAP = 10.0
+"""Rivals: all within this gain of the best."""
+PER_SHAPE = 2.0
+"""What every unknown beyond the first costs a mechanism."""
+ADEQUATE = 1.08
+"""Misfit per sample under which an explanation is adequate."""
+ALONE, SETTLED, BADLY = 4.0, 1.3, 3.0
+"""When one window may decide: its gain in thresholds, its misfit per sample with the mechanism and without."""
+
+
+@dataclass
+class Search:
+    """What has been found so far; it grows, so that a stopped search leaves its state."""
+
+    base: Explanation
+    candidates: tuple[Candidate, ...]
+    scores: list[Score] = field(default_factory=list)
+    null: Null | None = None
+    singles: list[Explanation] = field(default_factory=list)
+    tried: list[Explanation] = field(default_factory=list)
+    best: Explanation | None = None
+    outside: Constancy | None = None
+    """A force outside the library that explains what the best single leaves."""
+
+    @property
+    def measured(self) -> Measured:
+        return self.base.measured
+
+    @property
+    def chosen(self) -> Explanation:
+        return self.base if self.best is None else self.best
+
+    @property
+    def more(self) -> float:
+        """What a further effect, or a departure from constancy, must bring."""
+        return MISSING + DETAIL * max(self.gain(self.chosen), 0.0)
+
+    def gain(self, explanation: Explanation) -> float:
+        """Gain over the base, less what shape parameters cost."""
+        return self.base.loss - adjusted(explanation)
+
+
+def adjusted(explanation: Explanation) -> float:
+    """Loss plus the price of parameters beyond the first of each mechanism, chosen ones (an order) included."""
+    return explanation.loss + PER_SHAPE * sum(len(c.unknowns) - 1 + len(c.held) for c in explanation.candidates)
+
+
+def survives(before: Explanation, after: Explanation, threshold: float = MISSING) -> bool:
+    """Whether the gain passes without its loudest window and, of more than two, any one recording."""
+    gains = gain_by_window(before, after)
+    total = before.loss - adjusted(after) + (adjusted(before) - before.loss)
+    loudest = float(gains.max(initial=0.0))
+    if total - loudest < threshold:
+        return loudest >= ALONE * threshold and total - loudest > -threshold and settles(before, after)
+    measured = after.measured
+    if len(measured.recordings) > 2:
+        each = [float(gains[measured.recording_of == r].sum()) for r in range(len(measured.recordings))]
+        return total - max(each) >= 0.3 * threshold
+    return True
+
+
+def settles(before: Explanation, after: Explanation) -> bool:
+    """Whether one window, rightly fitted, decides: a peak that was clipped may be the only one.
+
+    The window with the largest gain fits to the noise with the mechanism, and badly without it even from
+    the states found with it: it was not stuck.
+    """
+    window = int(np.argmax(gain_by_window(before, after)))
+    alone = from_other(before, after)
+    return bool(by_window(after)[window] < SETTLED and by_window(alone)[window] > BADLY)
+
+
+def by_window(explanation: Explanation) -> FloatArray:
+    """Squared whitened residual per sample of each window (W,)."""
+    misfit = explanation.fitted.misfit
+    residual = misfit.residuals([explanation.fitted.point])[0]
+    return np.asarray(np.sum(residual**2, axis=1) / misfit.measured.count)
+
+
+def misfit_per_sample(explanation: Explanation) -> float:
+    """Squared whitened residual per sample, without the worst tenth (at least one) of the windows."""
+    each = np.sort(by_window(explanation))
+    return float(np.mean(each[: max(1, int(0.9 * each.size))]))
+
+
+def adequate(explanation: Explanation) -> bool:
+    """Whether the misfit is that of the noise."""
+    return misfit_per_sample(explanation) < ADEQUATE
+
+
+def explains_all(explanation: Explanation) -> bool:
+    """Whether no window is badly off either: a peak that was clipped may be the only one."""
+    return adequate(explanation) and bool(np.max(by_window(explanation)) < BADLY)
+
+
+def rivals(found: Search) -> list[tuple[Explanation, Candidate, float]]:
+    """Explanations with one effect exchanged, within the gap: (explanation, the other effect, gap)."""
+    if found.best is None:
+        return []
+    best, near = found.best, []
+    seen = set(best.names)
+    for other in sorted(found.tried, key=adjusted):
+        if len(other.candidates) != len(best.candidates):
+            continue
+        gap = adjusted(other) - adjusted(best)
+        new = [c for c in other.candidates if c.name not in best.names]
+        if gap > GAP or len(new) != 1 or new[0].name in seen:
+            continue
+        seen.add(new[0].name)
+        near.append((other, new[0], max(gap, 0.0)))
+    return near
+
+
+def evidence(found: Search) -> FloatArray:
+    """Gain of each effect over the best model without it (n_effects,)."""
+    if found.best is None:
+        return np.zeros(0)
+    if len(found.best.candidates) == 1:
+        return np.array([found.base.loss - found.best.loss])
+    return np.array([without(found.best, c).loss - found.best.loss for c in found.best.candidates])

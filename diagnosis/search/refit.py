@@ -1,0 +1,139 @@
+"""Refitting a model with mechanisms switched on, and moving between fits."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diagnosis.data.measured import Measured
+from diagnosis.fit.memory import counted
+from diagnosis.fit.solver import ITERATIONS, Fitted, fit, fit_thoroughly
+from diagnosis.search.candidates import Candidate
+from models.base import FloatArray
+
+RECOUNTS = 4
+SHAPES, QUICK = 5, 6
+"""Values of a shape tried anew, and the iterations of each."""
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """A fit with some mechanisms switched on; none for the base model."""
+
+    candidates: tuple[Candidate, ...]
+    fitted: Fitted
+
+    @property
+    def loss(self) -> float:
+        return self.fitted.loss
+
+    @property
+    def measured(self) -> Measured:
+        return self.fitted.measured
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(c.name for c in self.candidates)
+
+    @property
+    def classes(self) -> tuple[str, ...]:
+        return tuple(c.effect_class for c in self.candidates)
+
+    def part(self, candidate: Candidate) -> FloatArray:
+        """Fitted coordinates of one of the candidates."""
+        names = [x.name for x in self.fitted.misfit.unknowns]
+        return np.array([self.fitted.u[names.index(x.name)] for x in candidate.unknowns])
+
+
+def extend(
+    explanation: Explanation, candidate: Candidate, start: FloatArray, iterations: int = ITERATIONS
+) -> Explanation:
+    """Fit with one more mechanism, from the explanation's optimum and the candidate's ``start``."""
+    base = explanation.fitted
+    misfit = replace(
+        base.misfit,
+        unknowns=(*base.misfit.unknowns, *candidate.unknowns),
+        fixed={**base.misfit.fixed, **candidate.held},
+    )
+    return Explanation(
+        (*explanation.candidates, candidate),
+        fit(misfit, np.concatenate([base.u, start]), base.states, iterations),
+    )
+
+
+def without(explanation: Explanation, candidate: Candidate, iterations: int = ITERATIONS) -> Explanation:
+    """Fit without one of the mechanisms, from the explanation's own optimum."""
+    base = explanation.fitted
+    gone = {x.name for x in candidate.unknowns}
+    keep = [i for i, x in enumerate(base.misfit.unknowns) if x.name not in gone]
+    misfit = replace(
+        base.misfit,
+        unknowns=tuple(base.misfit.unknowns[i] for i in keep),
+        fixed={k: v for k, v in base.misfit.fixed.items() if k not in candidate.held},
+    )
+    rest = tuple(c for c in explanation.candidates if c is not candidate)
+    return Explanation(rest, fit(misfit, base.u[keep], base.states, iterations))
+
+
+def again(explanation: Explanation) -> Explanation:
+    """The same fit taken further from where it stands, stuck windows started again."""
+    f = explanation.fitted
+    return replace(explanation, fitted=fit_thoroughly(f.misfit, f.u, f.states))
+
+
+def from_other(explanation: Explanation, other: Explanation, iterations: int = ITERATIONS) -> Explanation:
+    """The same model refitted from another one's base parameters and states (a cross restart)."""
+    mine, theirs = explanation.fitted, other.fitted.values
+    u = np.array(
+        [
+            x.coordinate(theirs[x.name]) if x.name in theirs else c
+            for x, c in zip(mine.misfit.unknowns, mine.u, strict=True)
+        ]
+    )
+    tried = Explanation(explanation.candidates, fit(mine.misfit, u, other.fitted.states, iterations))
+    return min((explanation, tried), key=lambda e: e.loss)
+
+
+def reshaped(explanation: Explanation) -> Explanation:
+    """The best of this fit and of fits from other shapes of its mechanisms, one shape at a time.
+
+    Where a shape does nothing (a floor that is never reached, a gap never closed) its derivative is no guide.
+    """
+    fitted, tried = explanation.fitted, [explanation]
+    shapes = {x.name for c in explanation.candidates for x in c.unknowns[1:]}
+    for i, unknown in enumerate(fitted.misfit.unknowns):
+        if unknown.name not in shapes:
+            continue
+        for at in np.linspace(*unknown.bounds, SHAPES + 2)[1:-1]:
+            u = fitted.u.copy()
+            u[i] = at
+            tried.append(replace(explanation, fitted=fit(fitted.misfit, u, fitted.states, QUICK)))
+    return best_of(tried)
+
+
+def with_memory(explanation: Explanation) -> Explanation:
+    """The same model refitted with the impacts before each window counted along its own motion, if that is better.
+
+    Counts and parameters depend on each other: repeated until the loss stays.
+    """
+    fitted = explanation.fitted
+    for _ in range(RECOUNTS):
+        before = fitted.loss
+        point = fitted.point
+        measured = counted(fitted.misfit.predictor, point)
+        misfit = replace(fitted.misfit, predictor=replace(fitted.misfit.predictor, measured=measured))
+        fitted = fit(misfit, fitted.u, fitted.states)
+        if abs(before - fitted.loss) < 0.5:
+            break
+    return replace(explanation, fitted=fitted) if fitted.loss < explanation.loss else explanation
+
+
+def gain_by_window(before: Explanation, after: Explanation) -> FloatArray:
+    """Gain in 2 log likelihood of each window (W,)."""
+    return before.fitted.window_losses - after.fitted.window_losses
+
+
+def best_of(explanations: Sequence[Explanation]) -> Explanation:
+    return min(explanations, key=lambda e: e.loss)

@@ -1,0 +1,90 @@
+"""The screen: how much each mechanism could explain, before any refit.
+
+With residuals r and derivatives d of the effect's parameter, both projected off the states and the
+base parameters (weights and priors included), the score (Lagrange multiplier) statistic is
+
+    S = (d'r)^2 / d'd,      one-sided where the null is a bound: 0 when the best step leaves it.
+
+A null at infinity or with a threshold (sliding, gaps, flight) has no usable derivative: there the
+model is run on a grid of values and the statistic is the largest gain over the grid, the base
+parameters and states answering linearly.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnosis.fit.linearisation import Linearisation
+from diagnosis.fit.misfit import STEP
+from diagnosis.fit.prediction import Point
+from diagnosis.search.candidates import Candidate
+from models.base import FloatArray
+from models.errors import InputError
+
+
+@dataclass(frozen=True)
+class Score:
+    """``statistic``: the larger of score and grid gain; ``starts``: coordinates (d,) worth a refit, best first.
+
+    ``column`` (W, M): the direction in which the effect moves the residuals, off the states.
+    """
+
+    candidate: Candidate
+    statistic: float
+    starts: tuple[FloatArray, ...]
+    column: FloatArray
+
+
+def score(screen: Linearisation, candidates: Sequence[Candidate]) -> list[Score]:
+    """Statistics of all candidates, strongest first; those that the model refuses beside others are left out."""
+    base = screen.fitted.point
+    found = []
+    for candidate in candidates:
+        try:
+            found.append(_score_one(screen, base, candidate))
+        except InputError:  # it does not act together with a mechanism that is switched on
+            continue
+    return sorted(found, key=lambda s: -s.statistic)
+
+
+def _score_one(screen: Linearisation, base: Point, candidate: Candidate) -> Score:
+    misfit = screen.fitted.misfit
+    null = candidate.null
+    low, high = candidate.unknowns[0].bounds
+    near = [null.copy(), null.copy()]
+    near[0][0], near[1][0] = min(max(null[0] - STEP, low), null[0]), min(max(null[0] + STEP, low), high)
+    off, _ = screen.reduced(misfit.residuals([at(base, candidate, u) for u in near]))
+    derivative = (off[1] - off[0]) / (near[1][0] - near[0][0])
+    information = screen.product(derivative, derivative)
+    trials = list(candidate.grid(by_threshold=information <= 1e-12))
+    off, _ = screen.reduced(misfit.residuals([at(base, candidate, u) for u in trials]))
+    best, start = 0.0, null
+    if information > 1e-12:
+        step = -screen.scores_with_residual(derivative) / information
+        if null[0] < high if step > 0.0 else null[0] > low:
+            best = step**2 * information
+            start = null.copy()
+            start[0] = np.clip(null[0] + step, low, high)
+    gains = np.array([_gain(screen, column) for column in off])
+    order = np.argsort(-gains)[:2]
+    starts = [trials[int(i)] for i in order if gains[i] > 0.0]
+    if best > 0.0:
+        starts.insert(0 if not gains.size or best * 0.8 > gains[order[0]] else 1, start)
+    statistic = max(best if np.isfinite(best) else 0.0, float(gains.max(initial=0.0)))
+    column = derivative if information > 1e-12 or not order.size else off[int(order[0])] - screen.residual
+    return Score(candidate, statistic, tuple(starts[:2]), column)
+
+
+def _gain(screen: Linearisation, off: FloatArray) -> float:
+    """Gain of a trial in 2 log likelihood, states and base parameters answering linearly."""
+    change = off - screen.residual
+    return -2.0 * screen.scores_with_residual(change) - screen.product(change, change)
+
+
+def at(base: Point, candidate: Candidate, u: FloatArray) -> Point:
+    """A point with the candidate's coordinates."""
+    values = {x.name: x.value(float(c)) for x, c in zip(candidate.unknowns, u, strict=True)}
+    return Point({**base.values, **candidate.held, **values}, base.states)

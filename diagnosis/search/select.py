@@ -1,0 +1,230 @@
+"""Which mechanisms are missing: refits of the strongest, forward selection, backward check, rivals.
+
+The fit of the base may be stuck; a rival's optimum then shows it, and the base is refitted from
+there. What counts is in `diagnosis.search.found`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from diagnosis.fit.linearisation import linearise_about
+from diagnosis.progress import Progress
+from diagnosis.search.candidates import Candidate
+from diagnosis.search.found import MISSING, Search, adequate, adjusted, explains_all, survives
+from diagnosis.search.null import null_distribution
+from diagnosis.search.outside import outside
+from diagnosis.search.refit import (
+    QUICK,
+    Explanation,
+    again,
+    best_of,
+    extend,
+    from_other,
+    reshaped,
+    with_memory,
+    without,
+)
+from diagnosis.search.screen import Score, score
+
+WORTH = 4.0
+"""Linearisation statistic under which a refit is not tried (the strongest FEWEST are tried all the same)."""
+FEWEST, MOST = 5, 16
+SHARE_OF_FIRST, SHARE_OF_SECOND = 0.05, 0.25
+"""Of the strongest statistic: what a first or a further mechanism must reach to be refitted."""
+HOPELESS = 8.0
+"""Statistic of the strongest further mechanism under which a model that explains all windows is not extended."""
+TIE = 0.5
+"""Gain within which two explanations are one for the data: the earlier in the catalogue is named."""
+THOROUGH = 2
+NEAR, NEAR_ADEQUATE = 0.2, 0.6
+"""Share of the leader's gain from which a single is refitted from the leader's optimum too."""
+FIRST_POOL = 3
+SECOND_TRIES = 6
+MOST_EFFECTS = 3
+POOL_SHARE = 0.25
+"""Singles whose gain is this share of the best one's are tried as parts of a pair."""
+
+
+def search(base: Explanation, candidates: Sequence[Candidate], progress: Progress) -> Iterator[Search]:
+    """Yields the growing search after each stage; the last one is the answer."""
+    found = Search(base, tuple(candidates))
+    yield found
+    progress("screening the mechanisms", 0.1)
+    _singles(found, progress)
+    yield found
+    if not found.singles:
+        return
+    take_best_single(found)
+    if found.best is None:
+        return
+    yield found
+    _pairs(found, progress)
+    yield found
+    if found.outside is None:
+        _more(found, progress)
+        yield found
+    if found.outside is None:
+        _backward(found)
+    settle_ties(found)
+    found.best = None if found.best is None else with_memory(again(found.best))
+    yield found
+
+
+def take_best_single(found: Search) -> None:
+    """The strongest single so far that counts; a stronger one may rest on one window that needs another effect too."""
+    for single in sorted(found.singles, key=adjusted):
+        if found.gain(single) < MISSING:
+            return
+        if survives(found.base, single):
+            found.best = single
+            return
+
+
+def worth_a_refit(scores: Sequence[Score], fewest: int, share: float) -> list[Score]:
+    """Those whose statistic is worth it beside the strongest one's, and the ``fewest`` first in any case."""
+    largest = max((s.statistic for s in scores), default=0.0)
+    least = max(WORTH, share * largest)
+    return [s for k, s in enumerate(scores) if s.starts and (k < fewest or s.statistic >= least)]
+
+
+def _refits(explanation: Explanation, scores: Sequence[Score], fewest: int, most: int) -> list[Explanation]:
+    """The strongest of a screen, each from its starts."""
+    wanted = worth_a_refit(scores, fewest, SHARE_OF_SECOND)[:most]
+    fits = [best_of([extend(explanation, s.candidate, start, QUICK) for start in s.starts]) for s in wanted]
+    fits.sort(key=adjusted)
+    return [again(e) if k < THOROUGH else e for k, e in enumerate(fits)]
+
+
+def _singles(found: Search, progress: Progress) -> None:
+    opened = linearise_about(found.base.fitted)
+    found.scores = score(opened, found.candidates)
+    found.null = null_distribution(opened, found.scores)
+    wanted = worth_a_refit(found.scores, FEWEST, SHARE_OF_FIRST)[:MOST]
+    for k, entry in enumerate(wanted):
+        progress(f"refitting {entry.candidate.name}", 0.15 + 0.3 * k / len(wanted))
+        fits = [extend(found.base, entry.candidate, start, QUICK) for start in entry.starts]
+        found.singles.append(best_of(fits))
+    found.singles.sort(key=adjusted)
+    if not found.singles:
+        return
+    leader = found.singles[0] = again(reshaped(found.singles[0]))
+    if found.gain(leader) < MISSING:
+        return
+    restarted = from_other(found.base, leader)
+    if restarted.loss < found.base.loss - 1.0:
+        found.base = restarted
+    near = NEAR_ADEQUATE if adequate(leader) else NEAR
+    for k, single in enumerate(found.singles[1:], start=1):
+        if found.gain(single) > near * found.gain(leader):
+            found.singles[k] = from_other(again(single) if k < THOROUGH else single, leader)
+    found.singles.sort(key=adjusted)
+    found.singles[0] = with_memory(found.singles[0])
+    found.tried += found.singles
+
+
+def pool(found: Search) -> list[Explanation]:
+    """The best single of each of the strongest classes."""
+    if found.best is not None and adequate(found.best):
+        return [found.best]
+    best = found.gain(found.singles[0])
+    chosen: list[Explanation] = []
+    for single in found.singles:
+        if len(chosen) == FIRST_POOL or found.gain(single) < max(MISSING, POOL_SHARE * best):
+            break
+        if single.classes[0] not in {c.classes[0] for c in chosen}:
+            chosen.append(single)
+    return chosen
+
+
+def _pairs(found: Search, progress: Progress) -> None:
+    if found.best is None:
+        return
+    progress("comparing with laws outside the library", 0.48)
+    others = seconds(found, found.best)
+    if not adequate(found.best):
+        found.outside = outside(found.best, others)
+    singles = pool(found)
+    pairs: list[Explanation] = []
+    for k, single in enumerate(singles):
+        progress(f"looking for a second effect beside {single.names[0]}", 0.5 + 0.25 * k / len(singles))
+        pairs += _extended(single, others if single is found.best else seconds(found, single))
+        if any(adequate(e) for e in pairs):  # the backward check still tries the others in its place
+            break
+    if not pairs:
+        return
+    if found.outside is not None:
+        if not any(adequate(e) for e in pairs):
+            return
+        found.outside = None
+    found.tried += pairs
+    pair = min(pairs, key=adjusted)
+    alone = best_of([e for e in found.singles if e.names[0] in pair.names] or [found.best])
+    if adjusted(found.best) - adjusted(pair) >= found.more and survives(alone, pair, found.more):
+        found.best = again(reshaped(pair))
+
+
+def seconds(found: Search, explanation: Explanation) -> list[Score]:
+    """The screen of mechanisms of other classes beside those of an explanation."""
+    others = [c for c in found.candidates if c.effect_class not in explanation.classes]
+    return score(linearise_about(explanation.fitted), others)
+
+
+def _extended(explanation: Explanation, scores: Sequence[Score]) -> list[Explanation]:
+    """Refits with one more mechanism, the strongest of a screen beside the explanation."""
+    if explains_all(explanation) and max((s.statistic for s in scores), default=0.0) < HOPELESS:
+        return []
+    return _refits(explanation, scores, 2, SECOND_TRIES)
+
+
+def _more(found: Search, progress: Progress) -> None:
+    """A third effect, by the same rule, unless a law outside the library explains more."""
+    while found.best is not None and 2 <= len(found.best.candidates) < MOST_EFFECTS:
+        progress("looking for a further effect", 0.8)
+        others = seconds(found, found.best)
+        if not adequate(found.best):
+            found.outside = outside(found.best, others)
+            if found.outside is not None:
+                return
+        further = _extended(found.best, others)
+        if not further:
+            return
+        found.tried += further
+        best = min(further, key=adjusted)
+        if adjusted(found.best) - adjusted(best) < found.more or not survives(found.best, best, found.more):
+            return
+        found.best = best
+
+
+def _backward(found: Search) -> None:
+    """Drop what is no longer needed; try other mechanisms in the place of each effect."""
+    if found.best is None or len(found.best.candidates) < 2:
+        return
+    dropping = True
+    while dropping and len(found.best.candidates) > 1:
+        dropping = False
+        for candidate in found.best.candidates:
+            rest = without(found.best, candidate)
+            if adjusted(rest) - adjusted(found.best) < found.more:
+                found.best, dropping = rest, True
+                break
+    if len(found.best.candidates) < 2:
+        return
+    for candidate in found.best.candidates:
+        rest = without(found.best, candidate)
+        found.tried += _extended(rest, seconds(found, rest))
+    same = [e for e in found.tried if len(e.candidates) == len(found.best.candidates)]
+    better = min(same, key=adjusted)
+    if adjusted(better) < adjusted(found.best):
+        found.best = better
+
+
+def settle_ties(found: Search) -> None:
+    """Name the earlier in the catalogue of explanations that the data cannot tell apart at all."""
+    if found.best is None:
+        return
+    place = {c: k for k, c in enumerate(found.candidates)}
+    same = [e for e in [found.best, *found.tried] if len(e.candidates) == len(found.best.candidates)]
+    near = [e for e in same if adjusted(e) - adjusted(found.best) < TIE]
+    found.tried.append(found.best)
+    found.best = min(near, key=lambda e: (sum(place[c] for c in e.candidates), adjusted(e)))

@@ -1,0 +1,146 @@
+"""The whole chain on recordings made by the plain reference."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diagnosis import calibrate, diagnose
+from diagnosis.answer.result import Diagnosis
+from diagnosis.search.null import LEAST_P
+from models.errors import InputError
+from tests.diagnosis.made import SPECIMEN, TRUE, recording
+
+
+def told(effect: dict[str, dict[str, float]] | None, **options: object) -> Diagnosis:
+    training = [recording("train_1", 1, effect), recording("train_2", 2, effect)]
+    return diagnose(SPECIMEN, training, [recording("test_1", 3, effect)], **options)  # type: ignore[arg-type]
+
+
+def test_nothing_missing() -> None:
+    found = told(None)
+    assert found.verdict == "nothing_missing", found.statement
+    alone = calibrate(SPECIMEN, [recording("train_1", 1), recording("train_2", 2)], profile=False)
+    assert alone.misfit == pytest.approx(found.train.before, rel=1e-9)
+    assert not found.effects and not found.rivals
+    assert found.p_value is not None and found.p_value > 0.001
+    assert found.holdout is not None and found.holdout.share_of_achievable is None
+    for name in ("width", "height"):
+        value = found.base[name]
+        assert value.low95 - 0.003 * TRUE[name] < TRUE[name] < value.high95 + 0.003 * TRUE[name]
+
+
+def test_restitution_is_named_and_recovered() -> None:
+    truth = 0.93
+    found = told({"restitution": {"factor_on_housner": truth}})
+    assert found.effects[0].name == "restitution", found.statement
+    value = found.effects[0].parameters["factor_on_housner"]
+    assert value.low95 <= truth <= value.high95
+    assert value.high95 - value.low95 < 0.03
+    assert found.p_value == found.effects[0].p_value == LEAST_P and found.effects[0].evidence > 50
+    assert found.holdout is not None and found.holdout.share_of_achievable is not None
+    assert found.holdout.share_of_achievable > 0.8
+    assert found.located and "impact" in found.located[0].where
+    assert "restitution" in found.statement
+
+
+def test_a_stopped_search_tells_what_it_has() -> None:
+    def stop(text: str, share: float) -> None:
+        if text.startswith("looking for a second effect"):
+            raise KeyboardInterrupt
+
+    found = told({"restitution": {"factor_on_housner": 0.93}}, progress=stop)
+    assert not found.finished
+    assert found.effects and found.effects[0].name == "restitution"
+    assert "stopped" in found.statement
+
+
+@pytest.mark.parametrize("stage", ["intervals", "bootstrap", "before and after"])
+def test_ctrl_c_after_the_search_leaves_the_answer(stage: str) -> None:
+    pressed = []
+
+    def stop(text: str, share: float) -> None:
+        if text.startswith(stage) and not pressed:
+            pressed.append(text)
+            raise KeyboardInterrupt
+
+    draws = 20 if stage == "bootstrap" else 0
+    found = diagnose(SPECIMEN, [recording("train_1", 1)], [recording("test_1", 3)], bootstrap=draws, progress=stop)
+    assert pressed and found.finished and found.verdict == "nothing_missing"
+    assert found.p_value is not None and found.p_value > 0.001 and found.holdout is not None and found.base
+    assert found.skipped and "left out" in found.statement
+    assert ("bootstrap" in found.skipped[0]) == (stage == "bootstrap")
+
+
+def test_a_search_stopped_at_once_claims_nothing() -> None:
+    def stop(text: str, share: float) -> None:
+        if text.startswith("screening"):
+            raise KeyboardInterrupt
+
+    found = diagnose(SPECIMEN, [recording("train_1", 1)], [recording("test_1", 3)], progress=stop)
+    assert not found.finished and not found.effects and not found.located and found.p_value is None
+    assert found.holdout is not None and found.holdout.share_of_achievable is None
+    assert "stopped before anything was found" in found.statement and "leaves something out" not in found.statement
+
+
+def test_priors_hold_what_the_recordings_do_not_tell() -> None:
+    tight = replace(SPECIMEN, tolerance={"width": 1e-6, "height": 0.005, "mass": 0.01})
+    found = calibrate(tight, [recording("train_1", 1)], profile=False)
+    assert found.parameters["width"].estimate == pytest.approx(0.25, rel=1e-5)
+    mass = found.parameters["mass"]
+    assert mass.estimate == pytest.approx(540.0, rel=1e-6)
+    assert mass.high95 - mass.low95 == pytest.approx(2 * 1.96 * 5.4, rel=0.05)
+
+
+def test_the_profile_rises_from_the_estimate_and_the_bar_moves_on() -> None:
+    shares: list[float] = []
+    found = calibrate(SPECIMEN, [recording("train_1", 1)], progress=lambda text, share: shares.append(share))
+    assert shares == sorted(shares) and len(set(shares)) == len(shares) >= 5 and shares[0] >= 0.0 and shares[-1] < 1.0
+    for name, (at, rise) in found.profiles.items():
+        value = found.parameters[name]
+        assert at[0] <= value.low95 and at[-1] >= value.high95
+        near = int(np.argmin(np.abs(at - value.estimate)))
+        assert rise[near] == pytest.approx(0.0, abs=0.1)
+        assert np.all(np.diff(rise[near:]) > 0.0) and np.all(np.diff(rise[: near + 1]) < 0.0)
+
+
+def test_calibrating_what_is_known_exactly_is_refused() -> None:
+    with pytest.raises(InputError, match=r"nothing to calibrate.*\[tolerance\]"):
+        calibrate(replace(SPECIMEN, tolerance={}), [recording("train_1", 1)])
+
+
+def test_a_range_is_searched_globally() -> None:
+    ranged = replace(
+        SPECIMEN,
+        parameters={"width": 0.25, "mass": 540.0},
+        tolerance={"width": 0.002},
+        calibrate={"height": (0.9, 3.6)},
+    )
+    found = calibrate(ranged, [recording("train_1", 1), recording("train_2", 2)], profile=False)
+    assert found.parameters["height"].estimate == pytest.approx(TRUE["height"], rel=0.01)
+    assert set(found.by_recording) == {"train_1", "train_2"}
+    assert 0.8 < found.misfit_per_sample < 1.2
+
+
+def test_nothing_to_compare_is_said() -> None:
+    flat = recording("flat", 1)
+    still = replace(
+        flat, channels={**flat.channels, "rotation_1": np.random.default_rng(0).normal(size=flat.time.size)}
+    )
+    with pytest.raises(InputError, match="never rises above 8 times its noise"):
+        diagnose(SPECIMEN, [still])
+    with pytest.raises(InputError, match="no recording"):
+        diagnose(SPECIMEN, [])
+
+
+def test_a_held_out_recording_without_motion_is_told_before_the_search() -> None:
+    def never(text: str, share: float) -> None:
+        raise AssertionError(text)
+
+    moving = recording("train_1", 1)
+    noise = 1e-4 * np.random.default_rng(1).normal(size=moving.time.size)
+    still = replace(moving, name="still", channels={**moving.channels, "rotation_1": noise})
+    with pytest.raises(InputError, match="still"):
+        diagnose(SPECIMEN, [moving], [still], progress=lambda text, share: None if share < 0.05 else never(text, share))

@@ -1,0 +1,113 @@
+"""What a search amounts to: p-values with shapes paid for, what stays undecided, what explains nothing."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from diagnosis.answer import heldout, judgement
+from diagnosis.fit.setup import measure
+from diagnosis.progress import Stages
+from diagnosis.search.found import MISSING, Search
+from diagnosis.search.null import LEAST_P, Null
+from diagnosis.search.refit import Explanation
+from tests.diagnosis.made import SPECIMEN, recording
+
+NULL = Null(np.sort(np.random.default_rng(0).chisquare(1, 20_000)), 1.0)
+
+
+def candidate(name: str, shapes: int = 0) -> Any:
+    return SimpleNamespace(name=name, effect_class=name, unknowns=(None,) * (1 + shapes), held={})
+
+
+def explanation(window_losses: list[float], *candidates: Any) -> Explanation:
+    losses = np.array(window_losses)
+    return Explanation(candidates, SimpleNamespace(loss=float(losses.sum()), window_losses=losses))  # type: ignore[arg-type]
+
+
+def search(*singles: Explanation, best: Explanation | None = None, windows: int = 4) -> Search:
+    return Search(explanation([100.0] * windows), (), null=NULL, singles=list(singles), best=best)
+
+
+def test_shapes_are_paid_for() -> None:
+    plain, shaped = candidate("a"), candidate("b", shapes=2)
+    found = search(best=explanation([90.0] * 4, plain, shaped))
+    chances = judgement.p_of_effects(found, [9.0, 9.0])
+    assert chances == [NULL.p_value(9.0), NULL.p_value(5.0)] and chances[0] < chances[1]
+
+
+def test_of_two_effects_the_stronger_one_tells_the_chance_not_their_sum() -> None:
+    found = search(best=explanation([90.0] * 4, candidate("a"), candidate("b")))
+    assert judgement.p_of_missing(found, [9.0, 12.0], True) == NULL.p_value(12.0) > NULL.p_value(21.0)
+
+
+def test_no_chance_is_told_beyond_what_anyone_tested() -> None:
+    assert NULL.p_value(600.0) < LEAST_P == judgement.p_value(search(), 600.0)
+
+
+def test_what_a_stopped_search_did_not_test_has_no_p_value() -> None:
+    single = explanation([90.0] * 4, candidate("a"))
+    assert judgement.p_of_missing(search(single), [], finished=False) is None
+    assert judgement.p_of_missing(search(single), [], finished=True) == LEAST_P
+    assert judgement.p_of_missing(Search(explanation([1.0]), ()), [], finished=True) is None
+
+
+@pytest.mark.parametrize(
+    ("losses", "rests_on"),
+    [([100.0, 100.0, 100.0, 60.0], "one window"), ([88.0, 88.0, 88.0, 100.0], "one recording"), ([97.0] * 4, "")],
+)
+def test_a_suspect_refused_says_what_it_rests_on(losses: list[float], rests_on: str) -> None:
+    suspect = explanation(losses, candidate("saturation"))
+    found = search(suspect)
+    told = judgement.undecided(found, judgement.p_of_missing(found, [], True))
+    assert told is not None and (told.name, told.rests_on) == ("saturation", rests_on)
+    assert told.gain == 400.0 - sum(losses) and (told.gain >= MISSING) == bool(rests_on)
+
+
+def test_what_chance_brings_is_not_undecided() -> None:
+    found = search(explanation([99.9] * 4, candidate("a")))
+    assert judgement.undecided(found, judgement.p_of_missing(found, [], True)) is None
+
+
+@pytest.mark.parametrize(("share", "explained"), [(0.05, True), (0.6, True), (0.8, False), (1.3, False)])
+def test_a_model_explains_when_less_than_half_of_the_squares_is_left(share: float, explained: bool) -> None:
+    values = np.random.default_rng(1).normal(size=(5, 2, 80))
+    mask = np.ones(values.shape, bool)
+    shown: Any = SimpleNamespace(measured=SimpleNamespace(values=values, mask=mask), after=(1.0 - share) * values)
+    assert judgement.explains(shown) is explained
+
+
+@pytest.mark.parametrize(("noise", "free"), [(1e-6, True), (0.01, False)])
+def test_a_recording_without_noise_is_known(noise: float, free: bool) -> None:
+    measured = measure(SPECIMEN, [recording("test_1", 3, noise=noise)])
+    shown = heldout.Shown(measured, measured.values, measured.values, None, None)  # type: ignore[arg-type]
+    assert heldout.fit_figures(shown, True).noise_free is free
+
+
+def test_ctrl_c_costs_the_stage_and_those_after_it() -> None:
+    def interrupted() -> str:
+        raise KeyboardInterrupt
+
+    stages = Stages()
+    assert stages.optional("first", lambda: "done", lambda: "instead") == "done"
+    assert stages.optional("second", interrupted, lambda: "instead") == "instead"
+    assert stages.optional("third", lambda: "done", lambda: "instead") == "instead"
+    assert stages.skipped == ["second", "third"]
+    assert stages.needed(lambda: "done") == "done"
+    with pytest.raises(KeyboardInterrupt):
+        stages.needed(interrupted)
+
+
+def test_a_needed_stage_is_begun_anew_once() -> None:
+    presses = [KeyboardInterrupt()]
+
+    def stage() -> str:
+        if presses:
+            raise presses.pop()
+        return "done"
+
+    stages = Stages()
+    assert stages.needed(stage) == "done" and stages.stopped

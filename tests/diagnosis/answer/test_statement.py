@@ -1,0 +1,122 @@
+"""The paragraph: what it says, when, and that it never says the opposite of its numbers."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import pytest
+
+import models
+from diagnosis.answer.result import Diagnosis, Effect, Fit, Undecided, Verdict
+from diagnosis.answer.statement import effect_told, statement
+from diagnosis.fit.intervals import Estimate
+from diagnosis.forces.constancy import Constancy
+from diagnosis.report import diagnosis_json
+from diagnosis.report.page import headline
+from diagnosis.report.suspects import suspect_of
+from diagnosis.search.null import LEAST_P
+from grids.instruments import INSTRUMENTS
+from tests.diagnosis.report.example import diagnosis
+
+ORDER = {"order": Estimate(1.0, 1.0, 1.0, "1")}
+HIGH = Effect("filter", "filter", {"high_pass_hz": Estimate(3.6, 3.0, 4.4, "Hz"), **ORDER}, 80.0, 1e-6)
+LOW = Effect("filter", "filter", {"corner_hz": Estimate(12.0, 10.0, 15.0, "Hz"), **ORDER}, 80.0, 1e-6)
+
+
+@pytest.mark.parametrize(
+    ("effect", "said", "unsaid"),
+    [(HIGH, "high-pass of order 1 at 3.6 Hz", "low-pass"), (LOW, "low-pass of order 1 at 12 Hz", "high-pass")],
+)
+def test_a_filter_is_told_by_what_it_lets_through(effect: Effect, said: str, unsaid: str) -> None:
+    values = {name: value.estimate for name, value in effect.parameters.items()}
+    for text in (effect_told(effect, INSTRUMENTS["filter"]), suspect_of("filter", "housner").says(values)):
+        assert said in text and unsaid not in text and "inf" not in text
+
+
+def said(verdict: Verdict = "missing", **changes: object) -> str:
+    return statement(answer(verdict, **changes), {**models.get("housner").mechanisms, **INSTRUMENTS})
+
+
+def answer(verdict: Verdict = "missing", **changes: object) -> Diagnosis:
+    return replace(diagnosis(verdict), **changes)  # type: ignore[arg-type]
+
+
+def test_nothing_missing_is_told_by_its_chance() -> None:
+    assert "no stronger than chance, p = 0.41" in said("nothing_missing")
+
+
+@pytest.mark.parametrize("rests_on", ["one window", "one recording", ""])
+def test_a_refused_suspect_is_named_as_undecided(rests_on: str) -> None:
+    suspect = Undecided("saturation", "saturation", 46.2, rests_on)
+    found = answer("nothing_missing", p_value=LEAST_P, undecided=suspect)
+    text = said("nothing_missing", p_value=LEAST_P, undecided=suspect)
+    assert "chance, p" not in text and "nothing is missing" not in text
+    assert "saturation gains 46" in text and "p < 1e-6" in text and rests_on in text
+    assert "not decided" in headline(found) and "saturation" in headline(found)
+    read = json.loads(diagnosis_json(found))
+    assert read["undecided"] == {
+        "name": "saturation",
+        "class": "saturation",
+        "gain": 46.2,
+        "rests_on": rests_on or None,
+    }
+
+
+def test_no_p_value_is_told_below_the_floor() -> None:
+    assert "far beyond chance, p < 1e-6" in said(p_value=LEAST_P)
+    assert "p = 0.003" in said(p_value=0.003) and "beyond chance" not in said(p_value=0.003)
+
+
+def test_a_suspicion_comes_first() -> None:
+    wrong = {"train_1": ("rotation_1 has the wrong sign: is it turned?",), "test_1": ("its clock is out of step",)}
+    for verdict in ("missing", "nothing_missing"):
+        text = said(verdict, suspicions=wrong)
+        assert text.startswith("Check this first: train_1: rotation_1 has the wrong sign: is it turned? Check")
+        assert "test_1: its clock is out of step. " in text
+    read = json.loads(diagnosis_json(answer(suspicions=wrong)))["suspicions"]
+    assert [(s["recording"], s["suspicion"]) for s in read] == [(k, v) for k, (v,) in wrong.items()]
+
+
+def test_a_model_that_explains_nothing_names_nothing() -> None:
+    fit = Fit(2.03, 2.03, 0.01, 0.0)
+    lost = {"effects": (), "unexplained": True, "train": fit, "holdout": None, "constancy": ()}
+    text = said("not_in_library", **lost)
+    assert "a name would mean nothing" in text and "not in the library" not in text and "is 2.030 of the signal" in text
+    assert "does not explain" in headline(answer("not_in_library", **lost))
+
+
+def test_a_search_stopped_before_its_first_answer_says_no_more() -> None:
+    early = {"effects": (), "rivals": (), "finished": False, "p_value": None, "located": ()}
+    text = said("cannot_tell_apart", **early)
+    assert "stopped before anything was found" in text and "leaves something out" not in text
+    assert headline(answer("cannot_tell_apart", **early)) == "Stopped before anything was found"
+    late = answer("cannot_tell_apart", finished=False)
+    assert headline(late) == "Stopped early; found so far: pivot inset"
+    assert "stopped before its end" in said("cannot_tell_apart", finished=False)
+
+
+def test_what_was_skipped_is_told() -> None:
+    assert said(skipped=("the bootstrap", "runs from rest")).endswith("left out: the bootstrap, runs from rest.")
+    assert "left out" not in said()
+
+
+def test_a_held_out_recording_without_noise_is_not_measured_by_it() -> None:
+    fit = Fit(0.2, 0.012, 1e-4, 0.94)
+    assert "(94% of what the noise allows)" in said(holdout=fit)
+    assert "hardly bear" not in said(holdout=fit)
+    poor = replace(fit, share_of_achievable=0.2)
+    assert "so they hardly bear the explanation out" in said(holdout=poor)
+    text = said(holdout=replace(fit, noise_free=True))
+    assert "noise allows" not in text and "94% of it" in text and "no noise of their own" in text
+
+
+def test_a_dependence_says_on_which_side() -> None:
+    rubs = Constancy("coulomb_damping", "side", 40.0, "for theta < 0, to the left")
+    text = said("not_in_library", constancy=(rubs,))
+    assert "couple against the motion that depends on the side, stronger for theta < 0, to the left." in text
+    damps = Constancy("viscous_damping", "side", 35.0, "for theta < 0, to the left")
+    assert said("not_in_library", constancy=(rubs, damps)) == text
+    late = replace(damps, depends_on="time", stronger="late")
+    assert "angular velocity that depends on the time, stronger late" in said("not_in_library", constancy=(rubs, late))
+    assert json.loads(diagnosis_json(answer("not_in_library", constancy=(rubs,))))["constancy"][0]["stronger"]

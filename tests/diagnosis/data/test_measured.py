@@ -1,0 +1,53 @@
+"""What is compared of several recordings: channels, rates where they were recorded, what cannot be diagnosed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diagnosis.data.measured import left_out
+from diagnosis.fit.setup import measure
+from grids.recordings.base import Recording
+from grids.specimen import Specimen
+from models.errors import InputError
+from tests.diagnosis.made import SPECIMEN, recording
+
+RATE = 7.0
+"""rad s-1; no rate of the block, so that it is seen where a start comes from."""
+
+
+def with_rate(made: Recording) -> Recording:
+    channels = {**made.channels, "rotation_rate_1": np.full(made.time.size, RATE)}
+    return replace(made, channels=channels)
+
+
+@pytest.mark.parametrize("rated", [0, 1])
+def test_each_recording_starts_from_its_own_rate_or_from_the_slope_of_its_rotation(rated: int) -> None:
+    plain = [recording("a", 1), recording("b", 2)]
+    mixed = [with_rate(made) if k == rated else made for k, made in enumerate(plain)]
+    without, found = measure(SPECIMEN, plain), measure(SPECIMEN, mixed)
+    assert found.channels == ("rotation_1",)
+    of_rated = found.recording_of == rated
+    np.testing.assert_allclose(found.states[of_rated, 1], RATE)
+    np.testing.assert_array_equal(found.states[~of_rated], without.states[~of_rated])
+    assert 0 < of_rated.sum() < of_rated.size
+
+
+def test_a_channel_of_one_recording_alone_is_left_out_and_told() -> None:
+    plain, rated = recording("a", 1), with_rate(recording("b", 2))
+    assert left_out([plain, rated]) == {"rotation_rate_1": ("a",)}
+    assert left_out([rated]) == {} and left_out([plain, plain]) == {}
+
+
+def test_what_a_window_needs_is_named_with_the_recordings_that_lack_it() -> None:
+    two = Specimen(title="two blocks", model="stacked", parameters={})
+    with pytest.raises(InputError, match=r"rotation_2 is missing in a, b: model stacked"):
+        measure(two, [recording("a", 1), recording("b", 2)])
+
+
+@pytest.mark.parametrize("model", ["interface", "interface_linear", "isolated"])
+def test_a_model_whose_motion_no_recording_holds_is_not_offered(model: str) -> None:
+    with pytest.raises(InputError, match=f"diagnosis of model {model} are not offered yet"):
+        measure(Specimen(title="wall", model=model, parameters={}), [recording("a", 1)])

@@ -1,0 +1,74 @@
+"""The bootstrap's draws have the noise that the residuals are weighed with; its tail is that of the draws."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy.stats import chi2
+
+from diagnosis.fit.linearisation import linearise_about
+from diagnosis.fit.setup import base_fit, measure
+from diagnosis.fit.solver import fit
+from diagnosis.search.bootstrap import p_value, tail_probability
+from diagnosis.search.candidates import candidates
+from diagnosis.search.found import Search
+from diagnosis.search.null import LEAST_P
+from diagnosis.search.refit import Explanation
+from diagnosis.search.screen import score
+from tests.diagnosis.made import SPECIMEN, recording
+
+
+@cache
+def null() -> Search:
+    measured = measure(SPECIMEN, [recording("train_1", 1), recording("train_2", 2)])
+    return Search(Explanation((), base_fit(SPECIMEN, measured)), candidates(measured, SPECIMEN))
+
+
+def test_whitened_draws_are_white() -> None:
+    whitening = null().base.fitted.misfit.whitening
+    mask = null().base.measured.mask
+    rng = np.random.default_rng(5)
+    sigma = np.where(whitening.scale > 0.0, 1.0 / np.where(whitening.scale > 0.0, whitening.scale, 1.0), 0.0)
+    drawn = np.stack([whitening(whitening.draw(rng) * sigma) for _ in range(200)])
+    inside = mask.reshape(len(mask), -1)
+    assert np.mean(drawn[:, inside] ** 2) == pytest.approx(1.0, abs=0.01)
+    assert whitening.basis is not None
+    along = np.einsum("wmk,nwm->nwk", whitening.basis, drawn)
+    assert np.mean(along**2) == pytest.approx(1.0, abs=0.03)
+
+
+def test_scores_of_draws_are_those_of_chance() -> None:
+    base = null().base.fitted
+    predictor, m = base.misfit.predictor, base.measured
+    motion = predictor.predict([base.point])[0]
+    rng = np.random.default_rng(8)
+    found = []
+    for _ in range(3):
+        values = np.where(m.mask, motion + base.misfit.whitening.draw(rng) * m.sigma[..., None], 0.0)
+        made = replace(base.misfit, predictor=replace(predictor, measured=replace(m, values=values)))
+        again = fit(made, base.u, base.states)
+        found += [
+            s.statistic for s in score(linearise_about(again), candidates(m, SPECIMEN)) if not s.candidate.one_sided
+        ]
+    assert 0.5 < np.mean(found) < 1.8
+
+
+def test_the_tail_goes_on_where_the_draws_end() -> None:
+    gains = chi2.ppf((np.arange(99) + 0.5) / 99, 1)
+    for scale, beyond in ((1.0, 12.0), (1.0, 20.0), (3.0, 40.0), (0.5, 8.0)):
+        assert 0.5 < tail_probability(beyond, scale * gains) / chi2.sf(beyond / scale, 1) < 2.0
+    many = chi2.ppf(((np.arange(99) + 0.5) / 99) ** 0.1, 1)  # the largest of ten
+    assert 0.5 < tail_probability(20.0, many) / (10.0 * chi2.sf(20.0, 1)) < 2.0
+    alike = 1e4 + gains  # far out and close together
+    assert LEAST_P <= tail_probability(1e4 + 30.0, alike) < 0.25
+    assert tail_probability(12.0, gains) > tail_probability(20.0, gains)
+    assert tail_probability(1e4, gains) == LEAST_P
+    assert tail_probability(0.0, gains) == 1.0
+    assert tail_probability(1e4, gains[:9]) == 0.1
+
+
+def test_nothing_missing_is_likely_by_chance() -> None:
+    assert p_value(SPECIMEN, null(), 4, 1, lambda text, share: None) > 0.1

@@ -1,0 +1,87 @@
+"""Every mechanism, simulated by the plain reference, is seen by the screen and recovered by its own refit."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+import models
+from diagnosis.fit.intervals import covariances
+from diagnosis.fit.linearisation import linearise_about
+from diagnosis.fit.setup import base_fit, measure
+from diagnosis.search.candidates import candidates, of_name
+from diagnosis.search.refit import Explanation, again, best_of, extend, with_memory
+from diagnosis.search.screen import score
+from grids.instruments import INSTRUMENTS
+from tests.diagnosis.made import SPECIMEN, recording
+
+EFFECTS: dict[str, dict[str, float]] = {
+    "sliding": {"friction": 0.142},
+    "pivot_inset": {"inset_over_half_width": 0.06},
+    "rounded_corner": {"radius_over_half_width": 0.06},
+    "crushing": {"inset_per_rotation": 1.0},
+    "tilt": {"tilt": 0.004},
+    "eccentricity": {"offset_over_half_width": 0.04},
+    "flexible_joint": {"angle": 0.004},
+    "added_stiffness": {"over_m_g_R": -0.1, "gap": 0.0},
+    "table_pitch": {"pitch_per_acceleration": 0.0008, "low_pass_hz": 8.0},
+    "restitution": {"factor_on_housner": 0.95},
+    "velocity_restitution": {"beta": 0.15},
+    "viscous_damping": {"rate": 0.15},
+    "coulomb_damping": {"over_m_g_b": 0.015},
+    "quadratic_damping": {"coefficient": 1.5},
+    "degradation": {"loss_of_restitution_per_impact": 0.004, "floor": 0.7},
+    "wall_flexibility": {"first_frequency": 10.0},
+    "accelerometer_offset": {"offset": 0.06},
+    "gain": {"gain": 0.04},
+    "offset": {"offset_over_peak": 0.03, "reference_peak": 0.1},
+    "delay": {"delay": 0.006},
+    "clock": {"rate": 0.002},
+    "filter": {"corner_hz": 8.0, "order": 2.0},
+    "base_gain": {"gain": 0.04},
+    "saturation": {"level_over_peak": 0.75, "reference_peak": 0.1},
+    "cross_axis": {"rotation_per_acceleration": 0.0006},
+}
+"""One value of each, some times what the recordings can tell."""
+NOT_HERE = {
+    "vertical_acceleration": "the recordings of these tests have no vertical channel",
+    "bounce": "it moves the response of slender blocks by less than the noise",
+}
+
+
+@cache
+def base(name: str) -> Explanation:
+    effect = {name: EFFECTS[name]}
+    return Explanation(
+        (), base_fit(SPECIMEN, measure(SPECIMEN, [recording(f"train_{k}", k, effect) for k in (1, 2)]), 0)
+    )
+
+
+def test_every_mechanism_of_the_block_and_its_sensors_is_here() -> None:
+    assert set(EFFECTS) | set(NOT_HERE) == set(models.get("housner").mechanisms) | set(INSTRUMENTS)
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_a_simulated_effect_is_seen_and_recovered(name: str) -> None:
+    before = base(name)
+    own = of_name(candidates(before.measured, SPECIMEN), name)
+    seen = [s for s in score(linearise_about(before.fitted), own) if s.starts]
+    assert max(s.statistic for s in seen) > 15.0
+    after = with_memory(best_of([again(extend(before, s.candidate, start)) for s in seen for start in s.starts]))
+    assert before.loss - after.loss > 15.0
+    unknown = after.candidates[0].unknowns[0]
+    place = [x.name for x in after.fitted.misfit.unknowns].index(unknown.name)
+    sandwich, laplace = covariances(after.fitted)
+    deviation = np.sqrt(max(sandwich[place, place], laplace[place, place]))
+    truth = unknown.coordinate(_truth(name, before))
+    assert abs(after.fitted.u[place] - truth) < 3.0 * deviation, (after.fitted.values[unknown.name], deviation)
+
+
+def _truth(name: str, before: Explanation) -> float:
+    """The effect's parameter; a level over the peak is fitted over the one that was seen."""
+    value, *shapes = EFFECTS[name].values()
+    if "reference_peak" in EFFECTS[name]:
+        return value * shapes[0] / before.measured.reference_peak
+    return value
