@@ -4,7 +4,7 @@ title = "wall 3"
 model = "housner"
 [parameters]                      # nominal; numbers are SI
 width = "0.25 m"
-[tolerance]                       # relative, one sigma
+[tolerance]                       # one sigma: relative, or with the unit of the value ("2 mm")
 width = 0.005
 [calibrate]                       # unknown, with a range
 restitution = [0.7, 1.0]
@@ -116,7 +116,7 @@ def parse_specimen(text: str) -> Specimen:
         title=file.title,
         model=model.name,
         parameters=parameters,
-        tolerance=_tolerance(file, parameters),
+        tolerance=_tolerance(file, parameters, targets),
         calibrate=calibrate,
         vertical=file.motion.vertical,
         initial=_initial(file, targets),
@@ -138,21 +138,31 @@ def _mechanisms(file: SpecimenFile, targets: Targets) -> dict[str, dict[str, flo
     return mechanisms
 
 
-def _tolerance(file: SpecimenFile, parameters: Mapping[str, float]) -> dict[str, float]:
+def _tolerance(file: SpecimenFile, parameters: Mapping[str, float], targets: Targets) -> dict[str, float]:
     tolerance = {}
     for name, value in file.tolerance.items():
         where = f"[tolerance] {name}"
         if name not in parameters:
             raise InputError(f"{where} has no value in [parameters]; {nearest(name, parameters)}")
-        tolerance[name] = to_si(value, "1", where)
+        if parameters[name] == 0.0:
+            raise InputError(f"{where}: the value is 0, which has no relative tolerance; leave it out.")
+        tolerance[name] = _relative(value, parameters[name], targets.find(name, where).unit, where)
         if not 0.0 < tolerance[name] < MOST_TOLERANCE:
             raise InputError(
                 f"{where} = {tolerance[name]:g}: a tolerance is relative, above 0 and below 1 "
                 "(0.01 for 1 %); leave it out for an exact value."
             )
-        if parameters[name] == 0.0:
-            raise InputError(f"{where}: the value is 0, which has no relative tolerance; leave it out.")
     return tolerance
+
+
+def _relative(value: float | str, nominal: float, unit: str, where: str) -> float:
+    """A tolerance over the nominal value: numbers and per cent are that already, a text may have the value's unit."""
+    try:
+        return to_si(value, "1", where)
+    except InputError:
+        if unit == "1" or not isinstance(value, str):
+            raise
+    return to_si(value, unit, where) / abs(nominal)
 
 
 def _range(name: str, entry: object, targets: Targets) -> tuple[float, float]:

@@ -65,6 +65,17 @@ def read_selection(cube: xr.Dataset, entries: Sequence[str] | None, nearest: boo
     return on_grid(cube, found, nearest=nearest)
 
 
+STRICT = "Refuse what is unusual (a block 1500 m high, a PGA over 5 g) instead of warning."
+
+
+def warn(suspicions: Sequence[str], strict: bool) -> None:
+    """Print suspicions as warnings on stderr; InputError with the first one if ``strict``."""
+    if strict and suspicions:
+        raise InputError(f"{suspicions[0].rstrip('.')} (refused because of --strict)")
+    for suspicion in suspicions:
+        typer.echo(f"warning: {suspicion}", err=True)
+
+
 def human_time(seconds: float) -> str:
     """A time as people say it."""
     if seconds < 60.0:

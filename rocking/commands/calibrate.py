@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from rocking.commands.base import STRICT, warn
 from rocking.commands.recordings import read_recordings, stages
 
 if TYPE_CHECKING:
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 def calibrate(
     specimen: Annotated[Path, typer.Argument(help="Specimen file (TOML).")],
     recordings: Annotated[list[Path], typer.Argument(help="Recordings (.nc, or .csv with .toml).")],
+    strict: Annotated[bool, typer.Option("--strict", help=STRICT)] = False,
 ) -> None:
     """Fit the specimen's uncertain parameters to recordings; nothing missing is looked for.
 
@@ -27,9 +29,11 @@ def calibrate(
     """
     from rich.console import Console
 
+    from grids.plausibility import suspicions_of_specimen
     from grids.specimen import read_specimen
 
     wall = read_specimen(specimen)
+    warn(suspicions_of_specimen(wall), strict)
     read = read_recordings(recordings)
     with stages("stopped") as progress:
         from diagnosis import calibrate as calibrate_recordings

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from rocking.commands.base import STRICT, warn
 from rocking.commands.recordings import read_recordings, stages
 
 
@@ -20,6 +21,7 @@ def diagnose(
     bootstrap: Annotated[
         int, typer.Option(help="Draws of a parametric bootstrap for the p-value, 99 for instance.", min=0)
     ] = 0,
+    strict: Annotated[bool, typer.Option("--strict", help=STRICT)] = False,
 ) -> None:
     """Say what the model leaves out of recordings, model it, and show the fit improve.
 
@@ -27,9 +29,11 @@ def diagnose(
     bootstrap or the intervals after it, and writes what was found until then. The exit code is 0 whatever
     is found, 2 for unusable input.
     """
+    from grids.plausibility import suspicions_of_specimen
     from grids.specimen import read_specimen
 
     wall = read_specimen(specimen)
+    warn(suspicions_of_specimen(wall), strict)
     read = read_recordings(recordings, holdout or [])
     train, test = read[: len(recordings)], read[len(recordings) :]
     make_folder(out)

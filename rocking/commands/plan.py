@@ -7,12 +7,13 @@ from typing import Annotated
 
 import typer
 
-from rocking.commands.base import human_bytes, human_time
+from rocking.commands.base import STRICT, human_bytes, human_time, warn
 
 
 def plan(
     plan: Annotated[Path, typer.Argument(help="Plan file (TOML).")],
     workers: Annotated[int | None, typer.Option(help="Blocks at once (default: one a core).")] = None,
+    strict: Annotated[bool, typer.Option("--strict", help=STRICT)] = False,
 ) -> None:
     """Check a plan and print its axes, every value of its cells, blocks, bytes, memory a task and the time."""
     from rich.console import Console
@@ -20,12 +21,14 @@ def plan(
 
     from grids.entering import entering
     from grids.plan import read_plan
+    from grids.plausibility import suspicions_of_plan
     from study.keys import Setting
     from study.schedulers import check_scheduler, count_workers
     from study.timing import bytes_per_cell, cells_per_block, output_bytes, time_sample
 
     check_scheduler("threads", workers)
     checked = read_plan(plan)
+    warn(suspicions_of_plan(checked), strict)
     setting = Setting.of(checked)
     sample = time_sample(checked, setting)
     n = count_workers("threads", workers)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from rocking.command import INTERRUPTED
-from rocking.commands.base import FAILURES, human_time
+from rocking.commands.base import FAILURES, STRICT, human_time, warn
 
 if TYPE_CHECKING:
     from rich.progress import Progress as Bar
@@ -23,15 +23,19 @@ def run(
     ] = "threads",
     workers: Annotated[int | None, typer.Option(help="Blocks at once (default: one a core).")] = None,
     results: Annotated[Path, typer.Option(help="Folder of all results.")] = Path("results"),
+    strict: Annotated[bool, typer.Option("--strict", help=STRICT)] = False,
 ) -> None:
     """Run a study, or continue it where it stopped, and write its cube."""
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, TextColumn
     from rich.progress import Progress as Bar
 
+    from grids.plan import read_plan
+    from grids.plausibility import suspicions_of_plan
     from study.run import WorkerLost
     from study.run import run as run_study
 
+    warn(suspicions_of_plan(read_plan(plan)), strict)
     columns = (
         TextColumn("cells"),
         BarColumn(),

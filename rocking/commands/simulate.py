@@ -7,6 +7,9 @@ from typing import Annotated
 
 import typer
 
+from models.errors import InputError
+from rocking.commands.base import STRICT, warn
+
 
 def simulate(
     specimen: Annotated[Path, typer.Argument(help="Specimen file (TOML).")],
@@ -19,14 +22,22 @@ def simulate(
     component: Annotated[str | None, typer.Option(help="Horizontal component of the motion.")] = None,
     scale: Annotated[float, typer.Option(help="Factor on the motion.")] = 1.0,
     figure: Annotated[Path | None, typer.Option(help="Draw the rotation over time (.png, .pdf).")] = None,
+    strict: Annotated[bool, typer.Option("--strict", help=STRICT)] = False,
 ) -> None:
     """Simulate a specimen and write every observable over time, and the events."""
+    from grids.plausibility import suspicions_of_specimen
+    from grids.specimen import read_specimen
     from rocking.simulation import simulate as simulate_history
+    from study.figures.save import check_suffix
     from study.history import write_history
 
-    history = simulate_history(
-        specimen, motion, duration=duration, integrator=integrator, component=component, scale=scale
-    )
+    if scale == 0.0:
+        raise InputError("--scale 0 leaves no motion; for free motion leave --motion out and give --duration")
+    if figure is not None:
+        check_suffix(figure)
+    wall = read_specimen(specimen)
+    warn(suspicions_of_specimen(wall), strict)
+    history = simulate_history(wall, motion, duration=duration, integrator=integrator, component=component, scale=scale)
     typer.echo(f"written: {write_history(history, out)} ({history.sizes['event']} events)")
     if figure is not None:
         from study.figures import plot_history, save_figure

@@ -13,10 +13,15 @@ from matplotlib.figure import Figure
 from models.errors import InputError
 
 
-def save_figure(draw: Callable[[], Axes | tuple[Axes, ...]], path: Path) -> Path:
-    """Write what ``draw`` draws to ``path``. Raises InputError for an ending matplotlib cannot write."""
+def check_suffix(path: Path) -> None:
+    """Raise InputError for an ending that matplotlib cannot write: before the work, not after it."""
     if path.suffix.lstrip(".") not in FigureCanvasBase.get_supported_filetypes():
         raise InputError(f"cannot draw to '{path.name}': end the name in .png, .pdf or .svg")
+
+
+def save_figure(draw: Callable[[], Axes | tuple[Axes, ...]], path: Path) -> Path:
+    """Write what ``draw`` draws to ``path``. Raises InputError for an ending matplotlib cannot write."""
+    check_suffix(path)
     with plt.rc_context({"backend": "agg"}):
         drawn = draw()
         figure = (drawn[0] if isinstance(drawn, tuple) else drawn).get_figure(root=True)

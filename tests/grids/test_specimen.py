@@ -69,6 +69,7 @@ BAD: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "too wide a word": ('mass = "0.54 t"', 'mass = "0.54 m"', ("mass", "0.54 m", "'kg' is needed")),
     "tolerance of nothing": ('mass = "1 %"', "mas = 0.01", ("[tolerance] mas", "did you mean 'mass'")),
     "tolerance in per cent": ('mass = "1 %"', "mass = 1.0", ("[tolerance] mass = 1", "below 1", "1 %")),
+    "tolerance of another unit": ('mass = "1 %"', 'mass = "1 mm"', ("[tolerance] mass", "1 mm", "'kg' is needed")),
     "no tolerance at all": ('mass = "1 %"', "mass = 0", ("[tolerance] mass = 0", "leave it out")),
     "fixed and unknown": ("[calibrate]", "[calibrate]\nmass = [1, 2]", ("mass", "fixed value too")),
     "falling range": ('["1 mm", "20 mm"]', '["20 mm", "1 mm"]', ("0.02 m", "0.001 m", "swap")),
@@ -114,6 +115,11 @@ def test_restitution_has_one_handle(fake_wall: FakeWall) -> None:
     text = GOOD.replace("height = 1.8", "height = 1.8\nrestitution = 0.9")
     with pytest.raises(InputError, match="two handles"):
         parse_specimen(text + "[mechanisms.restitution]\nfactor_on_housner = 0.9\n")
+
+
+def test_a_tolerance_with_the_unit_of_its_value_is_taken_by_it(fake_wall: FakeWall) -> None:
+    found = parse_specimen(GOOD.replace("width = 0.005", 'width = "2 mm"').replace('mass = "1 %"', 'mass = "27 kg"'))
+    assert found.tolerance == {"width": 0.002 / 0.25, "mass": 0.05}
 
 
 WALL_ON_RUBBER = """

@@ -226,3 +226,24 @@ def test_bad_selections(finished: Path, entry: str, part: str) -> None:
     result = rocking("export", finished, "--out", "a.csv", "--select", entry)
     assert result.exit_code == 2 and part in result.stderr
     assert not Path("a.csv").exists()
+
+
+def test_what_is_unusual_is_a_warning_or_refused_if_strict() -> None:
+    Path("tall.toml").write_text(plan_text().replace('"1.8 m"', '"1500 m"'))
+    warned = rocking("plan", "tall.toml")
+    assert warned.exit_code == 0 and "warning: height = 1500 m is unusually large" in warned.stderr
+    for command in ("plan", "run"):
+        refused = rocking(command, "tall.toml", "--strict")
+        assert refused.exit_code == 2 and "height = 1500 m" in refused.stderr and "--strict" in refused.stderr
+    assert not Path("results").exists()
+    Path("wall.toml").write_text(SPECIMEN.replace("4 deg", "400 deg"))
+    refused = rocking("simulate", "wall.toml", "--duration", 1, "--out", "h.nc", "--strict")
+    assert refused.exit_code == 2 and "400 deg" in refused.stderr and not Path("h.nc").exists()
+
+
+def test_simulate_refuses_before_the_work_what_it_would_refuse_after() -> None:
+    Path("wall.toml").write_text(SPECIMEN)
+    free = ("simulate", "wall.toml", "--duration", 1, "--out", "h.nc")
+    for more, words in ((("--figure", "h.xyz"), "end the name in"), (("--scale", 0), "leaves no motion")):
+        refused = rocking(*free, *more)
+        assert refused.exit_code == 2 and words in refused.stderr and not Path("h.nc").exists()

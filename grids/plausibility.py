@@ -1,0 +1,95 @@
+"""What a plan or specimen says that may be right but is more likely a slip: a wrong unit, a point too far left.
+
+Each suspicion is a sentence with the value and what is usual. Nothing is refused here; commands print
+suspicions as warnings, or refuse them with ``--strict``.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterable, Iterator, Mapping
+
+import numpy as np
+
+import models
+from grids.plan import Plan
+from grids.specimen import Specimen, state_unit
+from grids.targets import SCALES
+from grids.units import with_unit
+
+GRAVITY = 9.80665
+USUAL: Mapping[str, tuple[float, float]] = {
+    "width": (0.05, 60.0),
+    "length": (0.05, 60.0),
+    "height": (0.1, 60.0),
+    "wall_thickness": (0.02, 5.0),
+    "layer_thickness": (5e-4, 0.3),
+    "rubber_thickness": (5e-3, 1.0),
+    "layer_modulus": (1e5, 1e9),
+    "density": (200.0, 1e4),
+    "mass": (0.05, 1e8),
+    "gravity": (1.0, 30.0),
+    "pga": (0.0, 5.0 * GRAVITY),
+    "time_scale": (0.1, 10.0),
+}
+"""Usual values (SI) of what a name ends in; zero is always allowed."""
+USUAL_TOLERANCE = 0.2
+SMALL_PGA = 2.0
+"""m s-2: a PGA axis of plain numbers up to here reads like one in g."""
+
+
+def suspicions_of_plan(plan: Plan) -> tuple[str, ...]:
+    """Sentences about values of a plan that are unusual, axes included."""
+    varied = {name: values for axis in plan.axes for name, values in axis.sets.items() if values.dtype.kind in "iuf"}
+    values = {**{name: np.array([value]) for name, value in plan.fixed.items()}, **varied}
+    found = [*_unusual(plan.model, values)]
+    stated = tomllib.loads(plan.text)
+    pga = varied.get("pga", np.array([plan.fixed.get("pga", np.nan)]))
+    entry = stated.get("axes", {}).get("pga", stated.get("parameters", {}).get("pga"))
+    plain = isinstance(entry, int | float) or (isinstance(entry, dict) and "unit" not in entry and _numbers(entry))
+    if plain and 0.0 < pga.max() <= SMALL_PGA:
+        found.append(
+            f"pga goes to {pga.max():.3g} m s-2 ({pga.max() / GRAVITY:.2g} g) and has no unit: was g meant? "
+            "Say unit = 'g' or unit = 'm/s^2'."
+        )
+    return tuple(found)
+
+
+def suspicions_of_specimen(specimen: Specimen) -> tuple[str, ...]:
+    """Sentences about values of a specimen that are unusual, tolerances and initial state included."""
+    found = [*_unusual(specimen.model, {name: np.array([value]) for name, value in specimen.parameters.items()})]
+    found += [
+        f"[tolerance] {name} = {100 * value:.3g} %: unusually wide; a tolerance is relative, 0.005 for 0.5 %."
+        for name, value in specimen.tolerance.items()
+        if value > USUAL_TOLERANCE
+    ]
+    model = models.get(specimen.model)
+    found += [
+        f"[initial] {name} = {np.degrees(value):.4g} deg: such a body lies on its side; is the unit right?"
+        for name, value in specimen.initial.items()
+        if state_unit(model, name, name) == "rad" and abs(value) >= np.pi / 2
+    ]
+    return tuple(found)
+
+
+def _unusual(model: str, values: Mapping[str, np.ndarray]) -> Iterator[str]:
+    units = {p.name: p.unit for p in (*models.get(model).parameters, *SCALES)}
+    for name, given in values.items():
+        usual = next((both for end, both in USUAL.items() if name.endswith(end)), None)
+        if usual is None or name not in units:
+            continue
+        low, high = usual
+        for value in _ends(given[given != 0.0]):
+            if not low <= value <= high:
+                word = "small" if value < low else "large"
+                said, least, most = (with_unit(v, units[name]) for v in (value, low, high))
+                yield f"{name} = {said} is unusually {word} (usual: {least} to {most}); is the unit right?"
+
+
+def _ends(values: np.ndarray) -> Iterable[float]:
+    return dict.fromkeys((float(values.min()), float(values.max()))) if values.size else ()
+
+
+def _numbers(entry: Mapping[str, object]) -> bool:
+    """Whether an axis is written in plain numbers."""
+    return any(isinstance(value, list) and all(isinstance(v, int | float) for v in value) for value in entry.values())

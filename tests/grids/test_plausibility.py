@@ -1,0 +1,78 @@
+"""Slips that are possible values: named with value and what is usual, and never where nothing is unusual."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from grids.plan import parse_plan, read_plan
+from grids.plausibility import suspicions_of_plan, suspicions_of_specimen
+from grids.specimen import parse_specimen
+
+PLAN = """
+[study]
+name = "a"
+model = "housner"
+[motion]
+files = ["ridgecrest_2019_clc"]
+[parameters]
+height = "1.8 m"
+width = "40 cm"
+mass = "800 kg"
+[axes]
+pga = { linspace = [0.1, 1.0, 4], unit = "g" }
+"""
+SPECIMEN = """
+title = "wall"
+model = "housner"
+[parameters]
+height = "1.8 m"
+width = "40 cm"
+mass = "800 kg"
+[tolerance]
+width = 0.005
+[initial]
+rotation_1 = "4 deg"
+"""
+STUDIES = sorted((Path(__file__).resolve().parents[2] / "studies").glob("*.toml"))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("1.8 m", "1500 m", ("height = 1500 m", "unusually large")),
+        ("40 cm", "25 mm", ("width = 0.025 m", "unusually small")),
+        ("[0.1, 1.0, 4]", "[0.1, 6.0, 4]", ("pga = 58.8", "unusually large")),
+        (', unit = "g"', "", ("pga goes to 1 m s-2 (0.1 g)", "was g meant")),
+    ],
+)
+def test_a_plan(old: str, new: str, words: tuple[str, ...]) -> None:
+    assert suspicions_of_plan(parse_plan(PLAN, Path())) == ()
+    assert old in PLAN
+    (said,) = suspicions_of_plan(parse_plan(PLAN.replace(old, new), Path()))
+    assert all(word in said for word in words), said
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("0.005", "0.5", ("[tolerance] width = 50 %", "0.005 for 0.5 %")),
+        ("4 deg", "400 deg", ("rotation_1 = 400 deg", "lies on its side")),
+        ("1.8 m", "1800 m", ("height = 1800 m", "unusually large")),
+    ],
+)
+def test_a_specimen(old: str, new: str, words: tuple[str, ...]) -> None:
+    assert suspicions_of_specimen(parse_specimen(SPECIMEN)) == ()
+    (said,) = suspicions_of_specimen(parse_specimen(SPECIMEN.replace(old, new)))
+    assert all(word in said for word in words), said
+
+
+def test_a_stated_unit_is_no_slip() -> None:
+    small = PLAN.replace("[0.1, 1.0, 4]", "[0.1, 0.2, 4]")
+    assert suspicions_of_plan(parse_plan(small.replace('unit = "g"', 'unit = "m/s^2"'), Path())) == ()
+
+
+@pytest.mark.parametrize("path", STUDIES, ids=lambda path: path.name)
+def test_nothing_is_suspected_of_the_studies_at_hand(path: Path) -> None:
+    assert suspicions_of_plan(read_plan(path)) == ()
