@@ -38,7 +38,7 @@ def measure() -> list[dict[str, Any]]:
     cells = plan.grid.coordinates(index)
     (motion,) = plan.motions
     shaking, scale = motion.shaking(), cells.pop("pga") / motion.pga
-    wall = build({**plan.fixed, **cells}, MODEL.words(None), True, CELLS)
+    wall = build({**plan.fixed, **cells}, MODEL.resolve_options(None), True, CELLS)
     rate = 2.0 * (wall.base_damping * wall.base_half_width + wall.top_damping * wall.top_half_width) / wall.mass_1
     bound, step = EXPLICIT_LIMIT / rate, motion.time_step / lanes.substeps(wall, motion.time_step)
     coarse, fine = (

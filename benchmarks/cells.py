@@ -61,7 +61,7 @@ def lane_steps(chosen: Plan) -> float:
     """Steps of all cells if every run lasts the record: from the step rule of random walls of the grid."""
     index = np.random.default_rng(0).integers(0, chosen.grid.size, WALLS)
     varied = {name: v for name, v in chosen.grid.coordinates(index).items() if name != "pga"}
-    walls = build({**chosen.fixed, **varied}, MODEL.words(None), True, WALLS)
+    walls = build({**chosen.fixed, **varied}, MODEL.resolve_options(None), True, WALLS)
     (motion,) = chosen.motions
     return float(lanes.substeps(walls, motion.time_step).mean()) * motion.horizontal.size * chosen.grid.size
 

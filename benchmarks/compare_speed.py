@@ -23,7 +23,7 @@ import numpy as np
 from scipy.stats import binom
 
 from benchmarks.fingerprint import DURATION, STEP, TAIL, chosen, drawn, random_motion
-from models.base import Model
+from models.model import Model
 
 WORKER = Path(__file__).parent / "speed_worker.py"
 

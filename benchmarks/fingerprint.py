@@ -24,7 +24,8 @@ from typing import Any
 import numpy as np
 
 import models
-from models.base import STATUS, Model
+from models.base import STATUS
+from models.model import Model
 from models.shaking import Shaking
 
 CELLS, FOLLOWED, BY_REFERENCE = 64, 4, 2

@@ -7,7 +7,8 @@ from collections.abc import Iterable
 from pathlib import Path
 
 import models
-from models.base import Mechanism, Model, Parameter, Quantity
+from models.base import Mechanism, Parameter, Quantity
+from models.model import Model
 
 
 def write_pages(folder: Path) -> None:
@@ -85,13 +86,10 @@ def models_page() -> str:
     )
 
 
-def _mechanism(mechanism: Mechanism, where: str) -> str:
-    first, *others = (_form(form) for form in (mechanism, *mechanism.forms))
-    elsewhere = "".join(
-        f"\nOn {_acts_on(form)} with parameters of its own: {text}"
-        for form, text in zip(mechanism.forms, others, strict=True)
-    )
-    return f"## `{mechanism.name}`\n\nClass `{mechanism.effect_class}`; {where}. {first}{elsewhere}"
+def _mechanism(mechanism: Mechanism, where: str, *others: Mechanism) -> str:
+    """``others``: its declarations with parameters of their own on other models."""
+    elsewhere = "".join(f"\nOn {_acts_on(other)} with parameters of its own: {_form(other)}" for other in others)
+    return f"## `{mechanism.name}`\n\nClass `{mechanism.effect_class}`; {where}. {_form(mechanism)}{elsewhere}"
 
 
 def _form(mechanism: Mechanism) -> str:
@@ -114,7 +112,10 @@ def mechanisms_page() -> str:
     from grids.instruments import INSTRUMENTS
     from models.mechanisms import MECHANISMS
 
-    inside = "\n".join(_mechanism(m, f"acts on {_acts_on(m)}") for m in MECHANISMS.values())
+    forms: dict[str, list[Mechanism]] = {}
+    for mechanism in MECHANISMS:
+        forms.setdefault(mechanism.name, []).append(mechanism)
+    inside = "\n".join(_mechanism(m, f"acts on {_acts_on(m)}", *others) for m, *others in forms.values())
     beside = "\n".join(_mechanism(m, "an instrument's effect, on every model") for m in INSTRUMENTS.values())
     return (
         "# Mechanisms\n\nWhat a base model may leave out. Those of the first part are usable in plans, specimens and "

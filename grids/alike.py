@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from grids.targets import MOTION, SCALES
-from models.base import Model
+from models.model import Model
 
 Coordinates = Mapping[str, NDArray[Any]]
 """Values ``(n,)`` by name of everything that varies, one element a cell."""

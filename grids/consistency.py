@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 from typing import TypeVar
 
-from models.base import Mechanism, Model
+from models.base import Mechanism
 from models.errors import InputError
+from models.model import Model
 
 ValueT = TypeVar("ValueT")
 

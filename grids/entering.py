@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import models
 from grids.plan import Plan
 from grids.units import with_unit
-from models.base import Model
+from models.model import Model
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ def _flat(plan: Plan) -> dict[str, float]:
 
 def _words(plan: Plan, model: Model) -> Iterator[Entry]:
     varied = {name for axis in plan.axes for name in axis.sets}
-    for name, word in model.words(plan.options).items():
+    for name, word in model.resolve_options(plan.options).items():
         if name not in varied:
             yield Entry(name, word, "1", "option of the model", "plan" if name in plan.options else "default")
 

@@ -44,8 +44,8 @@ from grids.plan_motions import MotionTable, read_motions
 from grids.specimen import Specimen, read_specimen
 from grids.targets import Targets, find_model
 from grids.units import to_si
-from models.base import Model
 from models.errors import InputError, nearest
+from models.model import Model
 
 
 class StudyTable(Schema):

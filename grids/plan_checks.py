@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from grids.alike import is_value, like_cells
 from grids.axes import Axis
 from grids.motions import Motion
-from models.base import Model
 from models.errors import InputError
+from models.model import Model
 
 MOST_CELLS = 2_000_000_000
 MOST_CHECKED = 200_000

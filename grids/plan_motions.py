@@ -15,8 +15,8 @@ from grids.motions import Motion, find, read_motion
 from grids.motions.made import MAKERS
 from grids.plan_checks import check_vertical
 from grids.targets import MOTION
-from models.base import Model
 from models.errors import InputError
+from models.model import Model
 
 
 class MotionTable(Schema):

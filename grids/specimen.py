@@ -33,8 +33,8 @@ from grids.instruments import INSTRUMENTS
 from grids.plan_checks import check_cells, check_vertical
 from grids.targets import Targets, find_model
 from grids.units import to_si, with_unit
-from models.base import Model
 from models.errors import InputError, nearest
+from models.model import Model
 
 MOST_TOLERANCE = 1.0
 UNITS_OF_STATES = {"rotation_rate": "rad s-1", "rotation": "rad", "velocity": "m s-1", "displacement": "m"}

@@ -9,8 +9,9 @@ from typing import Any
 
 from grids.instruments import INSTRUMENTS
 from grids.units import to_si, with_unit
-from models.base import Mechanism, MechanismParameter, Model, Parameter
+from models.base import Mechanism, MechanismParameter, Parameter
 from models.errors import InputError, nearest
+from models.model import Model
 
 MOTION = "motion"
 SCALES = (
@@ -98,7 +99,7 @@ class Targets:
     def mechanism_names(self) -> Collection[str]:
         from models.mechanisms import MECHANISMS
 
-        return {*MECHANISMS, *self.model.mechanisms, *INSTRUMENTS}
+        return {*(mechanism.name for mechanism in MECHANISMS), *self.model.mechanisms, *INSTRUMENTS}
 
     def flatten(self, table: Mapping[str, Any]) -> dict[str, Any]:
         """Both TOML spellings of a mechanism's parameter, quoted or as a sub-table, as dotted names.

@@ -6,14 +6,12 @@ specimens, and for the labels and units of a cube. Physics stands in the folders
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-
-from models.shaking import Shaking
 
 Values = Mapping[str, Any]
 """Parameter values by name: floats or arrays that broadcast to the lanes' shape ``(n,)``."""
@@ -74,9 +72,10 @@ class Quantity:
 class Mechanism:
     """Physics that a base model leaves out: one handle, the same in studies, specimens and diagnosis.
 
-    ``acts`` maps a model's name to the function that changes that model's coefficients (its type is
-    the model's own affair); a model lists the mechanisms that can act on it by these keys.
-    ``signature`` says where the residual lives when it is left out; ``sentence`` is what a report
+    ``acts`` maps a model's name to the function that changes that model's coefficients (their type is
+    the model's own). Where the equation has other parameters on another model, that is a second
+    declaration of the same name.
+    ``signature`` says where the residual shows when it is left out; ``sentence`` is what a report
     prints, with the parameters' names in braces.
     """
 
@@ -92,12 +91,6 @@ class Mechanism:
     """Models on which ``parameter_base`` and ``parameter_top`` address one joint alone."""
     sentences: Mapping[str, str] = field(default_factory=dict)
     """By parameter: the sentence where the mechanism acts through that one alone, instead of its first."""
-    forms: tuple[Mechanism, ...] = ()
-    """The same mechanism on models where its equation has other parameters."""
-
-    def on(self, model: str) -> Mechanism | None:
-        """The form that acts on ``model``; None where none does."""
-        return next((form for form in (self, *self.forms) if model in form.acts), None)
 
     def parameter(self, name: str) -> MechanismParameter:
         for parameter in (*self.parameters, *self._of_joints()):
@@ -147,91 +140,3 @@ class History:
     channels: Mapping[str, FloatArray]
     events: tuple[Event, ...]
     outputs: Mapping[str, float]
-
-
-class Model(Protocol):
-    """What every model offers. Arrays broadcast; nothing here knows labels, files or dask.
-
-    ``alternatives``: tuples of parameter sets of which exactly one must be given, for instance
-    ``(("width", "height"), ("height", "aspect_ratio"))``.
-    ``options``: words that choose a formulation, with their values, the default first.
-    ``states``: the observables (and their rates) that a run starts from.
-    ``chaotic``: whether neighbouring trajectories part quickly, so that recordings are compared
-    window by window.
-    ``takes_vertical``: whether a vertical motion of the base enters the equations.
-    """
-
-    name: str
-    title: str
-    version: str
-    parameters: tuple[Parameter, ...]
-    alternatives: tuple[tuple[tuple[str, ...], ...], ...]
-    options: Mapping[str, tuple[str, ...]]
-    outputs: tuple[Quantity, ...]
-    derived: tuple[Quantity, ...]
-    observables: tuple[Quantity, ...]
-    states: tuple[str, ...]
-    integrators: tuple[str, ...]
-    chaotic: bool
-    takes_vertical: bool
-    vertical_by_default: bool
-
-    @property
-    def mechanisms(self) -> Mapping[str, Mechanism]: ...
-
-    def words(self, options: Mapping[str, str] | None) -> dict[str, str]:
-        """Every word that chooses the formulation, the default where ``options`` gives none."""
-        ...
-
-    def check(self, values: Values, options: Mapping[str, str] | None = None) -> list[str]:
-        """Sentences about values that have no meaning together under ``options`` (e <= 0); empty: fine."""
-        ...
-
-    def derive(self, values: Values, options: Mapping[str, str] | None = None) -> dict[str, FloatArray]:
-        """Auxiliary constants (alpha, R, p ...) under the words of ``options``, by the names of ``derived``."""
-        ...
-
-    def evaluate(
-        self,
-        values: Values,
-        shaking: Shaking,
-        scale: FloatArray,
-        *,
-        outputs: Sequence[str],
-        tail: float,
-        options: Mapping[str, str] | None = None,
-        integrator: str = "lanes",
-    ) -> dict[str, NDArray[Any]]:
-        """Run one lane per element of ``scale`` (which multiplies the shaking); outputs ``(n,)``."""
-        ...
-
-    def trajectories(
-        self,
-        values: Values,
-        shaking: Shaking,
-        *,
-        first: NDArray[np.int64],
-        samples: int,
-        initial: Mapping[str, FloatArray],
-        options: Mapping[str, str] | None = None,
-    ) -> dict[str, FloatArray]:
-        """Observables ``(n, samples)`` of n lanes, lane k from sample ``first[k]`` of the shaking.
-
-        ``initial``: arrays ``(n,)`` by the names of ``states``, and of what laws with a memory need.
-        """
-        ...
-
-    def simulate(
-        self,
-        values: Values,
-        shaking: Shaking,
-        *,
-        scale: float = 1.0,
-        initial: Mapping[str, float] | None = None,
-        duration: float | None = None,
-        tail: float = 0.0,
-        options: Mapping[str, str] | None = None,
-        integrator: str = "lanes",
-    ) -> History:
-        """One run with its history at the time step of the shaking."""
-        ...

@@ -21,7 +21,7 @@ class Declared(Protocol):
     def states(self) -> tuple[str, ...]: ...
 
 
-def words(model: Declared, options: Mapping[str, str] | None) -> dict[str, str]:
+def resolve_options(model: Declared, options: Mapping[str, str] | None) -> dict[str, str]:
     """Every option of ``model`` with its word, the default where none is given."""
     chosen = {name: known[0] for name, known in model.options.items()}
     for name, word in (options or {}).items():

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TypeVar
 
-from models.base import Mechanism, Model
+from models.base import Mechanism
+from models.model import Model
 
 Entry = TypeVar("Entry", Model, Mechanism)
 
@@ -25,16 +26,18 @@ def models() -> Catalogue[Model]:
 
 
 def mechanisms() -> Catalogue[Mechanism]:
-    """The mechanisms by name: what a base model leaves out."""
+    """The mechanisms by name: what a base model leaves out. A further form of one is ``name (its models)``."""
     from models.mechanisms import MECHANISMS
 
-    return Catalogue(MECHANISMS)
+    found: Catalogue[Mechanism] = Catalogue()
+    for mechanism in MECHANISMS:
+        name = mechanism.name
+        found[name if name not in found else f"{name} ({', '.join(mechanism.acts)})"] = mechanism
+    return found
 
 
 def _about(entry: Model | Mechanism) -> str:
     if isinstance(entry, Mechanism):
-        forms = (entry, *entry.forms)
-        acted = [model for form in forms for model in form.acts]
-        parameters = ", ".join(f"{p.name} [{p.unit}]" for form in forms for p in form.parameters)
-        return f"{entry.effect_class}: {parameters}; acts on {', '.join(acted)}"
+        parameters = ", ".join(f"{p.name} [{p.unit}]" for p in entry.parameters)
+        return f"{entry.effect_class}: {parameters}; acts on {', '.join(entry.acts)}"
     return entry.title

@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from grids.alike import is_value, like_cells
 from grids.axes import Axis
 from grids.plan import Plan
-from models.base import FloatArray, Model
+from models.base import FloatArray
+from models.model import Model
 from study.labels import Coordinate, describe
 
 MOST_AT_ONCE = 1 << 16

@@ -13,8 +13,9 @@ from grids.instruments import INSTRUMENTS, moved, recorded
 from grids.instruments.whole import Switched
 from grids.netcdf_lock import NETCDF_LOCK
 from grids.specimen import Specimen
-from models.base import Event, History, Model
+from models.base import Event, History
 from models.errors import InputError, nearest
+from models.model import Model
 from models.shaking import Shaking
 from study.provenance import as_json, attribute, commit, machine, now, versions
 from study.store import write_whole
@@ -72,7 +73,7 @@ def simulate_specimen(
         "provenance": as_json(
             {
                 "values": values,
-                "options": model.words(specimen.options),
+                "options": model.resolve_options(specimen.options),
                 "versions": versions(),
                 "commit": commit(),
                 "time": now(),

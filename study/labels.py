@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from grids.plan import Plan
 from grids.targets import MOTION, SCALES
-from models.base import STATUS, Model, Parameter, Quantity
+from models.base import STATUS, Parameter, Quantity
+from models.model import Model
 from study.keys import motions_by_name
 
 

@@ -22,8 +22,9 @@ from benchmarks.diagnosis.open_laws import LAWS, Law
 from benchmarks.diagnosis.scene import FEWEST_IMPACTS, Effects, FloatArray, Scene, Track, Unsuitable
 from benchmarks.diagnosis.suite import Wish
 from benchmarks.diagnosis.unseen_laws import UNSEEN
-from models.housner.block import build
 from models.housner.lanes import run as lanes
+from models.housner.model import MODEL
+from models.runs import Request
 from models.shaking import Shaking
 
 RECORDINGS = ("train_1", "train_2", "test_1")
@@ -100,8 +101,8 @@ class _Draft:
         onset = specimens.GRAVITY * true["width"] / true["height"]
         if not self.vertical_channel:
             unit = Shaking(unit.time_step, unit.horizontal)
-        block = build(true, self.vertical_told, SCALES.size)
-        found = lanes.outputs(block, lanes.run(block, unit, onset * SCALES, tail=TAIL).result)
+        block = MODEL.build(true, vertical=self.vertical_told, size=SCALES.size)
+        found = lanes.run(block, Request(unit, onset * SCALES, tail=TAIL)).outputs
         ratio = found["peak_rotation_ratio"]
         good = (ratio > PEAK[0]) & (ratio < PEAK[1]) & (found["impacts"] > FEWEST_IMPACTS) & ~found["overturned"]
         if not np.any(good):

@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from benchmarks.diagnosis import instruments, shakings, size, specimens, truth
 from models.housner import reference
-from models.housner.block import build
 from models.housner.lanes import run as lanes
+from models.housner.model import MODEL
+from models.runs import Request
 from models.shaking import Shaking
 
 FloatArray = NDArray[np.float64]
@@ -80,16 +81,14 @@ class Scene:
             ran = truth.run(true["width"], true["height"], specimens.GRAVITY, fine, step, law)
             every = 1 if exact else shakings.FINE
             return ran.rotation[::every], ran.rate[::every], ran.impacts
-        block = build({**true, **effects.mechanisms}, self.vertical_told)
+        block = MODEL.build({**true, **effects.mechanisms}, vertical=self.vertical_told)
         if exact:
             found = reference.run(block, shakings.on_fine_grid(shaking), tail=0.0, rtol=1e-8)
             if found.outputs["overturned"]:
                 raise Unsuitable
             return found.rotation, found.rate, int(found.outputs["impacts"])
-        ran_lanes = lanes.run(block, shaking, np.ones(1), samples=shaking.horizontal.size)
-        assert ran_lanes.rotation is not None and ran_lanes.rate is not None
-        impacts = int(lanes.outputs(block, ran_lanes.result)["impacts"][0])
-        return ran_lanes.rotation[0], ran_lanes.rate[0], impacts
+        ran = lanes.run(block, Request(shaking, np.ones(1), samples=shaking.horizontal.size))
+        return ran.samples[0, :, 0], ran.samples[0, :, 1], int(ran.outputs["impacts"][0])
 
     def strength(self, k: int, effects: Effects, rotation: FloatArray, rate: FloatArray, peak: float) -> float:
         """Of the effects in recording ``k``, over its noise (see `size`), from the true motion."""

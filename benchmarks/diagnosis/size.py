@@ -15,8 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from models.housner.block import build
 from models.housner.lanes import run as lanes
+from models.housner.model import MODEL
+from models.runs import Request
 from models.shaking import Shaking
 
 FloatArray = NDArray[np.float64]
@@ -80,12 +81,12 @@ def over_noise(
     }
 
     def predicted(values: Mapping[str, float]) -> FloatArray:
-        block = build(values, measured.vertical is not None, count)
-        ran = lanes.run(
-            block, measured, np.ones(count), initial=start, first=found.first,
-            last=found.first + found.samples - 1, samples=found.samples, fall=True,
+        block = MODEL.build(values, vertical=measured.vertical is not None, size=count)
+        request = Request(
+            measured, np.ones(count), initial=start, first=found.first, last=found.first + found.samples - 1,
+            samples=found.samples,
         )  # fmt: skip
-        return np.asarray(ran.rotation).ravel()
+        return lanes.run(block, request).samples[..., 0].ravel()
 
     index = found.first[:, None] + np.arange(found.samples)
     difference = (recorded[index].ravel() - predicted(base)) / noise

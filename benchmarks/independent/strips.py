@@ -19,7 +19,7 @@ from models.interface.strip import strip
 from models.shaking import Shaking
 
 G = 9.81
-WORDS = MODEL.words({"kinematics": "midpoint_held", "dashpot": "A"})
+WORDS = MODEL.resolve_options({"kinematics": "midpoint_held", "dashpot": "A"})
 """What OpenSees can do: the midpoint held, the dashpot of fibres in contact."""
 WALL = {
     "wall_length": 0.72, "wall_height": 1.8, "wall_thickness": 0.138, "wall_density": 900.0, "top_mass": 5000.0,

@@ -18,9 +18,11 @@ from benchmarks.one_block.rivals import opensees_steps_per_second, solve_ivp_sec
 from benchmarks.operations import count_operations
 from benchmarks.peak import multiply_add_peak
 from grids.motions import read_motion
-from models.housner.block import Block, build
+from models.housner.block import Block
 from models.housner.lanes import run as lanes
 from models.housner.lanes.advance import step_all
+from models.housner.model import MODEL
+from models.runs import Request
 from models.shaking import Shaking
 
 TAIL = 10.0
@@ -30,14 +32,16 @@ OUT = Path("results/bench/one_block.json")
 def blocks(n: int) -> tuple[Block, np.ndarray[Any, np.dtype[np.float64]]]:
     """n blocks 2 m high, width/height .1 to .5, and scales of the record from .3 to 1.6."""
     rng = np.random.default_rng(0)
-    block = build({"height": 2.0, "aspect_ratio": rng.uniform(0.1, 0.5, n), "mass": 1000.0}, True, n)
+    block = MODEL.build(
+        {"height": 2.0, "aspect_ratio": rng.uniform(0.1, 0.5, n), "mass": 1000.0}, vertical=True, size=n
+    )
     return block, rng.uniform(0.3, 1.6, n)
 
 
 def timed_lanes(shaking: Shaking, n: int) -> speed.Took:
     """n blocks under the whole record."""
     block, scale = blocks(n)
-    return speed.clocked(lambda: lanes.run(block, shaking, scale, tail=TAIL).steps)
+    return speed.clocked(lambda: lanes.run(block, Request(shaking, scale, tail=TAIL)).steps)
 
 
 PLAN = """

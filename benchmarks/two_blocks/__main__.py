@@ -20,6 +20,7 @@ from benchmarks.peak import multiply_add_peak
 from benchmarks.two_blocks import opensees_strip
 from benchmarks.two_blocks.cases import Case, cases
 from grids.motions import read_motion
+from models.runs import Request
 from models.shaking import Shaking
 
 TAIL = 10.0
@@ -36,7 +37,10 @@ def timed_lanes(case: Case, shaking: Shaking, tail: float, n: int) -> speed.Took
     """n walls under the shaking and ``tail`` seconds more."""
     walls, pga = case.walls(n, shaking.vertical is not None)
     lanes = import_module(f"models.{case.model}.lanes.run")
-    return speed.clocked(lambda: int(lanes.run(walls, shaking, pga / shaking.pga, tail=tail).steps))
+    scale = pga / shaking.pga
+    if case.model == "stacked":
+        return speed.clocked(lambda: int(lanes.run(walls, Request(shaking, scale, tail=tail)).steps))
+    return speed.clocked(lambda: int(lanes.run(walls, shaking, scale, tail=tail).steps))
 
 
 def strongest(shaking: Shaking) -> Shaking:

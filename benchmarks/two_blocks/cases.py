@@ -96,10 +96,8 @@ class Case:
         values = {**self.values(rng, n), **self.numbers}
         pga = rng.uniform(0.05, 0.77, n) * 9.80665
         if self.model == "stacked":
-            from models.stacked.stack import build as stack
-
-            return stack(values, vertical, n), pga
-        words: dict[str, str] = models.get(self.model).words(None)  # type: ignore[attr-defined]
+            return models.get("stacked").build(values, vertical=vertical, size=n), pga
+        words: dict[str, str] = models.get(self.model).resolve_options(None)
         if self.model == "isolated":
             from models.isolated.assembly import build as chain
 

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from diagnosis.data.noise import base_noise, response_noise, smooth
 from diagnosis.data.windows import SMOOTHING, Window, cut
 from grids.recordings.base import CHANNELS, REQUIRED, FloatArray, Recording
-from models.base import Model
 from models.errors import InputError
+from models.model import Model
 from models.shaking import Shaking
 
 RATE_WIDTH = 0.04

@@ -16,8 +16,8 @@ from diagnosis.fit.unknowns import fixed_values, of_specimen
 from diagnosis.fit.whitening import responses, sensor_noise_only, with_base_noise
 from grids.recordings.base import Recording
 from grids.specimen import Specimen
-from models.base import Model
 from models.errors import InputError
+from models.model import Model
 
 
 def vertical_acts(specimen: Specimen, model: Model, recordings: Sequence[Recording]) -> bool:

@@ -10,7 +10,8 @@ import numpy as np
 
 from grids.instruments import INSTRUMENTS
 from grids.specimen import Specimen
-from models.base import FloatArray, Mechanism, MechanismParameter, Model
+from models.base import FloatArray, Mechanism, MechanismParameter
+from models.model import Model
 
 STEPS_OF_RANGE = 20.0
 LOG_SPAN = 3.0

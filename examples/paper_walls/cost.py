@@ -9,7 +9,7 @@ import numpy as np
 from walls import TAIL, WALLS, cell, shaking, specimens
 
 import models
-from models.base import Model
+from models.model import Model
 from models.shaking import Shaking
 
 PGA = 0.35

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -213,12 +212,3 @@ def assemble(values: Values, vertical: bool, size: int | None = None) -> Block:
         first_frequency=infinite,
         **modal_integrals(mass, height, top, value("top_mass_height", 0.0), value("top_mass_inertia", 0.0)),
     )
-
-
-def build(values: Values, vertical: bool, size: int | None = None) -> Block:
-    """The block with the mechanisms that ``values`` switch on, in the order of the catalogue."""
-    from models.mechanisms import applied
-
-    plain: Mapping[str, Any] = {k: v for k, v in values.items() if "." not in k}
-    shape = np.broadcast_shapes(*(np.shape(v) for v in values.values()), (size or 1,))
-    return applied("housner", assemble(plain, vertical, int(np.prod(shape))), values)

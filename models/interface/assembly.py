@@ -11,6 +11,7 @@ from models.base import FloatArray, Values
 from models.errors import InputError
 from models.interface import modes
 from models.interface.layered import LayeredWall
+from models.mechanisms import applied
 from models.rubber import LAWS
 from models.walls import bodies, lanes_shape
 
@@ -103,8 +104,6 @@ def build(
     values: Values, options: Mapping[str, str], vertical: bool, size: int | None = None, model: str = "interface"
 ) -> LayeredWall:
     """The walls with the mechanisms of ``model`` that ``values`` switch on, in the order of the catalogue."""
-    from models.mechanisms import applied
-
     plain = {k: v for k, v in values.items() if "." not in k}
     wall = applied(model, assemble(plain, options, vertical, int(np.prod(lanes_shape(values, size)))), values)
     for joint in wall.rubber_joints:

@@ -16,6 +16,7 @@ from models.errors import InputError
 from models.interface import declaration, modes
 from models.interface.assembly import build
 from models.interface.layered import LayeredWall
+from models.mechanisms import acting_on
 from models.shaking import Shaking
 
 
@@ -48,13 +49,11 @@ class Interface:
 
     @property
     def mechanisms(self) -> Mapping[str, Mechanism]:
-        from models.mechanisms import acting_on
-
         return acting_on(self.name)
 
-    def words(self, options: Mapping[str, str] | None) -> dict[str, str]:
+    def resolve_options(self, options: Mapping[str, str] | None) -> dict[str, str]:
         """Every option with its word, the default where none is given."""
-        return choices.words(self, options)
+        return choices.resolve_options(self, options)
 
     def _part(self, name: str) -> Any:
         """A module of this model's folder: ``lanes.run``, ``reference``, ``observe``."""
@@ -63,7 +62,7 @@ class Interface:
     def check(self, values: Values, options: Mapping[str, str] | None = None) -> list[str]:
         """Layers that lack a number, and walls that cannot stand on them under their own weight."""
         try:
-            wall = build(values, self.words(options), False, model=self.name)
+            wall = build(values, self.resolve_options(options), False, model=self.name)
         except InputError as error:
             return [str(error)]
         lowest = modes.at_rest(wall).squares[:, 0]
@@ -89,7 +88,7 @@ class Interface:
 
     def derive(self, values: Values, options: Mapping[str, str] | None = None) -> dict[str, FloatArray]:
         """Static state, natural frequencies, mode shapes and modal damping at rest, arrays ``(n,)``."""
-        wall = build(values, self.words(options), False, model=self.name)
+        wall = build(values, self.resolve_options(options), False, model=self.name)
         return modes.derived(wall, self.natural_modes(wall))
 
     def natural_modes(self, wall: LayeredWall) -> modes.Modes:
@@ -98,7 +97,7 @@ class Interface:
 
     def _shaken(self, values: Values, options: Mapping[str, str] | None, shaking: Shaking, size: int) -> LayeredWall:
         vertical = shaking.vertical is not None and shaking.vertical_acts
-        wall = build(values, self.words(options), vertical, size, self.name)
+        wall = build(values, self.resolve_options(options), vertical, size, self.name)
         if wall.size != size:
             raise ValueError(f"values broadcast to {wall.size} lanes, {size} are asked for")
         return wall

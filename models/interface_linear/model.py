@@ -31,9 +31,9 @@ class InterfaceLinear(Interface):
     def options(self) -> Mapping[str, tuple[str, ...]]:
         return declaration.OPTIONS
 
-    def words(self, options: Mapping[str, str] | None) -> dict[str, str]:
+    def resolve_options(self, options: Mapping[str, str] | None) -> dict[str, str]:
         """Every option of `interface` with its word: `joints` as chosen, the others as the paper has them."""
-        return {**declaration.FIXED, **super().words(options)}
+        return {**declaration.FIXED, **super().resolve_options(options)}
 
     def natural_modes(self, wall: LayeredWall) -> modes.Modes:
         return equation.at_rest(wall)

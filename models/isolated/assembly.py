@@ -10,6 +10,7 @@ from models.base import FloatArray, Values
 from models.errors import InputError
 from models.isolated.chain import Chain
 from models.isolated.declaration import MOST_LEVELS
+from models.mechanisms import applied
 
 OF_THE_STRAIN = ("hardening", "mullins", "payne")
 
@@ -47,8 +48,6 @@ def complaints(values: Values) -> list[str]:
 
 def build(values: Values, options: Mapping[str, str], size: int | None = None) -> Chain:
     """The buildings with the mechanisms that ``values`` switch on; raises InputError."""
-    from models.mechanisms import applied
-
     for sentence in complaints(values):
         raise InputError(sentence)
     shape = (int(np.prod(np.broadcast_shapes(*(np.shape(v) for v in values.values()), (size or 1,)))),)

@@ -16,6 +16,7 @@ from models.isolated import declaration, modes
 from models.isolated.assembly import build, complaints
 from models.isolated.chain import Chain
 from models.isolated.observe import observe
+from models.mechanisms import acting_on
 from models.shaking import Shaking
 
 
@@ -48,30 +49,28 @@ class Isolated:
 
     @property
     def mechanisms(self) -> Mapping[str, Mechanism]:
-        from models.mechanisms import acting_on
-
         return acting_on(self.name)
 
-    def words(self, options: Mapping[str, str] | None) -> dict[str, str]:
+    def resolve_options(self, options: Mapping[str, str] | None) -> dict[str, str]:
         """Every option with its word, the default where none is given."""
-        return choices.words(self, options)
+        return choices.resolve_options(self, options)
 
     def check(self, values: Values, options: Mapping[str, str] | None = None) -> list[str]:
         """What describes no building: levels without a mass, a law without its parameters, and so on."""
         found = complaints(values)
         if not found:
             try:
-                build(values, self.words(options))
+                build(values, self.resolve_options(options))
             except InputError as error:
                 found.append(str(error))
         return found
 
     def derive(self, values: Values, options: Mapping[str, str] | None = None) -> dict[str, FloatArray]:
         """Mass, natural frequencies and modal damping at small strain, arrays ``(n,)``."""
-        return modes.derived(build(values, self.words(options)))
+        return modes.derived(build(values, self.resolve_options(options)))
 
     def _chain(self, values: Values, options: Mapping[str, str] | None, size: int) -> Chain:
-        chain = build(values, self.words(options), size)
+        chain = build(values, self.resolve_options(options), size)
         if chain.size != size:
             raise ValueError(f"values broadcast to {chain.size} lanes, {size} are asked for")
         return chain

@@ -2,43 +2,81 @@
 
 from __future__ import annotations
 
+import ast
 import hashlib
 import os
+import stat
 import tempfile
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import TypeVar, cast
 
 import numba
 
 F = TypeVar("F", bound=Callable[..., object])
-_MODELS = Path(__file__).resolve().parent.parent
-BUILT_ON = {"interface_linear": ("interface",)}
-"""Models whose kernels take names from another model's."""
+_ROOT = Path(__file__).resolve().parent.parent.parent
 
 
-def _source_hash(model: str) -> str:
-    """Of everything a kernel of this model can be made of: the model, the shared pieces, the compiler."""
+def sources(module: str, root: Path = _ROOT) -> list[Path]:
+    """The files of `models` that ``module`` is made of: its own and, on and on, those it imports from."""
+    found: dict[str, Path] = {}
+    waiting = [module]
+    while waiting:
+        name = waiting.pop()
+        path = root.joinpath(*name.split(".")).with_suffix(".py")
+        if name in found or not path.is_file():
+            continue
+        found[name] = path
+        for node in ast.walk(ast.parse(path.read_bytes())):
+            if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "models":
+                # a name may be a module of its own
+                waiting += [f"{node.module}", *(f"{node.module}.{alias.name}" for alias in node.names)]
+            elif isinstance(node, ast.Import):
+                waiting += [alias.name for alias in node.names if alias.name.startswith("models.")]
+    return [found[name] for name in sorted(found)]
+
+
+def source_hash(module: str, root: Path = _ROOT) -> str:
+    """Of every source that a kernel in ``module`` is compiled from, and of the compiler."""
     digest = hashlib.sha256(numba.__version__.encode())
-    folders = {model, "lanes", *BUILT_ON.get(model, ())}
-    for path in sorted(p for folder in folders for p in (_MODELS / folder).rglob("*.py")):
-        digest.update(path.relative_to(_MODELS).as_posix().encode())
+    for path in sources(module, root):
+        digest.update(path.relative_to(root).as_posix().encode())
         digest.update(path.read_bytes())
     return digest.hexdigest()[:16]
 
 
-def _cache_folder(model: str) -> str:
-    """A folder per state of the sources: numba looks only at the file of the outermost function."""
-    base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "rocking-study"
-    folder = base / f"{model}-{_source_hash(model)}"
+def _is_private(folder: Path) -> bool:
+    """Whether ``folder``, made if it is missing, is a directory that only this user can write; made mode 0700.
+
+    What lies in it is executed: a link, a folder of another user or one that others can write is refused.
+    """
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        if not os.access(folder, os.W_OK):
-            raise PermissionError(folder)
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        status = folder.lstat()
+        if not stat.S_ISDIR(status.st_mode) or status.st_uid != os.getuid() or status.st_mode & 0o022:
+            return False
+        folder.chmod(0o700)
     except OSError:
-        folder = Path(tempfile.gettempdir()) / f"rocking-study-{os.getuid()}" / folder.name
-        folder.mkdir(parents=True, exist_ok=True)
-    return str(folder)
+        return False
+    return os.access(folder, os.W_OK)
+
+
+def cache_folder(module: str) -> Path:
+    """The folder for the machine code of a kernel in ``module``, one for each state of its sources.
+
+    Numba itself looks only at the file of the outermost function. The user's cache, else a folder of the user's
+    under the temporary one, else a fresh one that the next process does not find.
+    """
+    bases = [Path(tempfile.gettempdir()) / f"rocking-study-{os.getuid()}"]
+    with suppress(RuntimeError):  # no HOME, and a user that the system does not know
+        bases.insert(0, Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "rocking-study")
+    model = module.split(".")[1]
+    for base in bases:
+        folder = base / f"{model}-{source_hash(module)}"
+        if _is_private(base) and _is_private(folder):
+            return folder
+    return Path(tempfile.mkdtemp(prefix="rocking-study-"))
 
 
 # Only contraction to multiply-add is allowed: reordering would make results depend on the vector width.
@@ -49,7 +87,7 @@ def compiled(function: F) -> F:
     """Compile an outermost kernel; the machine code is kept between processes."""
     given = numba.config.CACHE_DIR
     if not os.environ.get("NUMBA_CACHE_DIR"):
-        numba.config.CACHE_DIR = _cache_folder(function.__module__.split(".")[1])
+        numba.config.CACHE_DIR = str(cache_folder(function.__module__))
     try:
         return cast(F, numba.njit(**_SETTINGS)(function))
     finally:

@@ -33,44 +33,42 @@ from models.mechanisms import (
     wall_flexibility,
 )
 
-MECHANISMS: dict[str, Mechanism] = {
-    module.MECHANISM.name: module.MECHANISM
-    for module in (
-        vertical_acceleration,
-        sliding,
-        pivot_inset,
-        rounded_corner,
-        crushing,
-        tilt,
-        eccentricity,
-        flexible_joint,
-        added_stiffness,
-        table_pitch,
-        restitution,
-        velocity_restitution,
-        bounce,
-        viscous_damping,
-        coulomb_damping,
-        quadratic_damping,
-        degradation,
-        hardening,
-        maxwell,
-        bouc_wen,
-        mullins,
-        permanent_set,
-        payne,
-        wall_flexibility,
-    )
-}
-"""In the order in which they act on a model's coefficients."""
+MECHANISMS: tuple[Mechanism, ...] = (
+    vertical_acceleration.MECHANISM,
+    sliding.MECHANISM,
+    pivot_inset.MECHANISM,
+    rounded_corner.MECHANISM,
+    crushing.MECHANISM,
+    tilt.MECHANISM,
+    eccentricity.MECHANISM,
+    flexible_joint.MECHANISM,
+    added_stiffness.MECHANISM,
+    table_pitch.MECHANISM,
+    restitution.MECHANISM,
+    velocity_restitution.MECHANISM,
+    bounce.MECHANISM,
+    viscous_damping.MECHANISM,
+    coulomb_damping.MECHANISM,
+    quadratic_damping.MECHANISM,
+    degradation.MECHANISM,
+    degradation.OF_RUBBER,
+    hardening.MECHANISM,
+    maxwell.MECHANISM,
+    bouc_wen.MECHANISM,
+    mullins.MECHANISM,
+    permanent_set.MECHANISM,
+    payne.MECHANISM,
+    wall_flexibility.MECHANISM,
+)
+"""In the order in which they act on a model's coefficients; one name stands twice where its equation has other
+parameters on other models."""
 
 Coefficients = TypeVar("Coefficients")
 
 
 def acting_on(model: str) -> dict[str, Mechanism]:
-    """The mechanisms that act on ``model``, in the form that they have there."""
-    found = {name: mechanism.on(model) for name, mechanism in MECHANISMS.items()}
-    return {name: form for name, form in found.items() if form is not None}
+    """The mechanisms that act on ``model``, by name."""
+    return {mechanism.name: mechanism for mechanism in MECHANISMS if model in mechanism.acts}
 
 
 def applied(model: str, coefficients: Coefficients, values: Values) -> Coefficients:
@@ -80,10 +78,11 @@ def applied(model: str, coefficients: Coefficients, values: Values) -> Coefficie
         mechanism, dot, parameter = key.partition(".")
         if dot:
             switched.setdefault(mechanism, {})[parameter] = value
-    for name in MECHANISMS:
+    acting = acting_on(model)
+    for name in switched:
+        if name not in acting:
+            raise InputError(f"the mechanism {name} does not act on the model {model}: leave it out")
+    for name, form in acting.items():
         if name in switched:
-            form = MECHANISMS[name].on(model)
-            if form is None:
-                raise InputError(f"the mechanism {name} does not act on the model {model}: leave it out")
             coefficients = form.acts[model](coefficients, {**form.nulls, **switched[name]})
     return coefficients

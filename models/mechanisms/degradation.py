@@ -42,5 +42,4 @@ MECHANISM = Mechanism(
     sentence="each impact takes {loss_of_restitution_per_impact:.2%} of the restitution, down to {floor:.2f} of it",
     acts={"housner": on_housner},
     source="form of this project",
-    forms=(OF_RUBBER,),
 )

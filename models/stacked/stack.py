@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
 
 from models.base import FloatArray, Values
-from models.walls import bodies, lanes_shape
+from models.walls import bodies
 
 
 @dataclass(frozen=True)
@@ -176,11 +175,3 @@ def assemble(values: Values, vertical: bool, size: int | None = None) -> Stack:
 def at_joint(values: Values, name: str, joint: str) -> Any:
     """A mechanism's parameter at ``joint`` (base, top): ``name_joint`` if given, else ``name``."""
     return values.get(f"{name}_{joint}", values[name])
-
-
-def build(values: Values, vertical: bool, size: int | None = None) -> Stack:
-    """The stack with the mechanisms that ``values`` switch on, in the order of the catalogue."""
-    from models.mechanisms import applied
-
-    plain: Mapping[str, Any] = {k: v for k, v in values.items() if "." not in k}
-    return applied("stacked", assemble(plain, vertical, int(np.prod(lanes_shape(values, size)))), values)

@@ -20,7 +20,7 @@ from grids.recordings import noise_of, read_recording
 from grids.specimen import read_specimen
 from models import get
 from models.housner import reference
-from models.housner.block import build
+from models.housner.model import MODEL
 from models.shaking import Shaking
 
 
@@ -128,7 +128,7 @@ def test_own_program_without_its_law_equals_the_reference(name: str) -> None:
     law = {**LAWS, **UNSEEN}[name]
     nothing = truth.Applied(law, 0.0, law.draw(np.random.default_rng(0)), (1.0, 2.0), 0.02)
     own = truth.run(0.3, 1.7, 9.80665, fine.horizontal, fine.time_step, nothing)
-    block = build({"width": 0.3, "height": 1.7, "mass": 500.0}, False)
+    block = MODEL.build({"width": 0.3, "height": 1.7, "mass": 500.0})
     slow = reference.run(block, fine, tail=0.0, rtol=1e-9)
     assert own.impacts >= 4
     np.testing.assert_allclose(own.rotation, slow.rotation, atol=1e-6 * np.max(np.abs(slow.rotation)) + 1e-9)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
-from models.base import Mechanism, MechanismParameter, Parameter
+from models.base import Mechanism, MechanismParameter, Parameter, Values
+from models.housner.block import Block
+from models.housner.model import MODEL as HOUSNER
 from models.housner.model import Housner
-from models.mechanisms import MECHANISMS
+from models.mechanisms import acting_on
 
 
 def _mechanism(name: str, *parameters: MechanismParameter) -> Mechanism:
@@ -30,17 +31,23 @@ KAPPA = _mechanism(
 )
 
 
-@dataclass(frozen=True)
 class FakeWall(Housner):
     """Housner's block with a stop, a slipping base and one number that has no default."""
 
-    name: str = "fake_wall"
-    parameters: tuple[Parameter, ...] = (
+    name = "fake_wall"
+    parameters = (
         *Housner.parameters,
         Parameter("cover", "c", "m", "thickness of the cover", 0.0, 0.1),
     )
 
     @property
     def mechanisms(self) -> Mapping[str, Mechanism]:
-        kept = {name: MECHANISMS[name] for name in ("pivot_inset", "restitution")}
+        known = acting_on("housner")
+        kept = {name: known[name] for name in ("pivot_inset", "restitution")}
         return {**kept, "stop": STOP, "slip": SLIP, "vertical_acceleration": KAPPA}
+
+    def build(
+        self, values: Values, options: Mapping[str, str] | None = None, *, vertical: bool = False, size: int = 1
+    ) -> Block:
+        real = {name: value for name, value in values.items() if name.partition(".")[0] not in ("stop", "slip")}
+        return HOUSNER.build(real, options, vertical=vertical, size=size)

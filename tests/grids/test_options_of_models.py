@@ -78,7 +78,7 @@ def test_a_model_checks_and_derives_under_its_default_words(name: str) -> None:
         "isolated": {"total_mass": 3e5, "bearing_stiffness": 1e6, "bearing_damping": 1.5e5},
     }.get(name) or {**plan({**WALL, **({} if name == "stacked" else RUBBER)}, model=name).fixed}
     words = {option: known[0] for option, known in model.options.items()}
-    assert words.items() <= model.words(None).items()
+    assert words.items() <= model.resolve_options(None).items()
     assert model.check(values) == model.check(values, words) == []
     plain, told = model.derive(values), model.derive(values, words)
     for quantity, value in plain.items():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Callable
 from pathlib import Path
@@ -101,7 +102,8 @@ def test_one_sentence(
 ) -> None:
     import models.mechanisms
 
-    monkeypatch.setitem(models.mechanisms.MECHANISMS, "foreign", INSTRUMENTS["gain"])
+    foreign = dataclasses.replace(INSTRUMENTS["gain"], name="foreign")
+    monkeypatch.setattr(models.mechanisms, "MECHANISMS", (*models.mechanisms.MECHANISMS, foreign))
     old, new, words = BAD[kind]
     assert old in GOOD
     with pytest.raises(InputError) as error:

@@ -18,8 +18,9 @@ from models.housner.lanes.events import one_step
 from models.housner.lanes.onset import next_onset
 from models.housner.lanes.regimes.flexure import relax
 from models.housner.lanes.regimes.flight import shift
-from models.housner.lanes.step import hermite_root, inputs, note, raise_peak, stand_on, start_at, turning_point
+from models.housner.lanes.step import hermite_root, inputs, raise_peak, stand_on, start_at
 from models.lanes.compiler import called, compiled, inlined
+from models.lanes.events import note, turning_point
 
 Table = Any
 HALF_TURN = 0.5 * math.pi
@@ -183,7 +184,7 @@ def attend(
     over = result[lane, r.R_OVERTURNED_AT]
     if over == over:
         if not known == known:
-            note(log, count, lane, over, r.LOG_OVERTURNED)
+            note(log, count, lane, over, r.LOG_OVERTURNED, 1.0)
         return not fall or abs(theta) >= HALF_TURN
     return not theta == theta
 

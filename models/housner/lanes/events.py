@@ -17,16 +17,15 @@ from models.housner.lanes.step import (
     crossing,
     demand_at_landing,
     lift_off,
-    note,
     part,
     raise_peak,
     released,
     stand_on,
     start_at,
     turning,
-    turning_point,
 )  # fmt: skip
 from models.lanes.compiler import inlined
+from models.lanes.events import note, turning_point
 
 Table = Any
 
@@ -44,7 +43,7 @@ def land(
     left = kinetic_energy(given, w, lane, slot, -side, after)
     result[lane, r.R_DISSIPATED] += before - left
     result[lane, r.R_IMPACTS] += 1.0
-    note(log, count, lane, time, r.LOG_IMPACT)
+    note(log, count, lane, time, r.LOG_IMPACT, 1.0)
     stand_on(given, w, lane, slot, -side, linear)
     calm = abs(after) < given[lane, r.Q_REST]
     if w[r.JOINT * r.W + slot] >= 0.0:

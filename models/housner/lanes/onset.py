@@ -8,6 +8,7 @@ from typing import Any
 from models.housner.lanes import rows as r
 from models.housner.lanes.impact import pivot
 from models.housner.lanes.step import inputs
+from models.lanes.chunks import CHUNK
 from models.lanes.compiler import called, inlined
 
 Table = Any
@@ -79,7 +80,7 @@ def next_onset(
 ) -> int:
     """First step from i on in which the resting block is lifted or slides, ``last`` if there is none.
 
-    ``chunk`` (4, n) holds the extremes of the record over 64 steps: |a|, -a_z, |psi|, |psi''|.
+    ``chunk`` (4, n) holds the extremes of the record over `CHUNK` steps: |a|, -a_z, |psi|, |psi''|.
     """
     h = given[lane, r.Q_HEIGHT]
     b = min(pivot(given, w, lane, slot, 1.0), pivot(given, w, lane, slot, -1.0))
@@ -92,13 +93,13 @@ def next_onset(
     inertia = given[lane, r.Q_INERTIA] / given[lane, r.Q_MASS] + h * h
     scale, pitch = abs(w[r.SCALE * r.W + slot]), abs(w[r.PITCH * r.W + slot])
     while i < last:
-        if i % 64 == 0 and i + 64 <= last:
-            c = i // 64
+        if i % CHUNK == 0 and i + CHUNK <= last:
+            c = i // CHUNK
             low = w[r.GRAVITY * r.W + slot] - abs(w[r.VSCALE * r.W + slot]) * chunk[1, c]
             high = w[r.GRAVITY * r.W + slot] + abs(w[r.VSCALE * r.W + slot]) * chunk[1, c]
             push = (scale * chunk[0, c] + abs(w[r.OFFSET * r.W + slot]) + high * pitch * chunk[2, c]) * h
             if push + inertia * pitch * chunk[3, c] < low * b:
-                i += 64
+                i += CHUNK
                 continue
         f, _ = onset(given, w, lane, slot, record, i, 0.0, linear)
         if f < NONE:

@@ -11,18 +11,9 @@ from typing import Any
 from models.housner.lanes import rows as r
 from models.housner.lanes.equation import acceleration, friction_demand, rk4
 from models.lanes.compiler import called, inlined
+from models.lanes.events import note
 
 Table = Any
-
-
-@inlined
-def note(log: Table, count: Table, lane: int, time: float, kind: float) -> None:
-    """Write an event in the log of this lane, as long as there is room."""
-    if log.shape[1] > 0:
-        if count[lane] < log.shape[1]:
-            log[lane, count[lane], 0] = time
-            log[lane, count[lane], 1] = kind
-        count[lane] += 1
 
 
 @inlined
@@ -90,20 +81,6 @@ def hermite_root(theta: float, omega: float, th1: float, om1: float, step: float
             break
         f -= value / slope
     return f
-
-
-@inlined
-def turning_point(theta: float, omega: float, theta1: float, omega1: float, step: float) -> float:
-    """|theta| where the cubic through both ends of the step turns (two Newton steps from the secant)."""
-    c = 3.0 * (theta1 - theta) - step * (2.0 * omega + omega1)
-    d = 2.0 * (theta - theta1) + step * (omega + omega1)
-    f = omega / (omega - omega1)
-    for _ in range(2):
-        curve = 2.0 * c + 6.0 * d * f
-        if curve != 0.0:
-            f -= (step * omega + f * (2.0 * c + 3.0 * d * f)) / curve
-    f = min(1.0, max(0.0, f))
-    return abs(theta + f * (step * omega + f * (c + f * d)))
 
 
 @inlined
@@ -215,7 +192,7 @@ def lift_off(
     w[r.DIRECTION * r.W + slot] = side
     if not result[lane, r.R_UP_SINCE] == result[lane, r.R_UP_SINCE]:
         result[lane, r.R_UP_SINCE] = time
-        note(log, count, lane, time, r.LOG_ONSET)
+        note(log, count, lane, time, r.LOG_ONSET, 1.0)
         if not result[lane, r.R_ONSET] == result[lane, r.R_ONSET]:
             result[lane, r.R_ONSET] = time
 
@@ -227,4 +204,4 @@ def come_down(result: Table, lane: int, time: float, log: Table, count: Table) -
     if since == since:
         result[lane, r.R_UPLIFT] += time - since
         result[lane, r.R_UP_SINCE] = math.nan
-        note(log, count, lane, time, r.LOG_REST)
+        note(log, count, lane, time, r.LOG_REST, 1.0)

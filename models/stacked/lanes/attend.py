@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from models.lanes.compiler import called, inlined
+from models.lanes.events import note
 from models.stacked.account import (
     END_1,
     END_2,
@@ -20,7 +21,7 @@ from models.stacked.account import (
     PEAK_1,
     PEAK_2,
 )  # fmt: skip
-from models.stacked.lanes.bookkeeping import note, raise_peaks, spend, stand, visit
+from models.stacked.lanes.bookkeeping import raise_peaks, spend, stand, visit
 from models.stacked.lanes.equation import acceleration
 from models.stacked.lanes.events import one_step
 from models.stacked.lanes.locate import inputs

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from models.lanes.compiler import called, inlined
+from models.lanes.compiler import called
+from models.lanes.events import turning_point
 from models.stacked.account import ONSET_BASE, ONSET_TOP, PEAK_1, PEAK_2, TIME_IN, VISITED
 from models.stacked.configuration import CONFIGURATIONS
 from models.stacked.lanes.corners import UPRIGHT, corner_inertia, vectors
@@ -43,17 +44,6 @@ from models.stacked.lanes.rows import (
 Table = Any
 State = tuple[float, float, float, float]
 INDEX = tuple(CONFIGURATIONS.index((s1, s2)) for s1 in (-1, 0, 1) for s2 in (-1, 0, 1))
-
-
-@inlined
-def note(log: Table, count: Table, lane: int, time: float, kind: float, body: float) -> None:
-    """Write an event in the log of this lane, as long as there is room."""
-    if log.shape[1] > 0:
-        if count[lane] < log.shape[1]:
-            log[lane, count[lane], 0] = time
-            log[lane, count[lane], 1] = kind
-            log[lane, count[lane], 2] = body
-        count[lane] += 1
 
 
 @called
@@ -108,20 +98,6 @@ def configure(given: Table, result: Table, w: Table, lane: int, slot: int, s1: f
     result[lane, R_CLOSED] = 1.0 if s1 == 0.0 and s2 == 0.0 else 0.0
     stand(given, w, lane, slot, s1, s2)
     visit(result, lane)
-
-
-@inlined
-def turning_point(q: float, v: float, q_end: float, v_end: float, step: float) -> float:
-    """|q| where the cubic through both ends of the step turns (two Newton steps from the secant)."""
-    c = 3.0 * (q_end - q) - step * (2.0 * v + v_end)
-    d = 2.0 * (q - q_end) + step * (v + v_end)
-    f = v / (v - v_end)
-    for _ in range(2):
-        curve = 2.0 * c + 6.0 * d * f
-        if curve != 0.0:
-            f -= (step * v + f * (2.0 * c + 3.0 * d * f)) / curve
-    f = min(1.0, max(0.0, f))
-    return abs(q + f * (step * v + f * (c + f * d)))
 
 
 @called

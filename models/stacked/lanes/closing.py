@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from models.lanes.compiler import called
+from models.lanes.events import note
 from models.stacked.account import IMPACTS_BASE, IMPACTS_TOP, LOST_BASE, LOST_TOP
-from models.stacked.lanes.bookkeeping import configure, note
+from models.stacked.lanes.bookkeeping import configure
 from models.stacked.lanes.choice import choose
 from models.stacked.lanes.corners import impulses, kinetic_energy, motion
 from models.stacked.lanes.impact import imposed, land

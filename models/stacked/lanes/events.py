@@ -8,9 +8,10 @@ from __future__ import annotations
 from typing import Any
 
 from models.lanes.compiler import called, inlined
+from models.lanes.events import note
 from models.stacked.account import FAILED
 from models.stacked.declaration import MOST_EVENTS_PER_STEP
-from models.stacked.lanes.bookkeeping import configure, note, raise_peaks
+from models.stacked.lanes.bookkeeping import configure, raise_peaks
 from models.stacked.lanes.choice import choose, held
 from models.stacked.lanes.closing import close
 from models.stacked.lanes.corners import line, motion

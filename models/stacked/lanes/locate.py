@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from models.lanes.chunks import CHUNK
 from models.lanes.compiler import called, inlined
 from models.stacked.lanes.equation import contact, rk4
 from models.stacked.lanes.rows import GRAVITY, OFFSET, P_LEFT, P_RIGHT, SCALE, SIDE_1, SIDE_2, VSCALE, W
@@ -53,16 +54,16 @@ def onset(given: Table, w: Table, lane: int, slot: int, record: Table, i: int, f
 def next_onset(given: Table, w: Table, lane: int, slot: int, record: Table, i: int, last: int, chunk: Table) -> int:
     """First step from i on in which the resting stack is lifted, ``last`` if there is none.
 
-    ``chunk`` (2, n) holds the extremes of the record over 64 steps: |a|, |a_z|.
+    ``chunk`` (2, n) holds the extremes of the record over `CHUNK` steps: |a|, |a_z|.
     """
     k = min(given[lane, P_RIGHT], given[lane, P_LEFT])
     scale, lift = abs(w[SCALE * W + slot]), abs(w[VSCALE * W + slot])
     while i < last:
-        if i % 64 == 0 and i + 64 <= last:
-            c = i // 64
+        if i % CHUNK == 0 and i + CHUNK <= last:
+            c = i // CHUNK
             push = scale * chunk[0, c] + abs(w[OFFSET * W + slot])
             if push < (w[GRAVITY * W + slot] - lift * chunk[1, c]) * k:
-                i += 64
+                i += CHUNK
                 continue
         if onset(given, w, lane, slot, record, i, 0.0) < NONE:
             return i

@@ -3,34 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from models.base import Event, FloatArray
-from models.shaking import Shaking
-from models.stacked.account import N_ACCOUNT
+from models.base import FloatArray
+from models.lanes.record import recorded
+from models.lanes.tables import Tables, filled, groups
+from models.runs import Request, Run
+from models.stacked.account import N_ACCOUNT, outputs
 from models.stacked.declaration import REST_VELOCITY
 from models.stacked.equation import products, vectors
 from models.stacked.lanes import rows as r
 from models.stacked.lanes.advance import advance
+from models.stacked.observe import initial_state, settled_history
 from models.stacked.stack import Stack
 
 EVENTS = ("onset", "impact", "change_of_pattern", "rest", "overturned")
 LARGEST_PHASE = 0.02
 """Largest growth rate times step; the error of the rule falls with its fourth power."""
-CHUNK = 64
-
-
-@dataclass(frozen=True)
-class Lanes:
-    """Accounts ``(n, N_ACCOUNT)``; theta_1, r and their rates ``(n, samples, 4)`` and events if asked for."""
-
-    account: FloatArray
-    trace: FloatArray | None
-    events: tuple[tuple[Event, ...], ...] | None
-    steps: int
 
 
 def fastest_rate(stack: Stack) -> FloatArray:
@@ -56,34 +47,14 @@ def substeps(stack: Stack, time_step: float) -> NDArray[np.int64]:
     return np.maximum(1, np.ceil(fastest_rate(stack) * time_step / LARGEST_PHASE - 1e-9)).astype(np.int64)
 
 
-def records(shaking: Shaking, n: int, tail: float) -> tuple[FloatArray, FloatArray, int]:
-    """The record at the ends of the steps with its quiet tail, extremes of its chunks, steps of shaking."""
-    step = shaking.time_step / n
-    quiet = int(np.ceil(tail / step - 1e-9))
-    count = shaking.horizontal.size
-    shaken = (count - 1) * n
-    record = np.zeros((3, shaken + quiet + 2))
-    fine = np.arange(shaken + 1) / n
-    for row, samples in enumerate((shaking.horizontal, shaking.vertical)):
-        if samples is not None:
-            record[row, : shaken + 1] = np.interp(fine, np.arange(count), samples)
-    record[2, :shaken] = 1.0
-    chunks = max(record.shape[1] // CHUNK, 1)
-    chunk = np.zeros((2, chunks))
-    for c in range(chunks):
-        chunk[:, c] = np.max(np.abs(record[:2, c * CHUNK : (c + 1) * CHUNK + 1]), axis=1)
-    return record, chunk, shaken
-
-
 def given_table(stack: Stack, scale: FloatArray, initial: Mapping[str, FloatArray]) -> FloatArray:
     """The constants of the lanes, a line a lane with the columns of `rows`."""
-    table = np.zeros((stack.size, r.N_GIVEN))
     lean = np.abs(np.arctan2(stack.offset, stack.gravity))
     own_1 = np.arctan2(stack.base_pivot - np.abs(stack.shift_1), stack.centre_1) - lean
     whole = stack.centre
     right = np.minimum((stack.base_pivot - stack.shift) / whole, (stack.top_pivot - stack.shift_2) / stack.centre_2)
     left = np.minimum((stack.base_pivot + stack.shift) / whole, (stack.top_pivot + stack.shift_2) / stack.centre_2)
-    for column, values in (
+    constants = (
         (r.P_SCALE, scale),
         (r.P_OFFSET, stack.offset),
         (r.P_GRAVITY, stack.gravity),
@@ -114,57 +85,27 @@ def given_table(stack: Stack, scale: FloatArray, initial: Mapping[str, FloatArra
         (r.P_Q2, initial.get("q2", 0.0)),
         (r.P_V1, initial.get("w1", 0.0)),
         (r.P_V2, initial.get("w2", 0.0)),
-    ):
-        table[:, column] = values
-    return table
+    )
+    return filled(stack.size, r.N_GIVEN, constants)
 
 
-def run(
-    stack: Stack,
-    shaking: Shaking,
-    scale: FloatArray,
-    *,
-    tail: float = 0.0,
-    linear: bool = False,
-    initial: Mapping[str, FloatArray] | None = None,
-    first: NDArray[np.int64] | None = None,
-    last: NDArray[np.int64] | None = None,
-    samples: int = 0,
-    log: int = 0,
-    fall: bool = False,
-    refinement: int = 1,
-) -> Lanes:
-    """Run n lanes of ``stack`` under ``scale`` (n,) times the shaking.
+def run(stack: Stack, request: Request, refinement: int = 1) -> Run:
+    """Run n lanes of ``stack`` as requested; ``refinement`` divides every step.
 
-    ``initial``: theta_1, r (rad) and their rates (rad s-1) as q1, q2, w1, w2. ``first`` and ``last``
-    (n,) are samples of the shaking between which each lane runs (default: all, and the tail);
-    ``samples`` > 0 returns the states at the samples from ``first`` on; ``log`` > 0 returns up to that
-    many events a lane. ``refinement`` divides every step.
+    Samples: theta_1, r (rad) and their rates (rad s-1).
     """
-    n = stack.size
-    out = np.zeros((n, N_ACCOUNT))
-    trace = np.zeros((n, samples, 4))
-    logged: list[tuple[Event, ...]] = [()] * n
-    steps = 0
-    per_sample = substeps(stack, shaking.time_step) * refinement
-    state = {k: np.broadcast_to(np.asarray(v, float), (n,)) for k, v in (initial or {}).items()}
-    for sub in np.unique(per_sample).tolist():
-        lanes = np.flatnonzero(per_sample == sub)
-        record, chunk, shaken = records(shaking, sub, tail)
-        begin = np.zeros(lanes.size, np.int64) if first is None else first[lanes] * sub
-        end = np.full(lanes.size, record.shape[1] - 2) if last is None else last[lanes] * sub
-        given = given_table(stack.take(lanes), scale[lanes], {k: v[lanes] for k, v in state.items()})
-        result = np.zeros((lanes.size, r.N_RESULT))
-        part_trace = np.zeros((lanes.size, samples, 4))
-        part_log = np.zeros((lanes.size, log, 3))
-        count = np.zeros(lanes.size, np.int64)
+    found, steps = Tables.empty(request, r.N_RESULT, 4), 0
+    for (per_sample,), lanes in groups(substeps(stack, request.shaking.time_step) * refinement):
+        part, asked = stack.take(lanes), request.take(lanes)
+        record = recorded(request.shaking, per_sample, request.tail)
+        first, last = asked.steps(per_sample, record.end)
+        tables = Tables.empty(asked, r.N_RESULT, 4)
         steps += advance(
-            record, chunk, shaking.time_step / sub, shaken, begin, end, given, result,
-            sub if samples else 0, part_trace, part_log, count, fall, True if linear else None,
+            record.samples, record.extremes, record.step, record.shaken, first, last,
+            given_table(part, asked.scale, initial_state(asked.initial, part.size)), tables.result,
+            per_sample if asked.history else 0, tables.trace, tables.log, tables.count, asked.history,
+            True if request.linear else None,
         )  # fmt: skip
-        out[lanes] = result[:, :N_ACCOUNT]
-        trace[lanes] = part_trace
-        for k, lane in enumerate(lanes):
-            rows = part_log[k, : min(count[k], log)]
-            logged[lane] = tuple(Event(float(t), EVENTS[int(kind)], int(body)) for t, kind, body in rows)
-    return Lanes(out, trace if samples else None, tuple(logged) if log else None, steps)
+        found.put(lanes, tables)
+    account = found.result[:, :N_ACCOUNT]
+    return Run(outputs(stack, account), settled_history(found.trace, account), found.events(EVENTS), steps)

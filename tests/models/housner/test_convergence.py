@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 from models.housner import newmark, reference
-from models.housner.block import Block, build
+from models.housner.block import Block
 from models.housner.lanes import run as lanes
+from models.housner.model import MODEL
+from models.runs import Request
 from models.shaking import Shaking
 from tests.models.housner.adapter import rectangle
 
@@ -18,7 +20,7 @@ def forced() -> tuple[Block, Shaking]:
     """A rough record, linear between samples .08 s apart, that lifts the block twice."""
     time = np.arange(round(END / STEP) + 1) * STEP
     return (
-        build(rectangle(ALPHA, 2.0, restitution=0.85), vertical=False),
+        MODEL.build(rectangle(ALPHA, 2.0, restitution=0.85)),
         Shaking(STEP, 4.2 * np.sin(4.0 * time) * np.exp(-0.8 * time)),
     )
 
@@ -31,9 +33,8 @@ def final_state(steps: int, integrator: str, rtol: float = 1e-13) -> np.ndarray:
         state = np.array([result.rotation[0, -1], result.rate[0, -1] / 2.0])
     elif integrator == "lanes":
         size = shaking.horizontal.size
-        table = lanes.run(block, shaking, np.ones(1), samples=size, refinement=steps)
-        assert table.rotation is not None and table.rate is not None
-        state = np.array([table.rotation[0, -1], table.rate[0, -1] / 2.0])
+        rotation, rate, _ = lanes.run(block, Request(shaking, np.ones(1), samples=size), steps).samples[0, -1]
+        state = np.array([rotation, rate / 2.0])
     else:
         run = reference.run(block, shaking, tail=0.0, rtol=rtol)
         state = np.array([run.rotation[-1], run.rate[-1] / 2.0])

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from models.housner.block import build
 from models.housner.impact import momentum_restitution
+from models.housner.model import MODEL
 
 
 def derived(**values: float) -> dict[str, float]:
-    block = build(values, vertical=False)
+    block = MODEL.build(values)
     return {
         "alpha": float(block.slenderness[0]),
         "radius": float(block.radius[0]),

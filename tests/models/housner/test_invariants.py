@@ -6,7 +6,6 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from models.housner import reference
-from models.housner.block import build
 from models.shaking import Shaking
 from tests.models.housner.adapter import INTEGRATORS, MODEL, outcomes, rectangle
 from tests.models.strategies import SEEDS, cases, random_block, random_motion
@@ -64,7 +63,7 @@ def test_no_rocking_below_the_onset_and_rocking_above(integrator: str, vertical:
 def test_energy_between_impacts_and_at_impacts(seed: int, start: float) -> None:
     """Free rocking: energy is kept between impacts, and what is lost is what the impacts took."""
     values = random_block(np.random.default_rng(seed))
-    block = build(values, vertical=False)
+    block = MODEL.build(values)
     assume(block.momentum_restitution[0] > 0.05)
     alpha, theta = float(block.slenderness[0]), start * float(block.slenderness[0])
     p = float(block.frequency_parameter[0])

@@ -10,6 +10,7 @@ from models.housner import reference
 from models.housner.block import Block, assemble
 from models.housner.impact import momentum_restitution, restitution
 from models.housner.lanes import run as lanes
+from models.runs import Request
 from models.shaking import Shaking
 from tests.models.housner.adapter import rectangle
 from tests.models.strategies import random_motion
@@ -119,7 +120,7 @@ def test_lanes_follow_the_reference(law: str) -> None:
     shaking = random_motion(np.random.default_rng(7), duration=5.0, vertical=True)
     scale = 1.6 * 9.80665 * np.tan(ALPHA)
     slow = reference.run(block, shaking, scale, tail=2.0).outputs
-    found = lanes.outputs(block, lanes.run(block, shaking, np.array([scale]), tail=2.0).result)
+    found = lanes.run(block, Request(shaking, np.array([scale]), tail=2.0)).outputs
     fast = {name: float(value[0]) for name, value in found.items()}
     assert slow["impacts"] > 3
     assert 0.02 < slow["peak_rotation_ratio"] < 0.8
@@ -135,13 +136,13 @@ def test_impact_law_of_the_lanes_is_the_formula(law: str) -> None:
     block = PLAIN.replace(**LAWS[law])
     b = [float(x[0]) - float(block.corner_radius[0]) for x in (block.right, block.left)]
     start = {"rotation_rate_1": np.array([0.3])}
-    one = lanes.run(block, Shaking.silence(3.0, 0.001), np.ones(1), initial=start, samples=3001, log=4)
-    assert one.rotation is not None and one.rate is not None and one.events is not None
-    times = [time for time, kind in one.events[0] if kind == "impact"]
+    request = Request(Shaking.silence(3.0, 0.001), np.ones(1), initial=start, samples=3001, log=4)
+    one = lanes.run(block, request)
+    times = [event.time for event in one.events[0] if event.kind == "impact"]
     arcs = [0, *(round(time / 0.001) for time in times)]
     base = float(block.inertia[0]) + M * H**2
     inertia = [base + M * x**2 for x in b]
-    peak = [float(np.max(np.abs(one.rotation[0, arcs[k] : arcs[k + 1]]))) for k in range(2)]
+    peak = [float(np.max(np.abs(one.samples[0, arcs[k] : arcs[k + 1], 0]))) for k in range(2)]
     rate, taken = 0.3, 0.0
     for k in range(2):
         old, new = b[k % 2], b[(k + 1) % 2]
@@ -153,6 +154,5 @@ def test_impact_law_of_the_lanes_is_the_formula(law: str) -> None:
         taken += 0.5 * (inertia[k % 2] * rate**2 - inertia[(k + 1) % 2] * after**2)
         rate = after
         short = Shaking.silence((arcs[k + 1] + 2) * 0.001, 0.001)
-        table = lanes.run(block, short, np.ones(1), initial=start)
-        lost = float(lanes.outputs(block, table.result)["dissipated_energy"][0])
+        lost = float(lanes.run(block, Request(short, np.ones(1), initial=start)).outputs["dissipated_energy"][0])
         assert lost == pytest.approx(taken, rel=2e-6)

@@ -29,7 +29,7 @@ LONG = {**SHORT, "wall_length": 2.0, "damping_ratio": 0.0167}
 
 def wall(values: dict[str, Any], **options: str) -> LayeredWall:
     """Coefficients of one wall."""
-    return build(values, MODEL.words(options), False)
+    return build(values, MODEL.resolve_options(options), False)
 
 
 def undamped(values: dict[str, Any]) -> dict[str, Any]:

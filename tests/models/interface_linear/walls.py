@@ -18,7 +18,7 @@ MODEL: Any = models.get("interface_linear")
 
 def wall(values: dict[str, Any], joints: str = "both") -> LayeredWall:
     """Coefficients of one wall."""
-    return build(values, MODEL.words({"joints": joints}), False, model="interface_linear")
+    return build(values, MODEL.resolve_options({"joints": joints}), False, model="interface_linear")
 
 
 def by_exponential(

@@ -11,8 +11,8 @@ import numpy as np
 import models
 from models.base import FloatArray
 from models.housner import reference
-from models.housner.block import build
 from models.housner.lanes import run as lanes
+from models.runs import Request
 from models.shaking import Shaking
 
 HOUSNER = models.get("housner")
@@ -74,19 +74,20 @@ def by_lanes(
     values: Mapping[str, Any], shaking: Shaking, initial: Mapping[str, float] | None = None, refinement: int = 1
 ) -> Told:
     """One run by the kernel, as long as the record."""
-    block = build(values, shaking.vertical is not None and shaking.vertical_acts)
-    ran = lanes.run(
-        block, shaking, np.ones(1), initial={k: np.array([v]) for k, v in (initial or {}).items()},
-        samples=shaking.horizontal.size, log=2000, refinement=refinement,
+    block = HOUSNER.build(values, vertical=shaking.vertical is not None and shaking.vertical_acts)
+    request = Request(
+        shaking, np.ones(1), initial={k: np.array([v]) for k, v in (initial or {}).items()},
+        samples=shaking.horizontal.size, log=2000,
     )  # fmt: skip
-    assert ran.rotation is not None and ran.rate is not None and ran.shift is not None and ran.events is not None
-    outputs = {k: float(v[0]) for k, v in lanes.outputs(block, ran.result).items()}
-    return Told(outputs, ran.rotation[0], ran.rate[0], ran.shift[0], ran.events[0])
+    ran = lanes.run(block, request, refinement)
+    outputs = {k: float(v[0]) for k, v in ran.outputs.items()}
+    rotation, rate, shift = np.moveaxis(ran.samples[0], -1, 0)
+    return Told(outputs, rotation, rate, shift, tuple((e.time, e.kind) for e in ran.events[0]))
 
 
 def by_reference(values: Mapping[str, Any], shaking: Shaking, initial: Mapping[str, float] | None = None) -> Told:
     """The same by the reference."""
-    block = build(values, shaking.vertical is not None and shaking.vertical_acts)
+    block = HOUSNER.build(values, vertical=shaking.vertical is not None and shaking.vertical_acts)
     ran = reference.run(block, shaking, 1.0, tail=0.0, initial=initial)
     return Told(ran.outputs, ran.rotation, ran.rate, ran.shift, tuple((e.time, e.kind) for e in ran.events))
 

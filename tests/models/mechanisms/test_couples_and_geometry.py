@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from models.housner.block import build
 from models.shaking import Shaking
 from tests.models.mechanisms.cases import (
     ALPHA,
@@ -87,7 +86,7 @@ def test_a_spring_keeps_energy_too() -> None:
 def test_the_first_impact_keeps_the_declared_share(values: dict[str, float], ratios: object) -> None:
     told = by_lanes({**WALL, **values}, free(0.7, 0.001), START)
     energy = released(START["rotation_1"])
-    block = build(WALL, False)
+    block = HOUSNER.build(WALL)
     speed = float(np.sqrt(2 * energy / block.pivot_inertia[0])) / (P * ALPHA)
     e = ratios(1 - 1.5 * np.sin(ALPHA) ** 2, speed)  # type: ignore[operator]
     assert told.outputs["impacts"] == 1
@@ -120,7 +119,7 @@ def test_an_eccentric_block_is_the_mirror_image_of_the_other_one() -> None:
 
 def test_an_eccentric_block_starts_on_the_side_of_its_mass_centre() -> None:
     """Positive to +x: it takes less to tip it clockwise, that is with a negative acceleration."""
-    block = build({**WALL, "eccentricity.offset_over_half_width": 0.1}, False)
+    block = HOUSNER.build({**WALL, "eccentricity.offset_over_half_width": 0.1})
     assert block.right[0] == pytest.approx(0.9 * 0.25) and block.left[0] == pytest.approx(1.1 * 0.25)
     assert HOUSNER.derive({**WALL, "eccentricity.offset_over_half_width": 0.1})["onset_acceleration"] == pytest.approx(
         0.9 * G * 0.25

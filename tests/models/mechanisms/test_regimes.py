@@ -5,9 +5,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from models.housner.block import build
 from models.housner.cantilever import BETA, SIGMA, STRUCTURAL_DAMPING, modal_integrals
 from models.housner.lanes import run as lanes
+from models.runs import Request
 from models.shaking import Shaking
 from tests.models.mechanisms.cases import ALPHA, HOUSNER, WALL, by_lanes, free, pulse, released
 
@@ -91,7 +91,7 @@ def test_the_block_turns_steadily_in_the_air() -> None:
     k = int(time / step)
     flight = told.rate[k + 1 : k + 6]
     e = 1 - 1.5 * np.sin(ALPHA) ** 2
-    block = build(WALL, False)
+    block = HOUSNER.build(WALL)
     before = -np.sqrt(2 * released(START["rotation_1"]) / block.pivot_inertia[0])
     assert flight[0] == pytest.approx((e - c * (1 - e)) * before, rel=1e-9)
     np.testing.assert_array_equal(flight, flight[0])
@@ -161,7 +161,7 @@ def test_a_bending_wall_loses_what_it_released() -> None:
     frequency = 15.0
     values = {**WALL, "wall_flexibility.first_frequency": frequency}
     told = by_lanes(values, free(16.0), START)
-    block = build(values, False)
+    block = HOUSNER.build(values)
     m, f = float(block.modal_mass[0]), float(block.modal_force[0])
     eta = told.shift[0] / (f / WALL["mass"] * np.cos(START["rotation_1"]))
     bent = 0.5 * m * (2 * np.pi * frequency * eta) ** 2 - G * f * eta * np.sin(START["rotation_1"])
@@ -178,13 +178,11 @@ def test_a_lane_without_regimes_pays_nothing() -> None:
         "bounce.contact_restitution": np.array([0.0, 0.0, 0.4, 0.0]),
         "wall_flexibility.first_frequency": np.array([np.inf, np.inf, np.inf, 20.0]),
     }
-    block = build(values, False)
-    together = lanes.run(block, shaking, np.ones(4), samples=shaking.horizontal.size)
-    assert together.rotation is not None
+    block = HOUSNER.build(values)
+    request = Request(shaking, np.ones(4), samples=shaking.horizontal.size)
+    together = lanes.run(block, request).samples[..., 0]
     for k in range(4):
-        alone = lanes.run(block.take([k]), shaking, np.ones(1), samples=shaking.horizontal.size)
-        assert alone.rotation is not None
-        np.testing.assert_allclose(together.rotation[k], alone.rotation[0], rtol=0, atol=1e-12)
-    np.testing.assert_array_equal(together.rotation[0], lanes.run(
-        block.take([0, 1]), shaking, np.ones(2), samples=shaking.horizontal.size
-    ).rotation[0])  # type: ignore[index]  # fmt: skip
+        alone = lanes.run(block.take([k]), request.take([k])).samples[..., 0]
+        np.testing.assert_allclose(together[k], alone[0], rtol=0, atol=1e-12)
+    pair = lanes.run(block.take([0, 1]), request.take([0, 1])).samples[..., 0]
+    np.testing.assert_array_equal(together[0], pair[0])

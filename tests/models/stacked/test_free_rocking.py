@@ -11,7 +11,6 @@ from models.stacked.configuration import CONFIGURATIONS, State
 from models.stacked.equation import held, motion
 from models.stacked.model import MODEL
 from models.stacked.overturning import energy
-from models.stacked.stack import build
 from tests.models.stacked.walls import LANES, A, B, G, random_stacks
 from tests.models.strategies import random_motion
 
@@ -21,7 +20,7 @@ STARTS = ((B, 0.05, 0.05), (B, 0.0, 0.1), (B, 0.05, -0.07), (A, 0.08, 0.2), (A, 
 
 def released(values: dict[str, float], theta_1: float, theta_2: float) -> float:
     """Energy above that of rest, in J."""
-    stack = build(values, vertical=False).one()
+    stack = MODEL.build(values).one()
     start = State((int(np.sign(theta_1)), int(np.sign(theta_2 - theta_1))), (theta_1, theta_2 - theta_1), (0.0, 0.0))
     still = State((0, 0), (0.0, 0.0), (0.0, 0.0))
     return energy(stack, start, (0.0, G)) - energy(stack, still, (0.0, G))
@@ -108,7 +107,7 @@ def test_the_linear_formulation_is_the_limit_of_small_rotations() -> None:
     """Half as slender and half as far released: a quarter of the relative difference."""
     apart = []
     for slender in (0.1, 0.05):
-        stack = build({**B, "wall_length": slender, "top_length": 0.6 * slender}, vertical=False)
+        stack = MODEL.build({**B, "wall_length": slender, "top_length": 0.6 * slender})
         alpha = float(stack.slenderness[0])
         histories = [
             reference.run(

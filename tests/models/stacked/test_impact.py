@@ -8,10 +8,11 @@ import pytest
 from models.stacked.choice import candidates, margin
 from models.stacked.configuration import BASE, TOP, State
 from models.stacked.impact import closed, impact, impulses, kinetic_energy
-from models.stacked.stack import Stack, build
+from models.stacked.model import MODEL
+from models.stacked.stack import Stack
 from tests.models.stacked.walls import A, random_stacks
 
-SINGLE = build(A, vertical=False).one()
+SINGLE = MODEL.build(A).one()
 
 
 @pytest.mark.parametrize(
@@ -110,7 +111,7 @@ def test_given_restitution(factor: float, ratio: float) -> None:
 
 def test_one_body_before_and_after_gives_its_own_restitution() -> None:
     """A flat block as long as the wall stays seated; theta' is multiplied by 1 - 2 M b^2/I_O."""
-    wall = build({**A, "top_length": 1.0, "top_height": 0.3}, vertical=False)
+    wall = MODEL.build({**A, "top_length": 1.0, "top_height": 0.3})
     e = float(wall.momentum_restitution[0])
     b, mass = 0.5, 1500.0
     inertia = 1000 * (1 + 9) / 12 + 1000 * (1.5**2 + b**2) + 500 * (1 + 0.09) / 12 + 500 * (3.15**2 + b**2)
@@ -124,7 +125,7 @@ def test_one_body_before_and_after_gives_its_own_restitution() -> None:
 @pytest.mark.parametrize("sides", [(1, 1), (1, -1), (1, 0)])
 def test_without_top_mass_the_wall_is_housners(sides: tuple[int, int]) -> None:
     """m2 -> 0: e = 1 - 1.5 sin^2(alpha) of the wall alone, whatever the upper block does."""
-    wall = build({**A, "top_mass": 1e-9}, vertical=False).one()
+    wall = MODEL.build({**A, "top_mass": 1e-9}).one()
     e = 1 - 1.5 * 0.5**2 / (0.5**2 + 1.5**2)
     up = sides[1] * 0.02
     after = impact(wall, BASE, State(sides, (0.0, up), (-1.0, 0.3 * sides[1])), False)
@@ -133,7 +134,7 @@ def test_without_top_mass_the_wall_is_housners(sides: tuple[int, int]) -> None:
 
 def test_alone_on_an_unmoved_wall_the_upper_block_is_housners() -> None:
     """A very heavy wall: the upper block's e is its own."""
-    wall = build({**A, "wall_mass": 1e13}, vertical=False).one()
+    wall = MODEL.build({**A, "wall_mass": 1e13}).one()
     e = 1 - 1.5 * 0.3**2 / (0.3**2 + 0.6**2)
     after = impact(wall, TOP, State((0, 1), (0.0, 0.0), (0.0, -1.0)), False)
     assert after.sides[1] == -1

@@ -5,7 +5,6 @@ import pytest
 
 from models.shaking import Shaking
 from models.stacked.model import MODEL
-from models.stacked.stack import build
 from tests.models.stacked.walls import LANES, A, B, G
 from tests.models.strategies import random_motion
 
@@ -71,7 +70,7 @@ def test_a_given_ratio_is_the_ratio_of_the_relative_rates(integrator: str) -> No
 def test_restitution_factor_at_the_base(integrator: str) -> None:
     """As one body every impact keeps f e of the angular velocity: the first takes (1 - f^2 e^2) of the energy."""
     values = {**A, "wall_length": 0.6, "top_height": 0.2, "restitution.factor_on_housner_base": 0.9}
-    stack = build(values, vertical=False)
+    stack = MODEL.build(values)
     e = 0.9 * float(stack.momentum_restitution[0])
     radius, alpha = float(np.hypot(0.3, stack.centre[0])), float(stack.slenderness[0])
     released = 1500 * G * radius * (np.cos(alpha - 0.05) - np.cos(alpha))
@@ -85,7 +84,7 @@ def test_restitution_factor_at_the_base(integrator: str) -> None:
 def test_viscous_couple_takes_the_energy_it_should(integrator: str) -> None:
     """As one body: the loss before the first impact is the integral of d I_O theta'^2."""
     values = {**A, "wall_length": 0.6, "top_height": 0.2, "viscous_damping.rate": 0.3}
-    corner = float(build(values, vertical=False).corner_inertia(1.0)[0])
+    corner = float(MODEL.build(values).corner_inertia(1.0)[0])
     run = MODEL.simulate(values, Shaking.silence(0.4, 0.001), initial={"rotation_1": 0.05}, integrator=integrator)
     rate = run.channels["rotation_rate_1"]
     assert run.outputs["impacts_base"] == 0

@@ -6,7 +6,7 @@ import pytest
 from models.stacked.choice import SIDES, admissible, candidates, choose
 from models.stacked.configuration import CONFIGURATIONS
 from models.stacked.equation import held
-from models.stacked.stack import build
+from models.stacked.model import MODEL
 from tests.models.stacked.walls import A, B, G, at_rest, random_stacks
 
 REST, UPPER, ONE_BODY, SAME_SIDE, OPPOSED = (0, 0), (0, 1), (1, 0), (1, 1), (1, -1)
@@ -24,7 +24,7 @@ def test_published_sequences(values: dict[str, float], sequence: list[tuple[tupl
 
     The limits were read off a scan: .2237 is the first level of a pattern that starts at .22357.
     """
-    stack = build(values, vertical=False).one()
+    stack = MODEL.build(values).one()
 
     def pattern(level: float) -> tuple[int, int]:
         return choose(at_rest(stack, -level * G), 0, 0)
@@ -39,7 +39,7 @@ def test_published_sequences(values: dict[str, float], sequence: list[tuple[tupl
 
 def test_base_threshold_lies_inside_upper_block_alone() -> None:
     """B: as one body the wall would lift at .19737 g, but the upper block already rocks there."""
-    stack = build(B, vertical=False)
+    stack = MODEL.build(B)
     assert (stack.half_width / stack.centre)[0] == pytest.approx(0.19737, abs=5e-6)
     assert choose(at_rest(stack.one(), -0.19737 * G), 0, 0) == UPPER
 

@@ -14,8 +14,9 @@ from models.housner.declaration import MOST_IMPACTS_PER_STEP
 from models.housner.lanes import rows as r
 from models.housner.lanes.equation import acceleration
 from models.housner.lanes.impact import pivot, restitution
-from models.housner.lanes.step import come_down, inputs, lift_off, note, raise_peak, stand_on, turning_point
+from models.housner.lanes.step import come_down, inputs, lift_off, raise_peak, stand_on
 from models.lanes.compiler import called
+from models.lanes.events import note, turning_point
 
 Table = Any
 
@@ -211,7 +212,7 @@ def land(
     before = 0.5 * (j_old * omega + 2.0 * k * speed) * omega + 0.5 * m * speed * speed
     om1 = (kept - share) / (j_new - share) * omega
     speed1 = speed + k / m * (omega - om1)
-    note(log, count, lane, time, r.LOG_IMPACT)
+    note(log, count, lane, time, r.LOG_IMPACT, 1.0)
     result[lane, r.R_IMPACTS] += 1.0
     result[lane, r.R_SWING] = 0.0
     stand_on(given, w, lane, slot, -side, linear)

@@ -19,8 +19,9 @@ from models.housner.lanes import rows as r
 from models.housner.lanes.equation import acceleration
 from models.housner.lanes.onset import excess, onset, slip_onset
 from models.housner.lanes.regimes.slip_impact import JAM, land
-from models.housner.lanes.step import inputs, lift_off, part, raise_peak, released, turning_point
+from models.housner.lanes.step import inputs, lift_off, part, raise_peak, released
 from models.lanes.compiler import called, inlined
+from models.lanes.events import turning_point
 
 Table = Any
 CROSSING, REVERSAL, DEMAND, TURNING = 0, 1, 2, 3

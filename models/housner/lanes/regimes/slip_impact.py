@@ -12,8 +12,9 @@ from typing import Any
 from models.housner.lanes import rows as r
 from models.housner.lanes.impact import pivot, restitution
 from models.housner.lanes.onset import excess
-from models.housner.lanes.step import come_down, inputs, note, stand_on
+from models.housner.lanes.step import come_down, inputs, stand_on
 from models.lanes.compiler import called, inlined
+from models.lanes.events import note
 
 Table = Any
 JAM = 0.05
@@ -54,7 +55,7 @@ def land(
         # pressed on both corners: the block lands flat
         om1, v1 = 0.0, v + height * omega
         v1 -= math.copysign(min(abs(v1), mu * old * abs(omega)), v1)
-    note(log, count, lane, (i + f) * h, r.LOG_IMPACT)
+    note(log, count, lane, (i + f) * h, r.LOG_IMPACT, 1.0)
     result[lane, r.R_IMPACTS] += 1.0
     result[lane, r.R_SWING] = 0.0
     stand_on(given, w, lane, slot, -side, linear)

@@ -1,0 +1,232 @@
+"""The one base of all models: what is the same for each of them stands here, once."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from typing import Any, Generic, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+from typing_extensions import TypeVar  # typing has no default of a parameter before Python 3.13
+
+from models.base import FloatArray, History, Mechanism, Parameter, Quantity, Values
+from models.errors import InputError, nearest
+from models.mechanisms import acting_on, applied
+from models.runs import Request, Run
+from models.shaking import Shaking
+
+MOST_LOGGED = 50_000
+"""Events kept of one history."""
+
+
+class Coefficients(Protocol):
+    """What every integrator of a model starts from: geometry, inertia and laws of n lanes."""
+
+    @property
+    def size(self) -> int: ...
+
+    def take(self, index: Any) -> Any: ...
+
+
+C = TypeVar("C", bound=Coefficients, default=Any)
+
+
+class Model(ABC, Generic[C]):
+    """A model of a wall: its declarations, its coefficients ``C`` and its integrators.
+
+    Arrays broadcast; nothing here knows labels, files or dask. A model gives `assemble`, `run_lanes`,
+    `run_reference`, `observe`, `check` and `derive`; everything else is the same for all.
+
+    ``alternatives``: tuples of parameter sets of which exactly one must be given, for instance
+    ``(("width", "height"), ("height", "aspect_ratio"))``.
+    ``options``: words that choose a formulation, with their values, the default first.
+    ``states``: what a run starts from, by name.
+    ``chaotic``: whether neighbouring trajectories part quickly, so that recordings are compared window by window.
+    ``takes_vertical``: whether a vertical motion of the base enters the equations; ``vertical_by_default``:
+    whether it does where a specimen does not say.
+    """
+
+    name: str
+    title: str
+    version: str
+    parameters: tuple[Parameter, ...]
+    alternatives: tuple[tuple[tuple[str, ...], ...], ...]
+    options: Mapping[str, tuple[str, ...]]
+    outputs: tuple[Quantity, ...]
+    derived: tuple[Quantity, ...]
+    observables: tuple[Quantity, ...]
+    states: tuple[str, ...]
+    integrators: tuple[str, ...] = ("lanes", "reference")
+    chaotic: bool = True
+    takes_vertical: bool = True
+    vertical_by_default: bool = False
+
+    # --- what a model gives
+
+    @abstractmethod
+    def assemble(self, values: Values, options: Mapping[str, str], *, vertical: bool, size: int) -> C:
+        """The coefficients of ``size`` lanes from the model's own parameters, without mechanisms.
+
+        ``vertical``: whether the vertical motion of the base acts.
+        """
+
+    @abstractmethod
+    def run_lanes(self, coefficients: C, request: Request) -> Run:
+        """All lanes by the compiled kernel."""
+
+    @abstractmethod
+    def run_reference(self, coefficients: C, request: Request) -> Run:
+        """One lane by the slow plain route."""
+
+    @abstractmethod
+    def observe(self, coefficients: C, samples: FloatArray) -> dict[str, FloatArray]:
+        """The observables ``(n, samples)`` of states ``(n, samples, k)`` as the integrators return them."""
+
+    @abstractmethod
+    def check(self, values: Values, options: Mapping[str, str] | None = None) -> list[str]:
+        """Sentences about values that have no meaning together under ``options`` (e <= 0); empty: fine."""
+
+    @abstractmethod
+    def derive(self, values: Values, options: Mapping[str, str] | None = None) -> dict[str, FloatArray]:
+        """Auxiliary constants (alpha, R, p ...) under ``options``, arrays ``(n,)`` by the names of `derived`."""
+
+    def run(self, integrator: str, coefficients: C, request: Request) -> Run:
+        """All lanes by the integrator of that name."""
+        if integrator == "lanes":
+            return self.run_lanes(coefficients, request)
+        lanes = [slice(k, k + 1) for k in range(coefficients.size)]
+        return Run.joined([self.run_reference(coefficients.take(k), request.take(k)) for k in lanes])
+
+    def settle(self, run: Run, time_step: float) -> FloatArray:
+        """States of a history in which what has overturned stays where it lies; default: as computed."""
+        return run.samples
+
+    # --- the same for all
+
+    @property
+    def mechanisms(self) -> Mapping[str, Mechanism]:
+        """The mechanisms that can act on this model, by name."""
+        return acting_on(self.name)
+
+    def resolve_options(self, options: Mapping[str, str] | None) -> dict[str, str]:
+        """Every option with its word, the default where ``options`` gives none; raises InputError."""
+        chosen = {name: known[0] for name, known in self.options.items()}
+        for name, word in (options or {}).items():
+            if name not in chosen:
+                raise InputError(f"{self.name} has no option '{name}'; {nearest(name, chosen)}")
+            if word not in self.options[name]:
+                raise InputError(f"{name} is '{word}'; {nearest(word, self.options[name])}")
+            chosen[name] = word
+        return chosen
+
+    def build(
+        self, values: Values, options: Mapping[str, str] | None = None, *, vertical: bool = False, size: int = 1
+    ) -> C:
+        """The coefficients with the mechanisms that ``values`` switch on (as ``mechanism.parameter``).
+
+        ``values`` and ``size`` broadcast to the lanes; ``vertical``: whether the vertical motion acts.
+        """
+        plain = {name: value for name, value in values.items() if "." not in name}
+        lanes = int(np.prod(np.broadcast_shapes(*(np.shape(value) for value in values.values()), (size,))))
+        chosen = self.resolve_options(options)
+        return applied(self.name, self.assemble(plain, chosen, vertical=vertical, size=lanes), values)
+
+    def evaluate(
+        self,
+        values: Values,
+        shaking: Shaking,
+        scale: FloatArray,
+        *,
+        outputs: Sequence[str],
+        tail: float,
+        options: Mapping[str, str] | None = None,
+        integrator: str = "lanes",
+    ) -> dict[str, NDArray[Any]]:
+        """Run one lane per element of ``scale`` (n,), which multiplies the shaking; outputs ``(n,)`` by name.
+
+        ``tail``: free motion after the record, at most, in s.
+        """
+        scale = np.atleast_1d(np.asarray(scale, dtype=np.float64))
+        coefficients = self._shaken(values, options, shaking, scale.size, integrator)
+        request = Request(shaking, scale, self.resolve_options(options), tail=tail)
+        found = self.run(integrator, coefficients, request).outputs
+        kinds = {quantity.name: np.dtype(quantity.dtype) for quantity in self.outputs}
+        return {name: np.asarray(found[name]).astype(kinds[name], copy=False) for name in outputs}
+
+    def trajectories(
+        self,
+        values: Values,
+        shaking: Shaking,
+        *,
+        first: NDArray[np.int64],
+        samples: int,
+        initial: Mapping[str, FloatArray],
+        options: Mapping[str, str] | None = None,
+    ) -> dict[str, FloatArray]:
+        """Observables ``(n, samples)`` of n lanes, lane k from sample ``first[k]`` of the shaking and its own state.
+
+        ``initial``: arrays ``(n,)`` by the names of `states`, and of what laws with a memory need.
+        """
+        n = first.size
+        coefficients = self._shaken(values, options, shaking, n, "lanes")
+        request = Request(
+            shaking, np.ones(n), self.resolve_options(options), first=first,
+            last=np.minimum(first + samples - 1, shaking.horizontal.size - 1), samples=samples,
+            initial={name: np.broadcast_to(np.asarray(v, dtype=np.float64), (n,)) for name, v in initial.items()},
+        )  # fmt: skip
+        return self.observe(coefficients, self.run("lanes", coefficients, request).samples)
+
+    def simulate(
+        self,
+        values: Values,
+        shaking: Shaking,
+        *,
+        scale: float = 1.0,
+        initial: Mapping[str, float] | None = None,
+        duration: float | None = None,
+        tail: float = 0.0,
+        options: Mapping[str, str] | None = None,
+        integrator: str = "lanes",
+    ) -> History:
+        """One run with its history at the samples of the shaking and of its quiet tail.
+
+        ``initial`` by the names of `states`. ``duration`` (s) cuts the run or lengthens it beyond the shaking.
+        The channels of what overturns stay where it lies.
+        """
+        for name in initial or {}:
+            if name not in self.states:
+                raise InputError(f"[initial] has no state '{name}'; {nearest(name, self.states)}")
+        coefficients = self._shaken(values, options, shaking, 1, integrator)
+        step = shaking.time_step
+        last = round((shaking.duration + tail if duration is None else duration) / step)
+        request = Request(
+            shaking, np.array([scale], dtype=np.float64), self.resolve_options(options),
+            tail=max(0.0, last * step - shaking.duration),
+            initial={name: np.array([value], dtype=np.float64) for name, value in (initial or {}).items()},
+            last=np.array([last]), samples=last + 1, log=MOST_LOGGED,
+        )  # fmt: skip
+        run = self.run(integrator, coefficients, request)
+        channels = self.observe(coefficients, self.settle(run, step))
+        return History(
+            step * np.arange(last + 1, dtype=np.float64),
+            {name: one[0] for name, one in channels.items()},
+            run.events[0],
+            {name: float(run.outputs[name][0]) for name in (quantity.name for quantity in self.outputs)},
+        )
+
+    def _shaken(
+        self, values: Values, options: Mapping[str, str] | None, shaking: Shaking, size: int, integrator: str
+    ) -> C:
+        """The coefficients of ``size`` lanes under ``shaking``, after checking what was asked; raises InputError."""
+        if integrator not in self.integrators:
+            raise InputError(f"integrator is '{integrator}'; {nearest(integrator, self.integrators)}")
+        if shaking.vertical is None and np.any(values.get("vertical_acceleration.kappa", 0.0)):
+            raise InputError(
+                "vertical_acceleration.kappa needs the vertical motion of the base: give a motion that has one"
+            )
+        acts = shaking.vertical is not None and shaking.vertical_acts
+        coefficients = self.build(values, options, vertical=acts, size=size)
+        if coefficients.size != size:
+            raise ValueError(f"values broadcast to {coefficients.size} lanes, {size} are asked for")
+        return coefficients

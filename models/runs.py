@@ -1,0 +1,102 @@
+"""What an integrator is asked, and what it returns."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.base import Event, FloatArray
+from models.shaking import Shaking
+
+Index = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Request:
+    """Runs of n lanes under ``scale`` (n,) times the shaking, the formulation chosen by ``options``.
+
+    Outputs alone (``samples`` = 0): from the start of the shaking, then ``tail`` (s) of free motion at most.
+    Histories: ``samples`` states of every lane at the time step of the shaking, from sample ``first`` (n,) to
+    ``last`` (n,; default: from the start to the end of the tail), through rest and overturning.
+    ``initial``: arrays (n,) by the names of the model's states; what is left out is as at rest.
+    ``log``: most events kept of a lane.
+    """
+
+    shaking: Shaking
+    scale: FloatArray
+    options: Mapping[str, str] = field(default_factory=dict)
+    tail: float = 0.0
+    initial: Mapping[str, FloatArray] = field(default_factory=dict)
+    first: Index | None = None
+    last: Index | None = None
+    samples: int = 0
+    log: int = 0
+
+    @property
+    def history(self) -> bool:
+        """Whether the motion itself is asked for, not only its outputs."""
+        return self.samples > 0
+
+    @property
+    def linear(self) -> bool:
+        """Whether the formulation asked for is the linear one, in models that have both."""
+        return self.options.get("formulation") == "linear"
+
+    @property
+    def until(self) -> float:
+        """End (s) of a request of one lane that starts with the shaking."""
+        if self.last is None:
+            return self.shaking.duration + self.tail
+        return float(self.last[0]) * self.shaking.time_step
+
+    def steps(self, per_sample: int, end: int) -> tuple[Index, Index]:
+        """First and last step (n,) of every lane at ``per_sample`` steps a sample, ``end`` that of the tail."""
+        n = self.scale.size
+        first = np.zeros(n, np.int64) if self.first is None else self.first * per_sample
+        return first, np.full(n, end) if self.last is None else self.last * per_sample
+
+    def take(self, lanes: Any) -> Request:
+        """The request for the lanes of an index array, slice or mask."""
+        return replace(
+            self,
+            scale=self.scale[lanes],
+            initial={name: values[lanes] for name, values in self.initial.items()},
+            first=None if self.first is None else self.first[lanes],
+            last=None if self.last is None else self.last[lanes],
+        )
+
+    @property
+    def start(self) -> dict[str, float]:
+        """``initial`` of a request of one lane."""
+        return {name: float(values[0]) for name, values in self.initial.items()}
+
+
+@dataclass(frozen=True)
+class Run:
+    """Outputs ``(n,)`` by name, states ``(n, samples, k)`` as the model orders them, and events lane by lane.
+
+    ``steps``: lane-steps that a kernel has computed.
+    """
+
+    outputs: Mapping[str, NDArray[Any]]
+    samples: FloatArray
+    events: tuple[tuple[Event, ...], ...] = ()
+    steps: int = 0
+
+    @classmethod
+    def of_one(cls, outputs: Mapping[str, float], samples: FloatArray, events: Sequence[Event]) -> Run:
+        """From what a reference returns of its one lane: outputs, states ``(samples, k)``, events."""
+        return cls({name: np.array([value]) for name, value in outputs.items()}, samples[None], (tuple(events),))
+
+    @classmethod
+    def joined(cls, runs: Sequence[Run]) -> Run:
+        """Several runs as one, in their order."""
+        return cls(
+            {name: np.concatenate([run.outputs[name] for run in runs]) for name in runs[0].outputs},
+            np.concatenate([run.samples for run in runs]),
+            tuple(events for run in runs for events in run.events),
+        )
