@@ -21,6 +21,7 @@ exclude_patterns = ["_build", "_static", "tables"]
 html_theme = "furo"
 html_title = "rocking-study"
 html_static_path = ["_static"]
+html_css_files = ["tables.css"]
 html_extra_path = ["gallery"] if any((HERE / "gallery").glob("*.html")) else []
 autodoc_typehints = "description"
 suppress_warnings = ["myst.header"]

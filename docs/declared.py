@@ -120,5 +120,5 @@ def mechanisms_page() -> str:
     return (
         "# Mechanisms\n\nWhat a base model may leave out. Those of the first part are usable in plans, specimens and "
         "diagnosis; those of instruments in specimens and diagnosis only. At its null a mechanism does nothing.\n\n"
-        "```{contents}\n:local:\n:depth: 1\n```\n\n" + inside + "\n" + beside
+        f"{inside}\n{beside}"
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import re
 import shlex
 from collections.abc import Iterator
@@ -102,6 +103,14 @@ def test_commands_are_ones_that_exist(block: Block) -> None:
             plan = read_plan(file)
             cube = xr.Dataset(coords={a.name: (a.name, a.values, {"units": a.unit}) for a in plan.axes})
             on_grid(cube, dict(entry.split("=", 1) for entry in selected))
+
+
+def test_pages_leave_the_contents_to_the_theme(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Furo prints an error in place of a table of contents; it has its own beside every page."""
+    monkeypatch.syspath_prepend(ROOT / "docs")
+    declared = importlib.import_module("declared")
+    pages = [page.read_text("utf-8") for page in (ROOT / "docs").glob("*.md")]
+    assert not any("{contents}" in page for page in (*pages, declared.models_page(), declared.mechanisms_page()))
 
 
 @pytest.mark.slow
