@@ -9,7 +9,7 @@ import typer
 from typer.core import TyperGroup
 
 from models.errors import InputError
-from rocking.command import INTERRUPTED, STOPPED, raise_interrupts
+from rocking.interrupts import INTERRUPTED, STOPPED, raise_interrupts
 
 if TYPE_CHECKING:
     import xarray as xr

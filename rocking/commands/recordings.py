@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from models.errors import InputError
-from rocking.command import INTERRUPTED
+from rocking.interrupts import INTERRUPTED
 
 if TYPE_CHECKING:
     from diagnosis.progress import Progress

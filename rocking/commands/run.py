@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from rocking.command import INTERRUPTED
 from rocking.commands.base import FAILURES, STRICT, human_time, warn
+from rocking.interrupts import INTERRUPTED
 
 if TYPE_CHECKING:
     from rich.progress import Progress as Bar
