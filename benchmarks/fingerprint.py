@@ -190,8 +190,10 @@ def differences(before: Found, after: Found) -> str:
             cells = slice(0, old.shape[0]) if name.startswith((f"{route}/",)) else slice(0, 0)
             if not np.issubdtype(old.dtype, np.floating):
                 differs = old != new
+                gone = differs & (new == -1) if new.dtype.kind == "i" else np.zeros_like(differs)
                 identical &= not np.any(differs)
-                changed[cells] |= differs
+                changed[cells] |= differs & ~gone
+                emptied[cells] |= gone
                 continue
             identical &= np.array_equal(old, new, equal_nan=True)
             if name.startswith(f"{route}/"):

@@ -20,6 +20,9 @@ FloatArray = NDArray[np.float64]
 
 STATUS = ("not_run", "rest", "rocking", "overturned", "outside_model", "not_converged", "failed")
 """What can become of a cell: the words of a cube's ``status`` flags, by their values 0 to 6."""
+UNANSWERED = tuple(STATUS.index(word) for word in ("outside_model", "not_converged", "failed"))
+"""Flags of cells without a valid answer: every output but ``status`` is nan, of whole numbers and flags `MISSING`."""
+MISSING = -1
 
 
 @dataclass(frozen=True)

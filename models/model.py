@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from typing_extensions import TypeVar  # typing has no default of a parameter before Python 3.13
 
-from models.base import FloatArray, History, Mechanism, Parameter, Quantity, Values
+from models.base import MISSING, UNANSWERED, FloatArray, History, Mechanism, Parameter, Quantity, Values
 from models.errors import InputError, nearest
 from models.mechanisms import acting_on, applied
 from models.runs import Request, Run
@@ -145,14 +145,14 @@ class Model(ABC, Generic[C]):
     ) -> dict[str, NDArray[Any]]:
         """Run one lane per element of ``scale`` (n,), which multiplies the shaking; outputs ``(n,)`` by name.
 
-        ``tail``: free motion after the record, at most, in s.
+        ``tail``: free motion after the record, at most, in s. Flags are int8, 0 or 1; where ``status`` is one of
+        `UNANSWERED`, every other output is nan, or `MISSING` for whole numbers and flags.
         """
         scale = np.atleast_1d(np.asarray(scale, dtype=np.float64))
         coefficients = self._shaken(values, options, shaking, scale.size, integrator)
         request = Request(shaking, scale, self.resolve_options(options), tail=tail)
         found = self.run(integrator, coefficients, request).outputs
-        kinds = {quantity.name: np.dtype(quantity.dtype) for quantity in self.outputs}
-        return {name: np.asarray(found[name]).astype(kinds[name], copy=False) for name in outputs}
+        return self._answers(found, outputs)
 
     def trajectories(
         self,
@@ -208,12 +208,24 @@ class Model(ABC, Generic[C]):
         )  # fmt: skip
         run = self.run(integrator, coefficients, request)
         channels = self.observe(coefficients, self.settle(run, step))
+        answers = self._answers(run.outputs, [quantity.name for quantity in self.outputs])
         return History(
             step * np.arange(last + 1, dtype=np.float64),
             {name: one[0] for name, one in channels.items()},
             run.events[0],
-            {name: float(run.outputs[name][0]) for name in (quantity.name for quantity in self.outputs)},
+            {name: float(value[0]) for name, value in answers.items()},
         )
+
+    def _answers(self, found: Mapping[str, NDArray[Any]], outputs: Sequence[str]) -> dict[str, NDArray[Any]]:
+        """The ``outputs`` as declared, without the numbers of lanes that gave no valid answer."""
+        lost = np.isin(found["status"], UNANSWERED)
+        kinds = {quantity.name: np.dtype(quantity.dtype) for quantity in self.outputs}
+        answers = {}
+        for name in outputs:
+            values = np.asarray(found[name]).astype(np.int8 if kinds[name].kind == "b" else kinds[name], copy=False)
+            missing = np.nan if values.dtype.kind == "f" else MISSING
+            answers[name] = values if name == "status" else np.where(lost, values.dtype.type(missing), values)
+        return answers
 
     def _shaken(
         self, values: Values, options: Mapping[str, str] | None, shaking: Shaking, size: int, integrator: str

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from grids.plan import Plan, parse_plan
+from models.base import MISSING
 from models.errors import InputError
 from study.evaluate import evaluate
 from study.keys import Setting, motions_by_name
@@ -55,6 +56,8 @@ def check(
     for name in computed:
         stored = cube[name].values.ravel()[chosen]
         values = computed[name].astype(stored.dtype)
+        if computed[name].dtype.kind != "f" and stored.dtype.kind == "f":  # read back with nan where a cube has none
+            values = np.where(computed[name] == MISSING, np.nan, values).astype(stored.dtype)
         bits = f"i{stored.itemsize}"
         both_nan = (stored != stored) & (values != values)
         for k in np.flatnonzero((stored.view(bits) != values.view(bits)) & ~both_nan):

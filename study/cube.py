@@ -17,7 +17,7 @@ import models
 from grids.entering import entering
 from grids.netcdf_lock import NETCDF_LOCK
 from grids.plan import Plan
-from models.base import Quantity
+from models.base import MISSING, Quantity
 from study.derived import derived_coordinates
 from study.keys import Setting
 from study.labels import Coordinate, axis_coordinates, describe, motion_coordinates
@@ -28,7 +28,6 @@ from study.store import COMPRESSION, BlockStore, write_whole
 
 CHUNK_CELLS = 1 << 17
 """Cells in a chunk of the file, whatever the blocks were."""
-MISSING_INTEGER = -1
 
 
 def write_cube(
@@ -107,7 +106,7 @@ def _missing(quantity: Quantity) -> Any:
     """Fill value of cells without a result; ``status`` has none, for it always says something."""
     if quantity.name == "status":
         return False
-    return np.nan if _dtype(quantity).kind == "f" else MISSING_INTEGER
+    return np.nan if _dtype(quantity).kind == "f" else MISSING
 
 
 def _fill(

@@ -6,8 +6,8 @@ not been computed, ``failed`` those of a block that raised an error.
 
 from __future__ import annotations
 
-from models.base import STATUS
+from models.base import STATUS, UNANSWERED
 
 NOT_RUN, REST, ROCKING, OVERTURNED, OUTSIDE_MODEL, NOT_CONVERGED, FAILED = range(len(STATUS))
-UNKNOWN = (NOT_RUN, OUTSIDE_MODEL, NOT_CONVERGED, FAILED)
+UNKNOWN = (NOT_RUN, *UNANSWERED)
 """Flags of cells whose outputs say nothing."""

@@ -24,7 +24,7 @@ class Housner(Model[Block]):
 
     name = "housner"
     title = "one rigid block on a rigid base"
-    version = "1"
+    version = "2"
     parameters = declaration.PARAMETERS
     alternatives = declaration.ALTERNATIVES
     options = declaration.OPTIONS

@@ -26,7 +26,7 @@ class Stacked(Model[Stack]):
 
     name = "stacked"
     title = "two stacked rigid blocks on a rigid base"
-    version = "1"
+    version = "2"
     parameters = declaration.PARAMETERS
     alternatives = declaration.ALTERNATIVES
     options = declaration.OPTIONS
