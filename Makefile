@@ -1,18 +1,22 @@
 # make study   set up everything and run the main job: walls on rubber layers, plan to maps
 # make test    set up everything, then lint, types and tests
+# make quick   the same without the slow tests
 PYTHON ?= python3
 BIN := .venv/bin
 READY := .venv/.ready
 STUDY := results/rubber_interface
 HEAVY := --select "top_mass=5 t" --select damping_ratio=0.0544
 
-.PHONY: study test lint types bench independent kill-test agreement diagnosis-bench gallery docs clean
+.PHONY: study quick test lint types bench independent kill-test agreement diagnosis-bench gallery docs clean
 
 study: $(READY)
 	$(BIN)/rocking run studies/rubber_interface.toml
 	$(BIN)/rocking map $(STUDY) --y layer_modulus $(HEAVY)
 	$(BIN)/rocking map $(STUDY) --x layer_modulus --y pga --select aspect_ratio=0.4 $(HEAVY) --out $(STUDY)/short_wall
 	$(BIN)/rocking slices $(STUDY) uplift_duration --x layer_modulus --select "pga=0.31 g" $(HEAVY)
+
+quick: $(READY) lint types
+	$(BIN)/python -m pytest -n 2 --dist loadfile -m "not slow"
 
 test: $(READY) lint types
 	$(BIN)/python -m pytest -n 2 --dist loadfile

@@ -221,13 +221,13 @@ def rubber_laws(cube: xr.Dataset) -> None:
     rows = []
     for name in WORDS:
         own = {key: value for key, value in fixed.items() if "." not in key or key.startswith(f"{name}.")}
-        sunk = 1e3 * get("interface").derive({**own, "layer_modulus": moduli})["static_sinking_base"]
+        compressed = 1e3 * get("interface").derive({**own, "layer_modulus": moduli})["static_sinking_base"]
         ratio = (strong / strong.sel(rubber_law="linear")).sel(rubber_law=name).values
         low, middle, high = np.nanquantile(ratio, [0.1, 0.5, 0.9])
         rows.append(
             [
                 WORDS[name],
-                *(f"{u:.2f}" for u in sunk),
+                *(f"{u:.2f}" for u in compressed),
                 *(f"{v:.2f}" for v in onset.sel(rubber_law=name).values[::2]),
                 *(f"{v:.1f}" for v in lift.sel(rubber_law=name).values[::2]),
                 "1" if name == "linear" else f"{middle:.2f} ({low:.2f} to {high:.2f})",

@@ -67,8 +67,8 @@ def _sentence(schema: type[Schema], error: dict[str, Any]) -> str:
         return f"{where} is missing; add it."
     if kind == "value_error":
         return f"{where}: {error['ctx']['error']}"
-    wish = error["msg"].replace("Input should be", "it must be")
-    return f"{where} = {value!r}: {wish[0].lower()}{wish[1:]}."
+    rule = error["msg"].replace("Input should be", "it must be")
+    return f"{where} = {value!r}: {rule[0].lower()}{rule[1:]}."
 
 
 def _address(location: list[str]) -> str:

@@ -89,7 +89,7 @@ class Grid:
         return np.ravel_multi_index([m.ravel() for m in mesh], self.shape).astype(np.int64)
 
     def points(self, rectangle: Rectangle) -> dict[str, list[Any]]:
-        """What the rectangle's cells set, axis by axis, cases and samples spelt out.
+        """What the rectangle's cells set, axis by axis, with what cases and samples set.
 
         Two rectangles of one study hold the same cells if and only if these are equal.
         """

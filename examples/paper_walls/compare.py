@@ -47,22 +47,22 @@ def over_motions(
     found: Mapping[str, Mapping[str, Sequence[Outcome]]], words: Callable[[Sequence[Outcome]], str]
 ) -> str:
     """A row for each wall, a column for each model."""
-    rows = ([f"{WALLS[n].title}, {WALLS[n].pga:g} g", *map(words, told.values())] for n, told in found.items())
+    rows = ([f"{WALLS[n].title}, {WALLS[n].pga:g} g", *map(words, runs.values())] for n, runs in found.items())
     return table(["wall", *next(iter(found.values()))], rows)
 
 
-def peak(told: Sequence[Outcome]) -> str:
+def peak(runs: Sequence[Outcome]) -> str:
     """Median, smallest and largest, in mrad."""
-    values = [one.peak for one in told]
+    values = [one.peak for one in runs]
     return f"{np.median(values):.1f} ({min(values):.1f} to {max(values):.1f})"
 
 
-def rocks(told: Sequence[Outcome]) -> str:
+def rocks(runs: Sequence[Outcome]) -> str:
     """In how many motions the base opens, the median time of it, and how many overturn."""
-    times = [one.lifts for one in told if np.isfinite(one.lifts)]
-    overturned = sum(one.overturns for one in told)
+    times = [one.lifts for one in runs if np.isfinite(one.lifts)]
+    overturned = sum(one.overturns for one in runs)
     first = f", {np.median(times):.1f} s" if times else ""
-    return f"{len(times)} of {len(told)}{first}" + (f"; {overturned} overturn" if overturned else "")
+    return f"{len(times)} of {len(runs)}{first}" + (f"; {overturned} overturn" if overturned else "")
 
 
 def costs(found: Mapping[str, tuple[float, float]]) -> str:

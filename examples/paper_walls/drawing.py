@@ -80,8 +80,8 @@ def draw_peaks(found: Mapping[str, Mapping[str, Sequence[Outcome]]]) -> tuple[Ax
     figure = plt.figure(figsize=(7.0, 5.8), layout="constrained")
     axes = figure.subplots(2, 2, sharex=True)
     for ax, (name, by_model) in zip(axes.flat, found.items(), strict=True):
-        for place, told in enumerate(by_model.values()):
-            values = [one.peak for one in told]
+        for place, runs in enumerate(by_model.values()):
+            values = [one.peak for one in runs]
             spread = place + np.linspace(-0.22, 0.22, len(values))
             ax.plot(spread, values, "o", color=COLOURS[place // 2], markersize=4, alpha=0.75, zorder=3)
             ax.hlines(float(np.median(values)), place - 0.32, place + 0.32, color="black", linewidth=1.6, zorder=4)

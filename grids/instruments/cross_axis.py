@@ -1,4 +1,4 @@
-"""The rotation sensors feel the acceleration of the base."""
+"""The rotation sensors respond to the acceleration of the base."""
 
 from __future__ import annotations
 

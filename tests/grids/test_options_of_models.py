@@ -80,9 +80,9 @@ def test_a_model_checks_and_derives_under_its_default_words(name: str) -> None:
     words = {option: known[0] for option, known in model.options.items()}
     assert words.items() <= model.resolve_options(None).items()
     assert model.check(values) == model.check(values, words) == []
-    plain, told = model.derive(values), model.derive(values, words)
+    plain, said = model.derive(values), model.derive(values, words)
     for quantity, value in plain.items():
-        np.testing.assert_array_equal(value, told[quantity])
+        np.testing.assert_array_equal(value, said[quantity])
 
 
 def test_a_law_without_its_parameters_is_refused_before_anything_runs() -> None:
@@ -155,8 +155,8 @@ def test_a_model_that_is_shaken_horizontally_only() -> None:
             plan(BUILDING, model="isolated", motion=f"{asked}\nvertical = true")
     with pytest.raises(InputError, match="'isolated' is shaken horizontally only"):
         specimen(BUILDING, "[motion]\nvertical = true", "isolated")
-    for told in ("", "\nvertical = false"):
-        (motion,) = plan(BUILDING, model="isolated", motion=record + told).motions
+    for said in ("", "\nvertical = false"):
+        (motion,) = plan(BUILDING, model="isolated", motion=record + said).motions
         assert motion.vertical is None and "vertical" not in motion.components
     (motion,) = plan({**WALL, **RUBBER}, motion=record).motions
     assert motion.vertical is not None

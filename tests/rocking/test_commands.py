@@ -64,13 +64,13 @@ def test_run_goes_on_without_a_flag(finished: Path) -> None:
 
 
 def test_status_check_export_and_map(finished: Path) -> None:
-    told = rocking("status", finished).stdout
-    assert "168 of 168 cells (100.0%)" in told
+    said = rocking("status", finished).stdout
+    assert "168 of 168 cells (100.0%)" in said
     with xr.open_dataset(finished / "cube.nc") as cube:
         status = cube["status"].values
     counts = {word: int(np.sum(status == k)) for k, word in ((1, "at rest"), (2, "rocking"), (3, "overturned"))}
     assert sum(counts.values()) == 168
-    assert "cells: " + ", ".join(f"{word} {count}" for word, count in counts.items()) in told
+    assert "cells: " + ", ".join(f"{word} {count}" for word, count in counts.items()) in said
     assert "equal bit for bit" in rocking("check", finished, "--cells", 20).stdout
     result = rocking("export", finished, "--out", "cells.csv", "--select", "pga=0.3 g", "--output", "impacts")
     assert result.exit_code == 0, result.output

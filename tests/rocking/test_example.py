@@ -31,14 +31,14 @@ def test_paper_walls(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     compare, drawing, walls = (importlib.import_module(name) for name in ("compare", "drawing", "walls"))
     found = walls.outcomes((3,))
     for name, wall in walls.WALLS.items():
-        assert not any(told[0].overturns for told in found[name].values())
+        assert not any(said[0].overturns for said in found[name].values())
         for label, specimen in walls.specimens(wall).items():
-            (told,) = found[name][label]
+            (said,) = found[name][label]
             if specimen.model in ("housner", "stacked"):
                 rocks = wall.pga > walls.derived(specimen)["onset_acceleration"]
-                assert np.isfinite(told.lifts) == (told.peak > 0.0) == rocks
+                assert np.isfinite(said.lifts) == (said.peak > 0.0) == rocks
             else:
-                assert told.lifts < 10.0 and 5.0 < told.peak < 100.0
+                assert said.lifts < 10.0 and 5.0 < said.peak < 100.0
     assert walls.derived(walls.specimens(walls.WALLS["short"])["Housner"])["onset_acceleration"] == pytest.approx(0.2)
     assert "| Short wall, with rubber, 0.171 g | 0 of 1 | 0 of 1 | 0 of 1 | 1 of 1" in compare.over_motions(
         found, compare.rocks

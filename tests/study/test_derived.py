@@ -115,10 +115,10 @@ def at_cell(plan: Plan, flat: int) -> dict[str, float]:
     """What the model says of one cell."""
     model = models.get(plan.model)
     at = {name: column[0] for name, column in plan.grid.coordinates([flat]).items()}
-    told = {name: word for name, word in at.items() if name in model.options}
+    said = {name: word for name, word in at.items() if name in model.options}
     numbers = {**plan.fixed, **at}
-    wall = {n: float(v) for n, v in numbers.items() if n not in (*told, "pga", "time_scale")}
-    return {name: float(v[0]) for name, v in model.derive(wall, {**plan.options, **told}).items()}
+    wall = {n: float(v) for n, v in numbers.items() if n not in (*said, "pga", "time_scale")}
+    return {name: float(v[0]) for name, v in model.derive(wall, {**plan.options, **said}).items()}
 
 
 @settings(deadline=None, max_examples=25)
@@ -160,11 +160,11 @@ def test_a_law_between_others_and_the_parameter_that_it_alone_uses() -> None:
     softening = '"mullins.softening" = { values = [0.1, 0.3] }'
     parameters = f"{WALL}\nwall_height = 1.8\naspect_ratio = 0.8\ntop_mass = 3000\nlayer_modulus = 8e6\n{RUBBER}"
     plan = made("interface", parameters, laws, softening)
-    (sunk,) = [c for c in derived_coordinates(plan, models.get("interface")) if c.name == "static_sinking_base"]
-    assert sunk.dims == ("law", "mullins.softening")
-    linear, hardening, _, softened, _ = sunk.values
+    (compressed,) = [c for c in derived_coordinates(plan, models.get("interface")) if c.name == "static_sinking_base"]
+    assert compressed.dims == ("law", "mullins.softening")
+    linear, hardening, _, softened, _ = compressed.values
     assert np.all(hardening < linear) and linear[0] < softened[0] < softened[1]
-    np.testing.assert_array_equal(sunk.values[::2], linear[0])
+    np.testing.assert_array_equal(compressed.values[::2], linear[0])
 
 
 @pytest.mark.parametrize("axis", ["pga = { values = [0.5, 4.0] }", "motion_scale = { values = [0.1, 1.5] }",

@@ -1,0 +1,43 @@
+"""Which tests are slow: ``pytest -m "not slow"`` leaves them out and takes about two minutes with compiled kernels."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+HERE = Path(__file__).resolve().parent
+SLOW = (
+    "benchmarks",
+    "diagnosis/answer",
+    "diagnosis/fit",
+    "diagnosis/forces",
+    "diagnosis/search",
+    "models/housner/test_agreement.py",
+    "models/housner/test_convergence.py",
+    "models/housner/test_thresholds.py",
+    "models/interface/test_lanes.py",
+    "models/interface/test_limits.py",
+    "models/interface/test_small_motions.py",
+    "models/interface_linear/test_lanes.py",
+    "models/isolated/test_lanes.py",
+    "models/isolated/test_study.py",
+    "models/mechanisms/test_agreement.py",
+    "models/mechanisms/test_regimes.py",
+    "models/rubber/test_plan.py",
+    "models/stacked/test_free_rocking.py",
+    "models/stacked/test_lanes.py",
+    "rocking/test_data_logger.py",
+    "rocking/test_diagnose.py",
+    "rocking/test_example.py",
+    "study/test_partitions.py",
+    "study/test_schedulers.py",
+)
+"""Files and folders that fit recordings, compare whole families of runs, or compile a kernel of their own."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    slow = [HERE / path for path in SLOW]
+    for item in items:
+        if any(item.path == path or path in item.path.parents for path in slow):
+            item.add_marker(pytest.mark.slow)
