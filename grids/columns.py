@@ -122,7 +122,16 @@ def _rows(path: Path, layout: Layout) -> tuple[list[str], list[tuple[int, list[s
     if not rows:
         after = f" after the {layout.skip} that are skipped" if layout.skip else ""
         raise InputError(f"{path.name}: holds no lines of numbers{after}; was it written to its end?")
-    return (rows[0][1], rows[1:]) if layout.header else ([], rows)
+    if not layout.header:
+        return [], rows
+    line, names = rows[0]
+    by_name = {column.column for column in (*layout.columns.values(), *([layout.time] if layout.time else []))}
+    if all(_number(name, layout.decimal) is not None for name in names) and not by_name & set(names):
+        raise InputError(
+            f"{path.name}: line {line} holds numbers where the names of the columns are expected; state "
+            "header = false (columns by number), or skip the lines above the names"
+        )
+    return names, rows[1:]
 
 
 def _values(

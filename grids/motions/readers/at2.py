@@ -91,15 +91,23 @@ def _siblings(path: Path) -> list[Path]:
 
 
 def _read(path: Path, key: str | None, statement: Mapping[str, Any]) -> Record:
-    files = _siblings(path)
-    components = {file: _read_one(file) for file in files}
+    components, notes = {path: _read_one(path)}, []
+    for file in _siblings(path):
+        try:
+            components[file] = _read_one(file)
+        except InputError as error:
+            if is_vertical(file):  # left out, it would change what acts on the wall
+                raise
+            notes.append(f"left out, another component of the record: {error}")
     own = components[path][0]
+    files = sorted(components)
     source = {"format": AT2.name, "files": tuple(f.name for f in files), "record": heading_of(path)[0]}
     return assemble(
         path.stem,
-        list(components.values()),
+        [components[file] for file in files],
         source,
         where=path.name,
+        notes=tuple(notes),
         preferred=None if vertical_sign(own) else own,
     )
 

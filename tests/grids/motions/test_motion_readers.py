@@ -11,6 +11,7 @@ from grids.motions import find, list_shipped, read_motion
 from grids.motions.intensity import velocity_and_displacement
 from grids.motions.write import write_motion
 from grids.netcdf_lock import NETCDF_LOCK
+from models.errors import InputError
 
 G = 9.80665
 
@@ -200,3 +201,27 @@ def test_real_collection_of_83_records():
     for source in sources[::15]:
         motion = read_motion(source, vertical=True)
         assert motion.time_step == 0.005 and motion.vertical.size == motion.horizontal.size
+
+
+def test_a_damaged_neighbour_of_an_at2_file_is_left_out_with_a_note(files):
+    path = files.at2_record()
+    whole = read_motion(path)
+    other = path.with_name("RSN7_SOME_STA090.AT2")
+    other.write_text("\n".join(other.read_text().splitlines()[:-3]))
+    found = read_motion(path)
+    np.testing.assert_array_equal(found.horizontal[: whole.horizontal.size], whole.horizontal)
+    assert any(other.name in note and "left out" in note for note in found.notes)
+    upward = path.with_name("RSN7_SOME_STA-UP.AT2")
+    upward.write_text("\n".join(upward.read_text().splitlines()[:-3]))
+    with pytest.raises(InputError, match=upward.name):
+        read_motion(path)
+
+
+def test_a_first_line_of_numbers_is_no_header(files):
+    (files.folder / "bare.csv").write_text("\n".join(f"{0.1 * k},{np.sin(k)}" for k in range(50)))
+    table = 'time_step = "0.01 s"\n{}[columns]\nnorth = {{ column = 2, unit = "g" }}\n'
+    (files.folder / "bare.toml").write_text(table.format(""))
+    with pytest.raises(InputError, match=r"line 1 holds numbers.*header = false"):
+        read_motion(files.folder / "bare.csv")
+    (files.folder / "bare.toml").write_text(table.format("header = false\n"))
+    assert read_motion(files.folder / "bare.csv").horizontal.size == 50
