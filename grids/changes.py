@@ -17,11 +17,6 @@ class Changes:
     differences: tuple[str, ...]
     added: tuple[str, ...]
 
-    @property
-    def extends(self) -> bool:
-        """Whether every finished cell keeps its meaning."""
-        return not self.differences
-
 
 def describe(plan: Plan) -> dict[str, Any]:
     """What decides the content of the plan's cells, for JSON (infinity and NaN as Python writes them).

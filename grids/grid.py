@@ -81,13 +81,6 @@ class Grid:
             for name, index in self._index.items()
         )
 
-    def flat_indices(self, rectangle: Rectangle) -> IndexArray:
-        """The flat indices of the rectangle's cells, in the rectangle's own order."""
-        if not self.axes:
-            return np.zeros(1, dtype=np.int64)
-        mesh = np.meshgrid(*self.positions(rectangle), indexing="ij")
-        return np.ravel_multi_index([m.ravel() for m in mesh], self.shape).astype(np.int64)
-
     def points(self, rectangle: Rectangle) -> dict[str, list[Any]]:
         """What the rectangle's cells set, axis by axis, with what cases and samples set.
 
