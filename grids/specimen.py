@@ -14,12 +14,15 @@ vertical = false
 rotation_1 = "2 deg"
 [options]
 formulation = "linear"
+[instruments]
+reference_peak = "2 deg"          # that levels of instruments are given over; the run's own without it
 [mechanisms.pivot_inset]
 inset_over_half_width = 0.1
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -45,6 +48,10 @@ class MotionTable(Schema):
     vertical: bool | None = None
 
 
+class InstrumentsTable(Schema):
+    reference_peak: float | str | None = None
+
+
 class SpecimenFile(Schema):
     title: str
     model: str
@@ -53,13 +60,17 @@ class SpecimenFile(Schema):
     calibrate: dict[str, Any] = Field(default_factory=dict)
     motion: MotionTable = MotionTable()
     initial: dict[str, float | str] = Field(default_factory=dict)
+    instruments: InstrumentsTable = InstrumentsTable()
     options: dict[str, str] = Field(default_factory=dict)
     mechanisms: dict[str, dict[str, Any]] = Field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class Specimen:
-    """A checked specimen in SI. ``calibrate`` holds (low, high); ``vertical`` None: the model decides."""
+    """A checked specimen in SI. ``calibrate`` holds (low, high); ``vertical`` None: the model decides.
+
+    ``reference_peak``: rotation (rad) that levels of instruments are given over; None: the largest of a run itself.
+    """
 
     title: str
     model: str
@@ -70,6 +81,7 @@ class Specimen:
     initial: Mapping[str, float] = field(default_factory=dict)
     options: Mapping[str, str] = field(default_factory=dict)
     mechanisms: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    reference_peak: float | None = None
 
 
 def read_specimen(path: str | Path) -> Specimen:
@@ -122,7 +134,17 @@ def parse_specimen(text: str) -> Specimen:
         initial=_initial(file, targets),
         options=options,
         mechanisms=mechanisms,
+        reference_peak=_reference_peak(file.instruments),
     )
+
+
+def _reference_peak(table: InstrumentsTable) -> float | None:
+    if table.reference_peak is None:
+        return None
+    peak = to_si(table.reference_peak, "rad", "[instruments] reference_peak")
+    if not 0.0 < peak < math.inf:
+        raise InputError(f"[instruments] reference_peak = {peak:g} rad: give a rotation above 0, or leave it out.")
+    return peak
 
 
 def _mechanisms(file: SpecimenFile, targets: Targets) -> dict[str, dict[str, float]]:

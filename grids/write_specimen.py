@@ -26,6 +26,7 @@ def specimen_text(specimen: Specimen) -> str:
         "motion": {} if specimen.vertical is None else {"vertical": specimen.vertical},
         "initial": specimen.initial,
         "options": specimen.options,
+        "instruments": {} if specimen.reference_peak is None else {"reference_peak": specimen.reference_peak},
         **{f"mechanisms.{name}": values for name, values in specimen.mechanisms.items()},
     }
     parts = [_lines(head)]

@@ -71,6 +71,10 @@ class Quantity:
     dtype: str = "float64"
 
 
+JOINTS = (("base", "at the base"), ("top", "at the top joint"))
+"""Ends of the names that address one joint, and what they mean."""
+
+
 @dataclass(frozen=True)
 class Mechanism:
     """Physics that a base model leaves out: one handle, the same in studies, specimens and diagnosis.
@@ -94,6 +98,8 @@ class Mechanism:
     """Models on which ``parameter_base`` and ``parameter_top`` address one joint alone."""
     sentences: Mapping[str, str] = field(default_factory=dict)
     """By parameter: the sentence where the mechanism acts through that one alone, instead of its first."""
+    static_test: str = ""
+    """A test without shaking that would settle it, as an instruction; empty where there is none."""
 
     def parameter(self, name: str) -> MechanismParameter:
         for parameter in (*self.parameters, *self._of_joints()):
@@ -106,7 +112,7 @@ class Mechanism:
         return (*self.parameters, *(self._of_joints() if model in self.at_joints else ()))
 
     def _of_joints(self) -> tuple[MechanismParameter, ...]:
-        places = (("base", "at the base"), ("top", "at the top joint")) if self.at_joints else ()
+        places = JOINTS if self.at_joints else ()
         return tuple(
             replace(p, name=f"{p.name}_{joint}", meaning=f"{p.meaning}, {where}")
             for p in self.parameters
@@ -120,6 +126,16 @@ class Mechanism:
         if self.parameters[0].name in off:
             return self.sentence
         return next((self.sentences[name] for name in off if name in self.sentences), self.sentence)
+
+    def says(self, given: Mapping[str, float]) -> str:
+        """The sentence with the values in place, those not given at their null; a joint is named."""
+        plain, where = dict(given), ""
+        for joint, place in JOINTS:
+            for parameter in self.parameters:
+                if f"{parameter.name}_{joint}" in plain:
+                    plain[parameter.name] = plain.pop(f"{parameter.name}_{joint}")
+                    where = f" ({place})"
+        return self.sentence_for(plain).format_map({**self.nulls, **plain}) + where
 
     @property
     def nulls(self) -> dict[str, float]:

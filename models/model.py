@@ -12,6 +12,7 @@ from typing_extensions import TypeVar  # typing has no default of a parameter be
 
 from models.base import MISSING, UNANSWERED, FloatArray, History, Mechanism, Parameter, Quantity, Values
 from models.errors import InputError, nearest
+from models.identification import Identification
 from models.mechanisms import acting_on, applied
 from models.runs import Request, Run
 from models.shaking import Shaking
@@ -42,7 +43,7 @@ class Model(ABC, Generic[C]):
     ``(("width", "height"), ("height", "aspect_ratio"))``.
     ``options``: words that choose a formulation, with their values, the default first.
     ``states``: what a run starts from, by name.
-    ``chaotic``: whether neighbouring trajectories part quickly, so that recordings are compared window by window.
+    ``identification``: what calibration and diagnosis need to know; None: neither is offered.
     ``takes_vertical``: whether a vertical motion of the base enters the equations; ``vertical_by_default``:
     whether it does where a specimen does not say.
     """
@@ -58,7 +59,7 @@ class Model(ABC, Generic[C]):
     observables: tuple[Quantity, ...]
     states: tuple[str, ...]
     integrators: tuple[str, ...] = ("lanes", "reference")
-    chaotic: bool = True
+    identification: Identification | None = None
     takes_vertical: bool = True
     vertical_by_default: bool = False
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,18 +11,17 @@ import xarray as xr
 
 import models
 from grids.instruments import INSTRUMENTS, moved, recorded
-from grids.instruments.whole import Switched
+from grids.instruments.base import Surroundings, Switched
 from grids.netcdf_lock import NETCDF_LOCK
+from grids.recordings.base import SHARE
 from grids.specimen import Specimen
-from models.base import Event, History
+from models.base import Event, FloatArray, History
 from models.errors import InputError, nearest
 from models.model import Model
 from models.shaking import Shaking
 from study.provenance import as_json, attribute, commit, machine, now, versions
 from study.store import write_whole
 
-SHARE = "1"
-"""Unit of a share of contact, which no instrument measures."""
 EVENT_KINDS = ("onset", "impact", "uplift", "closing", "rest", "overturned", "change_of_pattern")
 
 
@@ -64,7 +64,8 @@ def simulate_specimen(
         options=dict(specimen.options),
         integrator=integrator,
     )
-    dataset = _label(model, history, read, instruments)
+    channels = _recorded(model, history, read, instruments, specimen.reference_peak)
+    dataset = _label(model, replace(history, channels=channels), read)
     dataset.attrs = {
         "Conventions": "CF-1.11",
         "title": specimen.title,
@@ -87,24 +88,34 @@ def simulate_specimen(
     return dataset
 
 
-def _label(model: Model, history: History, read: Shaking, instruments: Switched) -> xr.Dataset:
-    """The dataset of a run; ``read`` is the motion of the base as its accelerometers read it."""
+def _recorded(
+    model: Model, history: History, read: Shaking, instruments: Switched, reference_peak: float | None
+) -> dict[str, FloatArray]:
+    """The channels as the instruments record them; shares of contact stay as they are."""
+    units = {quantity.name: quantity.unit for quantity in model.observables}
+    around = Surroundings(read.time_step, _at(history, read, read.horizontal), reference_peak)
+    signals = {name: x for name, x in history.channels.items() if units[name] != SHARE}
+    return {**history.channels, **(recorded(signals, instruments, around) if instruments else {})}
+
+
+def _at(history: History, read: Shaking, component: FloatArray) -> FloatArray:
+    """A component of the base's motion at the times of a history."""
+    return np.asarray(np.interp(history.time, read.time, component, left=0.0, right=0.0))
+
+
+def _label(model: Model, history: History, read: Shaking) -> xr.Dataset:
     variables: dict[str, Any] = {}
     declared = {quantity.name: quantity for quantity in model.observables}
-    base = np.interp(history.time, read.time, read.horizontal, left=0.0, right=0.0)
-    signals = {name: x for name, x in history.channels.items() if declared[name].unit != SHARE}
-    written = recorded(signals, instruments, read.time_step, base) if instruments else {}
-    for name, values in {**history.channels, **written}.items():
+    for name, values in history.channels.items():
         quantity = declared[name]
         dims = ("time",) if values.ndim == 1 else ("level", "time")
         about = {"units": quantity.unit, "long_name": quantity.meaning}
         variables[name] = (dims, values, about)
     about = {"units": "m s-2", "long_name": "horizontal acceleration of the base, positive to the right"}
-    variables["base_acceleration_x"] = (("time",), base, about)
+    variables["base_acceleration_x"] = (("time",), _at(history, read, read.horizontal), about)
     if read.vertical is not None:
-        upward = np.interp(history.time, read.time, read.vertical, left=0.0, right=0.0)
         about = {"units": "m s-2", "long_name": "vertical acceleration of the base, positive up"}
-        variables["base_acceleration_z"] = (("time",), upward, about)
+        variables["base_acceleration_z"] = (("time",), _at(history, read, read.vertical), about)
     time = ("time", history.time, {"units": "s", "long_name": "time since the first sample"})
     return xr.Dataset({**variables, **_events(history.events)}, coords={"time": time})
 

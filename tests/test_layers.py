@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import ast
+import re
 from pathlib import Path
 
 import pytest
+
+import models
 
 ROOT = Path(__file__).resolve().parent.parent
 ORDER = ("models", "grids", "study", "diagnosis", "rocking")
@@ -51,3 +54,22 @@ def test_the_diagnosis_imports_in_the_order_of_its_folders(path: Path) -> None:
     for module in imported_modules(path):
         room, _, rest = module.partition(".")
         assert room != "diagnosis" or rest.partition(".")[0] in allowed, module
+
+
+OF_A_MODEL = re.compile(r"rotation_[12]|contact_[12]|displacement_[12]|bearing_|\bimpacts?\b|sinking|compression_")
+"""What only a model's own declaration may say."""
+
+
+@pytest.mark.parametrize("path", STEPS, ids=lambda p: p.relative_to(ROOT).as_posix())
+def test_the_diagnosis_knows_no_model(path: Path) -> None:
+    """Neither a model by its name, nor a channel, state or event of one."""
+    names = set(models.MODELS)
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str):
+            assert node.value not in names, node.value
+            assert not OF_A_MODEL.search(node.value), node.value
+        if isinstance(node, ast.Name | ast.Attribute | ast.arg):
+            name = node.id if isinstance(node, ast.Name) else node.attr if isinstance(node, ast.Attribute) else node.arg
+            assert not OF_A_MODEL.search(name) and name not in names, name
+        if isinstance(node, ast.ImportFrom):
+            assert not any((node.module or "").startswith(f"models.{name}") for name in names), node.module

@@ -63,6 +63,7 @@ def plain(found: Diagnosis) -> dict[str, Any]:
         "fit": {"train": asdict(found.train), "holdout": None if found.holdout is None else asdict(found.holdout)},
         "p_value": found.p_value,
         "null_band": found.null_band,
+        "reference_peak": found.reference_peak,
         "screen": [asdict(one) for one in found.screen],
     }
 

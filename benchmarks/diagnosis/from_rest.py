@@ -23,6 +23,7 @@ from scipy.optimize import OptimizeResult, least_squares
 
 from benchmarks.diagnosis.answers import NOTHING
 from grids.instruments import INSTRUMENTS, moved, recorded
+from grids.instruments.base import Surroundings
 from grids.recordings import Recording, noise_of, read_recording
 from grids.specimen import Specimen, read_specimen
 from models import get
@@ -161,7 +162,7 @@ class _Fit:
             for k in range(lanes if sensor else 0):
                 true = {"rotation_1": ran[k]}
                 measured = recording.channels["base_acceleration_x"]
-                ran[k] = recorded(true, sensor, recording.time_step, measured)["rotation_1"]
+                ran[k] = recorded(true, sensor, Surroundings(recording.time_step, measured))["rotation_1"]
             parts.append((recording.channels["rotation_1"] - ran) / sigma)
         return np.hstack([*parts, points[:, : len(self.free)]])
 

@@ -96,8 +96,8 @@ def covered(case: Scored) -> list[bool]:
             if name not in found:
                 continue
             factor = 1.0
-            if name.endswith("_over_peak") and "reference_peak" in found and "over_peak" in case.key:
-                factor = case.key["over_peak"] / found["reference_peak"]["estimate"]
+            if name.endswith("_over_peak") and case.answer.get("reference_peak") and "over_peak" in case.key:
+                factor = case.key["over_peak"] / case.answer["reference_peak"]
             flags.append(found[name]["low95"] <= value * factor <= found[name]["high95"])
     return flags
 

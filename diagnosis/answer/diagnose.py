@@ -12,7 +12,7 @@ from diagnosis.answer.experiment import next_experiment
 from diagnosis.answer.heldout import Shown, compare, fit_figures, horizons, traces_of, windows_of
 from diagnosis.answer.judgement import explains, p_of_effects, p_of_missing, undecided, verdict_of
 from diagnosis.answer.locate import locate
-from diagnosis.answer.rescale import to_true_peak
+from diagnosis.answer.rescale import over_peak, true_peak
 from diagnosis.answer.result import Diagnosis, Effect, Located, Rival, Screened
 from diagnosis.answer.statement import statement
 from diagnosis.answer.whole_runs import with_runs_from_rest
@@ -51,7 +51,7 @@ def diagnose(
     """
     progress("calibrating the base model", 0.02)
     measured = measure(specimen, training)
-    held = measure(specimen, holdout, measured.reference_peak) if holdout else None  # a poor one is told at once
+    held = measure(specimen, holdout, measured.reference_peak) if holdout else None  # refused before the search
     base = Explanation((), base_fit(specimen, measured, seed))
     found = Search(base, candidates(measured, specimen))
     finished = True
@@ -89,7 +89,7 @@ def _assemble(
 
     about = stages.needed(of_chosen)
     tested = stages.needed(lambda: tests(about))
-    flagged = () if unexplained else flags(tested, found.more)
+    flagged = () if unexplained else flags(about, tested, found.more)
     if found.outside is not None:
         flagged = (found.outside, *(f for f in flagged if f.parameter != found.outside.parameter))
     near = rivals(found)
@@ -130,7 +130,7 @@ def _assemble(
     if finished and verdict == "cannot_tell_apart":
         experiment = stages.optional("the next experiment", lambda: next_experiment(found, near), lambda: None)
     if verdict == "not_in_library" and not unexplained:
-        force = stages.optional("the shape of the missing force", lambda: missing_force(about, tested), lambda: None)
+        force = stages.optional("the shape of the missing force", lambda: missing_force(about), lambda: None)
     answer = Diagnosis(
         verdict=verdict,
         statement="",
@@ -153,21 +153,21 @@ def _assemble(
         ),
         prediction_horizon=stages.optional("prediction horizons", lambda: _horizons(shown, specimen), dict),
         missing_force=force,
+        reference_peak=true_peak(chosen),
         provenance=_provenance(specimen, found, tested, seed),
         finished=finished,
         undecided=undecided(found, p_value) if verdict == "nothing_missing" else None,
         unexplained=unexplained,
         suspicions={r.name: r.suspicions for s in shown for r in s.measured.recordings if r.suspicions},
     )
-    known = {**measured.model.mechanisms, **INSTRUMENTS}
     answer = replace(answer, skipped=tuple(stages.skipped) if finished else ())
-    return replace(answer, statement=statement(answer, known))
+    return replace(answer, statement=statement(answer, measured.model))
 
 
 def _estimates(
     found: Search, gains: Sequence[float], p_missing: float | None, progress: Progress | None
 ) -> tuple[tuple[Effect, ...], dict[str, Estimate]]:
-    """Effects, strongest first, and base parameters; by profile likelihood where there is a ``progress`` to tell."""
+    """Effects, strongest first, and base parameters; by profile likelihood with a ``progress`` to call."""
     chosen = found.chosen
     if progress:
         progress("intervals", 0.9)
@@ -176,14 +176,14 @@ def _estimates(
     chances = p_of_effects(found, gains)
     if len(chances) == 1 and p_missing is not None:  # of the one effect it may be the bootstrap's
         chances = [p_missing]
-    effects = []
+    effects, peak = [], true_peak(chosen)
     order = sorted(zip(chosen.candidates, gains, chances, strict=True), key=lambda entry: -entry[1])
     for candidate, gain, chance in order:
         parameters = {x.name.partition(".")[2]: values.pop(x.name) for x in candidate.unknowns}
         for name, value in candidate.held.items():
             short = name.partition(".")[2]
             parameters[short] = Estimate(value, value, value, candidate.mechanism.parameter(short).unit)
-        parameters = to_true_peak(chosen, candidate, parameters)
+        parameters = over_peak(parameters, candidate, chosen.measured.reference_peak, peak)
         effects.append(Effect(candidate.name, candidate.effect_class, parameters, gain, chance))
     return tuple(effects), values
 

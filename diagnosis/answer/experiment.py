@@ -19,46 +19,17 @@ from diagnosis.data.measured import arrange
 from diagnosis.fit.intervals import covariances
 from diagnosis.fit.misfit import Misfit, reduce
 from diagnosis.fit.prediction import Predictor
+from diagnosis.fit.solver import fit
 from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.found import Search
 from diagnosis.search.refit import Explanation
-from grids.recordings.base import REQUIRED, Recording
+from grids.recordings.base import REQUIRED, SHARE, Recording
 from models.errors import InputError
 
 SCALES = (0.7, 1.0, 1.4)
 NEW_SENSOR_NOISE = 0.01
 """Of the peak of a channel that is not measured yet."""
-
-STATIC_TESTS: Mapping[str, str] = {
-    "gain": "calibrate the rotation sensors statically",
-    "offset": "read the rotation sensors at rest before and after a run",
-    "saturation": "look up the range of the rotation sensors",
-    "base_gain": "calibrate the accelerometer of the base",
-    "accelerometer_offset": "read the accelerometer of the base at rest",
-    "cross_axis": "shake the table with the block tied down and read the rotation sensors",
-    "delay": "put one signal on a response and a base channel and compare the times",
-    "clock": "put one signal on a response and a base channel and compare the times at start and end",
-    "filter": "look up the filter settings of the logger",
-    "tilt": "put a level on the base",
-    "eccentricity": "turn the block by 180 degrees and repeat a run",
-    "table_pitch": "measure the pitch of the table with the block on it",
-    "pivot_inset": "push the block over slowly and read the force at which it lifts",
-    "rounded_corner": "push the block over slowly and read force over rotation",
-    "crushing": "inspect the corners and push the block over slowly before and after a run",
-    "added_stiffness": "push the block over slowly and read force over rotation",
-    "flexible_joint": "push the block slowly and read the rotation before it lifts",
-    "restitution": "let the block rock freely from a held rotation",
-    "velocity_restitution": "let the block rock freely from several held rotations",
-    "viscous_damping": "let the block rock freely from several held rotations",
-    "coulomb_damping": "let the block rock freely and follow the last small swings",
-    "quadratic_damping": "let the block rock freely from several held rotations",
-    "degradation": "repeat a run and compare",
-    "sliding": "mark the base before a run and look for a shift after it",
-    "wall_flexibility": "tap the standing wall and read its first frequency",
-    "bounce": "film an impact, or add a vertical accelerometer at a corner",
-    "vertical_acceleration": "repeat a run without vertical shaking",
-}
 
 
 def next_experiment(found: Search, near: Sequence[tuple[Explanation, Candidate, float]]) -> Mapping[str, Any] | None:
@@ -78,19 +49,19 @@ def next_experiment(found: Search, near: Sequence[tuple[Explanation, Candidate, 
     (name, scale), expected = max(bank.items(), key=lambda item: item[1])
     mine = [c for c in best.candidates if c.name not in other.names]
     theirs = [c for c in other.candidates if c.name not in best.names]
-    pair = [c.name for c in (*mine, *theirs)]
+    pair = (*mine, *theirs)
     return {
-        "separates": pair,
+        "separates": [c.name for c in pair],
         "recording": {"base_motion": name, "scale": scale, "expected_evidence": expected},
         "sensor": _sensor(best, other),
-        "static_test": "; or ".join(dict.fromkeys(STATIC_TESTS[n] for n in pair if n in STATIC_TESTS)),
+        "static_test": "; or ".join(dict.fromkeys(c.mechanism.static_test for c in pair if c.mechanism.static_test)),
     }
 
 
 def _sensor(best: Explanation, other: Explanation) -> Mapping[str, Any] | None:
     """The channel of the model that is not recorded yet and would say most, on the same runs."""
     measured = best.measured
-    free = [q.name for q in measured.model.observables if q.name not in (*measured.channels, "contact_1", "contact_2")]
+    free = [q.name for q in measured.model.observables if q.name not in measured.channels and q.unit != SHARE]
     gains = {}
     for name in free:
         made = [_made(best, r, 1.0, (*measured.channels, name)) for r in measured.recordings]
@@ -125,7 +96,7 @@ def _expected(truth: Explanation, rival: Explanation, made: Recording) -> float:
     measured = fitted.measured
     acts = measured.shakings[0].vertical is not None and measured.shakings[0].vertical_acts
     try:
-        windows = arrange(measured.model, [made], acts, measured.reference_peak)
+        windows = arrange(measured.model, [made], acts, measured.lengths, measured.reference_peak)
     except InputError:
         return 0.0
     options = fitted.misfit.predictor.options
@@ -133,8 +104,6 @@ def _expected(truth: Explanation, rival: Explanation, made: Recording) -> float:
     misfit = Misfit(predictor, sensor_noise_only(predictor), fitted.misfit.unknowns, fitted.misfit.fixed)
     true = truth.fitted
     own = Misfit(predictor, misfit.whitening, true.misfit.unknowns, true.misfit.fixed)
-    from diagnosis.fit.solver import fit
-
     states = fit(replace(own, unknowns=(), fixed={**own.fixed, **true.values}), np.zeros(0), windows.states).states
     clean = predictor.predict([own.point(true.u, states)])[0]
     exact = replace(misfit, predictor=replace(predictor, measured=replace(windows, values=clean * windows.mask)))

@@ -44,7 +44,7 @@ def verdict_of(
 
 
 def p_value(found: Search, gain: float) -> float:
-    """Chance of a gain, shapes paid for, by the score's null distribution; told down to LEAST_P."""
+    """Chance of a gain, shapes paid for, by the score's null distribution; stated down to LEAST_P."""
     return max(found.null.p_value(gain), LEAST_P) if found.null else 1.0
 
 

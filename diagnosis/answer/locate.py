@@ -5,7 +5,7 @@ library is adequate, what the base model leaves over that of the noise. Runs of 
 windows are scanned for more than their part; the largest run is compared with that of shuffled windows,
 at a level shared out among recordings and channels, so that all scans together are wrong with 5 %
 probability at most. Without a run that stands out the interval is all that was compared. Windows start at a
-peak, so what happens at the first uplift alone is not located.
+peak, so what happens before the first peak is not located.
 """
 
 from __future__ import annotations
@@ -16,8 +16,9 @@ import numpy as np
 
 from diagnosis.answer.heldout import Shown
 from diagnosis.answer.result import Located
-from diagnosis.forces.constancy import FLAG, Tested
+from diagnosis.forces.constancy import FLAG, TIME, Tested
 from models.base import FloatArray
+from models.identification import Identification
 
 SHUFFLES = 1000
 LEVEL = 0.05
@@ -25,9 +26,16 @@ LEVEL = 0.05
 FEWEST = 4
 """Windows from which on a run of them can stand out."""
 SHARE_OF_PLAIN = 0.3
-"""A dependence is told when it is beyond chance and its statistic this share of that of the plain force."""
+"""A dependence is named when it is beyond chance and its statistic this share of that of the plain force."""
 HIGH_HZ = 10.0
-WORDS = {"side": ("left", "right"), "size of the rotation": ("small_rotation", "large_rotation"), "time": ("", "late")}
+EVERYWHERE, LATE, ABOVE_10_HZ = "everywhere", "late", "above_10_hz"
+WORDS = {EVERYWHERE: "throughout", LATE: "more so late in the recording", ABOVE_10_HZ: "above 10 Hz"}
+"""Phase words that every model shares, in plain English."""
+
+
+def words_of(declared: Identification) -> dict[str, str]:
+    """Every phase word of a model's motion in plain English."""
+    return {**declared.phases, **WORDS}
 
 
 def locate(
@@ -39,9 +47,9 @@ def locate(
     total = float(np.maximum(excess, 0.0).sum())
     if total <= 0.0:
         return ()
-    words = ("everywhere",) if sensors_only else phases(tested)
+    words = (EVERYWHERE,) if sensors_only else phases(m.identification, tested)
     if _above_10_hz(shown):
-        words = (*words, "above_10_hz")
+        words = (*words, ABOVE_10_HZ)
     rng = np.random.default_rng(seed)
     found = []
     level = LEVEL / (len(m.recordings) * len(m.channels))
@@ -107,17 +115,19 @@ def _runs(sizes: FloatArray) -> FloatArray:
     return np.where((length > 0) & (length < n), sums / spread, -np.inf)
 
 
-def phases(tested: list[Tested]) -> tuple[str, ...]:
+def phases(declared: Identification, tested: list[Tested]) -> tuple[str, ...]:
     """In which phase of the motion the missing force acts, from the tests on the base fit."""
     plain = [t for t in tested if not t.depends_on]
     if not plain:
-        return ("everywhere",)
+        return (EVERYWHERE,)
     leader = max(plain, key=lambda t: t.statistic)
-    words = ["impact" if leader.kind == "restitution" else "between_impacts"]
+    at = next(kind.event for kind in declared.forces if kind.name == leader.kind)
+    words = [at or (declared.separation.between if declared.separation else EVERYWHERE)]
+    ends = {TIME: ("", LATE), **{d.name: d.phases for d in declared.dependences}}
     least = max(FLAG, SHARE_OF_PLAIN * leader.statistic)
     for test in tested:
-        if test.kind == leader.kind and test.depends_on in WORDS and test.statistic > least:
-            word = WORDS[test.depends_on][1 if test.sign > 0.0 else 0]
+        if test.kind == leader.kind and test.depends_on in ends and test.statistic > least:
+            word = ends[test.depends_on][1 if test.sign > 0.0 else 0]
             if word and word not in words:
                 words.append(word)
     return tuple(words)

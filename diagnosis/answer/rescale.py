@@ -1,38 +1,49 @@
-"""Sensor levels over the true peak.
+"""Levels of instruments over the true peak.
 
-During a fit a level or offset is given over the largest *measured* rotation of the first recording.
-The catalogue gives it over the rotation that the model reaches there without the effect, so the
-estimate is converted at the end, and the reference is told with it.
+During a fit a level or offset is given over the largest *measured* value of the leading channel in the first
+recording. The catalogue gives it over the one that the model reaches there without these instruments, so the
+estimates are converted at the end.
 """
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 
 from diagnosis.fit.intervals import Estimate
 from diagnosis.fit.prediction import Point
-from diagnosis.search.candidates import REFERENCE, Candidate
+from diagnosis.search.candidates import Candidate
 from diagnosis.search.refit import Explanation
+from grids.instruments.base import Level
 
 
-def to_true_peak(
-    explanation: Explanation, candidate: Candidate, parameters: dict[str, Estimate]
-) -> dict[str, Estimate]:
-    """Parameters with levels over the unspoilt peak of the first recording; others as they are."""
-    if REFERENCE not in {p.name for p in candidate.mechanism.parameters}:
-        return parameters
-    fitted = explanation.fitted
-    predictor, m = fitted.misfit.predictor, fitted.measured
-    point = fitted.point
-    without = {k: v for k, v in point.values.items() if k.partition(".")[0] != candidate.name}
-    motion = predictor.predict([Point(without, fitted.states)])[0][:, 0]
+def with_levels(candidate: Candidate) -> bool:
+    """Whether a parameter of the mechanism is given over the reference peak."""
+    return any(isinstance(parameter, Level) for parameter in candidate.mechanism.parameters)
+
+
+def true_peak(explanation: Explanation) -> float | None:
+    """Peak (rad) of the first recording as the model gives it without its levels; None where it has none."""
+    names = {c.name for c in explanation.candidates if with_levels(c)}
+    if not names:
+        return None
+    m, fitted = explanation.measured, explanation.fitted
+    without = {k: v for k, v in fitted.point.values.items() if k.partition(".")[0] not in names}
+    lead = m.channels.index(m.identification.leads[0].channel)
+    motion = fitted.misfit.predictor.predict([Point(without, fitted.states)])[0][:, lead]
     first = m.recording_of == 0
-    peak = float(np.max(np.abs(motion[first]) * m.mask[first, 0])) if first.any() else m.reference_peak
-    factor = m.reference_peak / peak
-    found = {}
-    for name, value in parameters.items():
-        found[name] = Estimate(
-            value.estimate * factor, value.low95 * factor, value.high95 * factor, value.unit, value.at_bound
-        )
-    found[REFERENCE] = Estimate(peak, peak, peak, "rad")
-    return found
+    return float(np.max(np.abs(motion[first]) * m.mask[first, lead])) if first.any() else m.reference_peak
+
+
+def over_peak(
+    parameters: dict[str, Estimate], candidate: Candidate, reference_peak: float, peak: float | None
+) -> dict[str, Estimate]:
+    """Estimates over ``reference_peak`` as estimates over ``peak`` (rad); those that are no levels as they are."""
+    if peak is None or not with_levels(candidate):
+        return parameters
+    factor = reference_peak / peak
+    return {
+        name: replace(v, estimate=v.estimate * factor, low95=v.low95 * factor, high95=v.high95 * factor)
+        for name, v in parameters.items()
+    }

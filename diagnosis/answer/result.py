@@ -94,7 +94,7 @@ class Windows:
     """Residuals window by window, for the raster: one entry a window of one recording and channel.
 
     ``start`` and ``end`` in s; ``before`` and ``after`` are rms residuals over the noise;
-    ``held_out`` tells recordings that were not fitted.
+    ``held_out``: the recording was not fitted.
     """
 
     recording: str
@@ -147,7 +147,9 @@ class Diagnosis:
     prediction_horizon: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """By recording: seconds until the prediction from a window's start leaves the noise, before and after."""
     missing_force: Mapping[str, Any] | None = None
-    """Shape of the force that is not in the library: terms over (theta, theta', contact, a) and curves."""
+    """Shape of the force that is not in the library: terms along the motion and curves."""
+    reference_peak: float | None = None
+    """Rotation (rad) over which levels of instruments among the effects are given; None without such an effect."""
     provenance: Mapping[str, Any] = field(default_factory=dict)
     finished: bool = True
     """False when the user stopped the search: what stands is what was found so far."""

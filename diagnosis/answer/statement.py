@@ -5,29 +5,24 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from string import Formatter
 
+from diagnosis.answer.locate import words_of
 from diagnosis.answer.result import Diagnosis, Effect, Fit, Located
-from diagnosis.forces.columns import KINDS
-from diagnosis.forces.constancy import Constancy
+from diagnosis.data.measured import identification_of
+from diagnosis.fit.unknowns import library
+from diagnosis.forces.constancy import FOR_A_WHILE, Constancy
 from diagnosis.search.null import LEAST_P
 from models.base import Mechanism
+from models.identification import Identification
+from models.model import Model
 
-WHERE = {
-    "impact": "at impacts",
-    "between_impacts": "between impacts",
-    "large_rotation": "at large rotations",
-    "small_rotation": "at small rotations",
-    "left": "while rocking to the left",
-    "right": "while rocking to the right",
-    "late": "more so late in the recording",
-    "above_10_hz": "above 10 Hz",
-    "everywhere": "throughout",
-}
 CONFIRMED = 0.5
 """Share of the achievable on held-out recordings under which the reader is warned."""
 
 
-def statement(found: Diagnosis, known: Mapping[str, Mechanism]) -> str:
+def statement(found: Diagnosis, model: Model) -> str:
     """The paragraph; every number in it stands in the other fields too."""
+    known = library(model)
+    declared = identification_of(model)
     parts = [_suspicion(name, what) for name, all_of in found.suspicions.items() for what in all_of]
     if not found.finished and not found.effects:
         parts.append(
@@ -40,19 +35,19 @@ def statement(found: Diagnosis, known: Mapping[str, Mechanism]) -> str:
         return " ".join([*parts, *_skipped(found)])
     parts.append(f"The model leaves something out ({_beyond_chance(found.p_value)}).")
     if found.located:
-        parts.append(_where(found.located))
+        parts.append(_where(found.located, words_of(declared)))
     if found.unexplained:
         parts.append(
             "Even the best model of the library leaves most of the motion unexplained, so a name would mean nothing: "
             "check the signs, units and clocks of the recordings, and the specimen."
         )
     if found.effects:
-        told = [effect_told(effect, known[effect.name]) for effect in found.effects]
+        said = [effect_text(effect, known[effect.name]) for effect in found.effects]
         opening = "What the library can say" if found.verdict == "not_in_library" else "Best explanation"
-        parts.append(f"{opening}: {'; and '.join(told)}.")
+        parts.append(f"{opening}: {'; and '.join(said)}.")
     if found.verdict == "not_in_library" and not found.unexplained:
         parts.append("That does not settle it: what is missing is not in the library of mechanisms.")
-        parts += [_flag(flag) for flag in _distinct(found.constancy)[:2]]
+        parts += [_flag(flag, declared) for flag in _distinct(found.constancy)[:2]]
     if found.verdict == "cannot_tell_apart" and found.rivals:
         names = ", ".join(f"{r.name.replace('_', ' ')} ({r.evidence_gap:.1f} less)" for r in found.rivals)
         parts.append(f"These recordings cannot tell it apart from: {names}.")
@@ -111,9 +106,6 @@ def _skipped(found: Diagnosis) -> list[str]:
     return [f"Stopped after the search; left out: {', '.join(found.skipped)}."] if found.skipped else []
 
 
-_NOUNS = ("side", "amplitude of the motion", "size of the rotation", "time", "direction of motion")
-
-
 def _distinct(found: Sequence[Constancy]) -> list[Constancy]:
     """The strongest of each dependence: forces that depend on the same thing are mostly one force seen twice."""
     strongest: dict[str, Constancy] = {}
@@ -122,39 +114,36 @@ def _distinct(found: Sequence[Constancy]) -> list[Constancy]:
     return list(strongest.values())
 
 
-def _flag(found: Constancy) -> str:
-    what = f"What acts is a {KINDS[found.parameter]}"
+def _flag(found: Constancy, declared: Identification) -> str:
+    meaning = next(kind.meaning for kind in declared.forces if kind.name == found.parameter)
+    what = f"What acts is a {meaning}"
     stronger = f", stronger {found.stronger}" if found.stronger else ""
-    if found.depends_on in _NOUNS:
-        return f"{what} that depends on the {found.depends_on}{stronger}."
-    if found.depends_on == "a spell of time":
+    if found.depends_on == FOR_A_WHILE:
         return f"{what} that is there for a while only."
     if found.depends_on.startswith("recording"):
         return f"{what} that is not the same in {found.depends_on}."
-    return f"{what} ({found.depends_on})."
+    return f"{what} that depends on the {found.depends_on}{stronger}."
 
 
-def _where(located: Sequence[Located]) -> str:
+def _where(located: Sequence[Located], words: Mapping[str, str]) -> str:
     first = located[0]
-    words = " and ".join(WHERE[w] for w in first.where)
+    phases = " and ".join(words[word] for word in first.where)
     return (
-        f"The mismatch lives {words}, most of it in {first.recording} from {first.start:.1f} s to {first.end:.1f} s "
-        f"({first.channel}, {first.share:.0%} of the excess)."
+        f"The model misses {phases}, most of all in {first.recording} from {first.start:.1f} s to {first.end:.1f} s "
+        f"({first.channel}, {first.share:.0%} of the excess misfit)."
     )
 
 
-def effect_told(effect: Effect, mechanism: Mechanism) -> str:
+def effect_text(effect: Effect, mechanism: Mechanism) -> str:
     """An effect in the library's sentence, with its interval and evidence."""
     values = {name: e.estimate for name, e in effect.parameters.items()}
-    sentence = mechanism.sentence_for(values)
     name, main = next(iter(effect.parameters.items()))
-    form = _form(sentence, name)
+    form = _form(mechanism.sentence_for(values), name)
     low, high = (format(end, form or ".4g") for end in (main.low95, main.high95))
     unit = "" if main.unit == "1" or form else f" {main.unit}"
     bound = ", at the end of its range" if main.at_bound else ""
-    said = sentence.format_map({**mechanism.nulls, **values})
     interval = f"95 % interval {low} to {high}{unit}{bound}"
-    return f"{effect.name.replace('_', ' ')}: {said} ({interval}; evidence {effect.evidence:.0f})"
+    return f"{effect.name.replace('_', ' ')}: {mechanism.says(values)} ({interval}; evidence {effect.evidence:.0f})"
 
 
 def _form(sentence: str, parameter: str) -> str:
@@ -174,7 +163,7 @@ def _fit(train: Fit, holdout: Fit | None) -> str:
         of = "of it; they have no noise of their own" if holdout.noise_free else "of what the noise allows"
         text += f" ({share} {of})"
         if holdout.share_of_achievable < CONFIRMED:
-            text += ", so they hardly bear the explanation out"
+            text += ", so they hardly confirm the explanation"
     return text + "."
 
 

@@ -1,4 +1,4 @@
-"""Runs from rest, shown last: where rocking is chaotic they part from the recording after a while."""
+"""Runs from rest, shown last: where the motion is chaotic they part from the recording after a while."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ import numpy as np
 from diagnosis.answer.heldout import Shown, traces_of
 from diagnosis.answer.result import Trace
 from diagnosis.data.measured import Measured
-from diagnosis.fit.unknowns import split
-from diagnosis.search.candidates import REFERENCE
+from diagnosis.fit.unknowns import instruments_of, without_instruments
 from diagnosis.search.refit import Explanation
-from grids.instruments import INSTRUMENTS, moved, recorded
+from grids.instruments import moved, recorded
+from grids.instruments.base import Surroundings
 from grids.recordings.base import REQUIRED, FloatArray, Recording
 from grids.specimen import Specimen
 
@@ -43,22 +43,19 @@ def sensed_run(
     channels: Sequence[str],
     initial: Mapping[str, float] | None = None,
 ) -> dict[str, FloatArray]:
-    """Channels of one run under the recording's base motion, as the sensors would record them."""
+    """Channels of one run under the recording's base motion, as the instruments would record them."""
     misfit = explanation.fitted.misfit
     values = {**misfit.fixed, **explanation.fitted.values}
-    sensors = split(values, tuple(INSTRUMENTS))
-    for name, given in sensors.items():
-        if any(p.name == REFERENCE for p in INSTRUMENTS[name].parameters):
-            given.setdefault(REFERENCE, measured.reference_peak)
-    of_wall = {k: v for k, v in values.items() if k.partition(".")[0] not in INSTRUMENTS}
+    instruments = instruments_of(values)
     like = measured.shakings[0]
     shaking = recording.shaking(like.vertical is not None, vertical_acts=like.vertical_acts)
     history = measured.model.simulate(
-        of_wall,
-        moved(shaking, sensors),
+        without_instruments(values),
+        moved(shaking, instruments),
         initial=dict(initial or {}) or None,
         duration=shaking.duration,
         options=misfit.predictor.options,
     )
     found = {c: np.asarray(history.channels[c]).reshape(-1) for c in channels}
-    return dict(recorded(found, sensors, shaking.time_step, recording.channels[REQUIRED]))
+    around = Surroundings(shaking.time_step, recording.channels[REQUIRED], measured.reference_peak)
+    return dict(recorded(found, instruments, around))

@@ -10,15 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.data.noise import base_noise, response_noise, smooth
-from diagnosis.data.windows import SMOOTHING, Window, cut
-from grids.recordings.base import CHANNELS, REQUIRED, FloatArray, Recording
+from diagnosis.data.windows import Window, cut, over_noise
+from grids.recordings.base import CHANNELS, REQUIRED, SHARE, FloatArray, Recording
 from models.errors import InputError
+from models.identification import Identification, Largest, State, WindowLengths
 from models.model import Model
 from models.shaking import Shaking
 
 RATE_WIDTH = 0.04
 """s on either side of a window's start over which its rate is estimated."""
-NOT_COMPARED = ("contact_1", "contact_2")
 
 
 @dataclass(frozen=True)
@@ -26,9 +26,9 @@ class Measured:
     """W windows of some recordings, C channels, at most N samples a window.
 
     ``values`` and ``mask`` (W, C, N); ``sigma`` (W, C); ``base`` (W, N), the measured base acceleration;
-    ``states`` (W, S), the model's states at the windows' starts as the measurement suggests;
-    ``memory``: what happened before each window (W,), for laws with a memory.
-    ``reference_peak``: largest rotation_1 (rad) of the first recording.
+    ``states`` (W, S), the model's states at the windows' starts as the measurement suggests, ``state_size`` (S,)
+    their scatter; ``memory``: what happened before each window (W,), for laws with a memory.
+    ``reference_peak``: largest value of the leading channel of the first recording; ``lengths`` of windows in s.
     """
 
     model: Model
@@ -45,6 +45,11 @@ class Measured:
     state_size: FloatArray
     memory: dict[str, FloatArray]
     reference_peak: float
+    lengths: WindowLengths | None
+
+    @property
+    def identification(self) -> Identification:
+        return identification_of(self.model)
 
     @property
     def recording_of(self) -> NDArray[np.int64]:
@@ -70,66 +75,77 @@ class Measured:
         return np.asarray((cutout.first + np.arange(self.values.shape[2])) * step, np.float64)
 
 
+def identification_of(model: Model) -> Identification:
+    """What ``model`` declares for a comparison with recordings; InputError says why there can be none."""
+    declared = model.identification
+    lacking = "what they need to know of it" if declared is None else declared.refusal()
+    if declared is None or lacking:
+        raise InputError(
+            f"calibration and diagnosis of model {model.name} are not offered yet: {lacking} is not declared or "
+            'measured; describe the wall by rigid bodies (model = "housner" or "stacked"), or simulate.'
+        )
+    return declared
+
+
 def arrange(
-    model: Model, recordings: Sequence[Recording], vertical: bool, reference_peak: float | None = None
+    model: Model,
+    recordings: Sequence[Recording],
+    vertical: bool,
+    lengths: WindowLengths | None,
+    reference_peak: float | None = None,
 ) -> Measured:
     """Cut the recordings in windows; channels are compared that all of them hold (see `left_out`).
 
-    Raises InputError when nothing can be compared.
+    ``lengths`` in s; None: each recording is one window. Raises InputError when nothing can be compared.
     """
-    states: tuple[str, ...] = model.states
-    for state in states:
-        if _channel(state) not in CHANNELS:
-            raise InputError(
-                f"calibration and diagnosis of model {model.name} are not offered yet: its motion starts from "
-                f'{state}, which no recording holds; describe the wall as one block (model = "housner"), or simulate.'
-            )
-    observed = [q.name for q in model.observables if q.name not in NOT_COMPARED]
+    declared = identification_of(model)
+    observed = [q.name for q in model.observables if q.unit != SHARE]
     channels = tuple(c for c in observed if all(c in r.channels for r in recordings))
-    if not channels:
-        raise InputError(
-            f"no channel of {model.name} ({', '.join(observed)}) is in every recording: record rotation_1 at least."
-        )
-    for state in states:
-        lacking = [r.name for r in recordings if _channel(state) not in r.channels]
+    for state in declared.states:
+        lacking = [r.name for r in recordings if state.channel not in r.channels]
         if lacking:
             raise InputError(
-                f"{_channel(state)} is missing in {', '.join(lacking)}: model {model.name} cannot start a window "
+                f"{state.channel} is missing in {', '.join(lacking)}: model {model.name} cannot start a window "
                 "without it; record or map it."
             )
-    lead = channels[0]
+    leads = [lead.channel for lead in declared.leads]
     windows: list[Window] = []
     for k, recording in enumerate(recordings):
-        if model.chaotic:
-            windows += cut(recording.channels[lead], response_noise(recording, lead), recording.time_step, k)
-        else:
+        if lengths is None:
             windows.append(Window(k, 0, recording.time.size))
+            continue
+        sizes = [
+            over_noise(recording.channels[c], response_noise(recording, c), recording.time_step, lengths) for c in leads
+        ]
+        windows += cut(np.max(sizes, axis=0), recording.time_step, k, lengths)
     if not windows:
         raise InputError(
-            f"{lead} never rises above 8 times its noise in {', '.join(r.name for r in recordings)}: "
+            f"{' or '.join(leads)} never rises above 8 times its noise in {', '.join(r.name for r in recordings)}: "
             "nothing can be compared; shake harder, or measure with less noise."
         )
-    shaken_up = vertical or all("base_acceleration_z" in r.channels for r in recordings)
-    start = np.stack([_start(recordings, windows, state) for state in states], axis=1)
-    peak = float(np.max(np.abs(smooth(recordings[0].channels[lead], recordings[0].time_step, SMOOTHING))))
+    with_vertical = vertical or all("base_acceleration_z" in r.channels for r in recordings)
+    start = np.stack([_start(recordings, windows, state) for state in declared.states], axis=1)
+    if reference_peak is None:
+        reference_peak = float(np.max(np.abs(_smoothed(recordings[0], leads[0], lengths))))
     return Measured(
         model=model,
         recordings=tuple(recordings),
-        shakings=tuple(r.shaking(shaken_up, vertical_acts=vertical) for r in recordings),
+        shakings=tuple(r.shaking(with_vertical, vertical_acts=vertical) for r in recordings),
         base_noise=tuple(base_noise(r) for r in recordings),
         windows=tuple(windows),
         channels=channels,
         **gather(recordings, windows, channels),
         states=start,
         state_size=np.maximum(np.std(start, axis=0), 1e-12),
-        memory=_memory(recordings, windows, channels),
-        reference_peak=peak if reference_peak is None else reference_peak,
+        memory=_memory(recordings, windows, declared, lengths),
+        reference_peak=reference_peak,
+        lengths=lengths,
     )
 
 
 def left_out(recordings: Sequence[Recording]) -> dict[str, tuple[str, ...]]:
     """Responses that only some recordings hold, so that none is compared by them; with those that lack them."""
-    held = dict.fromkeys(c for r in recordings for c in r.responses if c not in NOT_COMPARED)
+    held = dict.fromkeys(c for r in recordings for c in r.responses if CHANNELS[c].unit != SHARE)
     lacking = {c: tuple(r.name for r in recordings if c not in r.channels) for c in held}
     return {c: names for c, names in lacking.items() if names}
 
@@ -153,50 +169,53 @@ def gather(recordings: Sequence[Recording], windows: Sequence[Window], channels:
     return {"values": values, "mask": mask, "sigma": sigma, "base": base}
 
 
-def _channel(state: str) -> str:
-    """The channel that a state, or its derivative, is read from."""
-    return state.replace("_rate", "")
-
-
-def _start(recordings: Sequence[Recording], windows: Sequence[Window], state: str) -> FloatArray:
+def _start(recordings: Sequence[Recording], windows: Sequence[Window], state: State) -> FloatArray:
     """A state at the windows' starts, from a parabola through the samples around them.
 
-    A rate is the slope of its rotation in recordings that do not hold the rate itself.
+    A rate is the slope of its coordinate in recordings that do not hold the rate itself.
     """
     found = np.empty(len(windows))
     for w, window in enumerate(windows):
         recording = recordings[window.recording]
-        derivative = state not in recording.channels
-        channel = _channel(state) if derivative else state
-        step, signal = recording.time_step, recording.channels[channel]
+        slope = state.rate and state.name not in recording.channels
+        signal = recording.channels[state.channel if slope or not state.rate else state.name]
+        step = recording.time_step
         reach = max(3, round(RATE_WIDTH / step))
         low, high = max(0, window.first - reach), min(signal.size, window.first + reach + 1)
         fit = np.polynomial.polynomial.polyfit((np.arange(low, high) - window.first) * step, signal[low:high], 2)
-        found[w] = fit[1] if derivative else fit[0]
+        found[w] = fit[1] if slope else fit[0]
     return found
+
+
+def _smoothed(recording: Recording, channel: str, lengths: WindowLengths | None) -> FloatArray:
+    values = recording.channels[channel]
+    return values if lengths is None else smooth(values, recording.time_step, lengths.smoothing)
 
 
 def _memory(
     recordings: Sequence[Recording],
     windows: Sequence[Window],
-    channels: Sequence[str],
+    declared: Identification,
+    lengths: WindowLengths | None,
 ) -> dict[str, FloatArray]:
-    """Largest rotation and number of impacts before each window, from the smoothed measurement."""
-    memory: dict[str, FloatArray] = {}
-    if "rotation_1" not in channels:
-        return memory
-    peaks, impacts = [], []
-    for k, recording in enumerate(recordings):
-        signal = smooth(recording.channels["rotation_1"], recording.time_step, SMOOTHING)
-        level = 2.0 * response_noise(recording, "rotation_1")
-        side = np.where(signal > level, 1, np.where(signal < -level, -1, 0))
-        held = side[np.maximum.accumulate(np.where(side != 0, np.arange(side.size), 0))]
-        crossed = np.cumsum(np.concatenate([[0], (held[1:] != held[:-1]) & (held[:-1] != 0)]))
-        largest = np.maximum.accumulate(np.abs(signal))
-        for window in windows:
-            if window.recording == k:
-                peaks.append(largest[window.first])
-                impacts.append(crossed[window.first])
-    memory["peak_rotation_1"] = np.array(peaks, float)
-    memory["impacts"] = np.array(impacts, float)
+    """The declared memories before each window (W,), from the smoothed measurement."""
+    memory = {}
+    for one in declared.memories:
+        so_far = []
+        for recording in recordings:
+            signal = _smoothed(recording, one.channel, lengths)
+            level = 2.0 * response_noise(recording, one.channel)
+            so_far.append(_largest(signal) if isinstance(one, Largest) else _sign_changes(signal, level))
+        memory[one.name] = np.array([so_far[w.recording][w.first] for w in windows], float)
     return memory
+
+
+def _largest(signal: FloatArray) -> FloatArray:
+    return np.maximum.accumulate(np.abs(signal))
+
+
+def _sign_changes(signal: FloatArray, level: float) -> FloatArray:
+    """Number of changes of sign so far (n_times,), of values beyond ``level``."""
+    side = np.where(signal > level, 1, np.where(signal < -level, -1, 0))
+    held = side[np.maximum.accumulate(np.where(side != 0, np.arange(side.size), 0))]
+    return np.cumsum(np.concatenate([[0], (held[1:] != held[:-1]) & (held[:-1] != 0)])).astype(np.float64)

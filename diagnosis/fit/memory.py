@@ -1,8 +1,8 @@
 """What happened before a window: the memory of laws that wear.
 
-The largest rotation is read off the smoothed measurement. Impacts cannot be: most are small ones under
-the noise, in the decay after a strong phase. They are counted along the fitted model, run from each
-window's start to the next one's.
+Largest values are read off the smoothed measurement. Events cannot be: most are small ones under the noise, in
+the decay after a strong phase. They are counted along the fitted model, run from each window's start to the
+next one's, and from rest to the first.
 """
 
 from __future__ import annotations
@@ -16,39 +16,48 @@ import numpy as np
 from diagnosis.data.measured import Measured
 from diagnosis.data.windows import Window
 from diagnosis.fit.prediction import Point, Predictor
-from diagnosis.fit.unknowns import split
-from grids.instruments import INSTRUMENTS, moved
+from diagnosis.fit.unknowns import instruments_of, without_instruments
+from grids.instruments import moved
+from models.base import Event, FloatArray
+from models.identification import Count
 
 
 def counted(predictor: Predictor, point: Point) -> Measured:
-    """The measured windows with the impacts before each counted along the model at ``point``."""
+    """The measured windows with the events before each counted along the model at ``point``."""
     m = predictor.measured
-    if "impacts" not in m.memory:
+    counts = [one for one in m.identification.memories if isinstance(one, Count)]
+    if not counts:
         return m
-    impacts = np.zeros(len(m.windows))
+    values = without_instruments(point.values)
+    rest = m.identification.rest(m.model.derive(values, predictor.options))
+    found = {one.name: np.zeros(len(m.windows)) for one in counts}
     for r in range(len(m.recordings)):
         own = np.flatnonzero(m.recording_of == r)
         if not own.size:
             continue
         starts = [0, *(m.windows[w].first for w in own)]
-        states = np.concatenate([np.zeros((1, point.states.shape[1])), point.states[own]])
         pieces = [Window(r, a, b - a) for a, b in pairwise(starts)]
-        impacts[own] = np.cumsum(_impacts(predictor, point, pieces, states[:-1]))
-    return replace(m, memory={**m.memory, "impacts": impacts})
+        states = np.concatenate([[[rest[name] for name in m.model.states]], point.states[own]])
+        events = _events(predictor, point, pieces, states[:-1])
+        for one in counts:
+            found[one.name][own] = np.cumsum([sum(e.kind == one.event for e in piece) for piece in events])
+    return replace(m, memory={**m.memory, **found})
 
 
-def _impacts(predictor: Predictor, point: Point, pieces: Sequence[Window], states: np.ndarray) -> list[int]:
-    """Impacts along each piece, from its state on."""
+def _events(
+    predictor: Predictor, point: Point, pieces: Sequence[Window], states: FloatArray
+) -> list[tuple[Event, ...]]:
+    """Events along each piece, from its state on."""
     m = predictor.measured
-    sensors = split(point.values, tuple(INSTRUMENTS))
-    of_wall = {k: v for k, v in point.values.items() if k.partition(".")[0] not in INSTRUMENTS}
-    counts = []
+    values, instruments = without_instruments(point.values), instruments_of(point.values)
+    found = []
     for piece, state in zip(pieces, states, strict=True):
-        shaking = moved(m.shakings[piece.recording], sensors)
+        shaking = moved(m.shakings[piece.recording], instruments)
         part = slice(piece.first, piece.first + piece.samples + 1)
         vertical = None if shaking.vertical is None else shaking.vertical[part]
         cut = replace(shaking, horizontal=shaking.horizontal[part], vertical=vertical)
-        initial = {name: float(x) for name, x in zip(m.model.states, state, strict=True) if x != 0.0}
-        ran = m.model.simulate(of_wall, cut, initial=initial or None, duration=cut.duration, options=predictor.options)
-        counts.append(sum(event.kind == "impact" for event in ran.events))
-    return counts
+        initial = {name: float(x) for name, x in zip(m.model.states, state, strict=True)}
+        found.append(
+            m.model.simulate(values, cut, initial=initial, duration=cut.duration, options=predictor.options).events
+        )
+    return found

@@ -3,7 +3,7 @@
     loss = sum_w nu n_w log(1 + chi2_w/(nu n_w)) + sum_i ((x_i - mean_i)/sd_i)^2,   nu = 10
 
 chi2_w is the squared whitened residual of window w, n_w its number of samples, the second sum runs
-over the priors. One wrong impact must not decide: a window far off counts with its logarithm. The
+over the priors. One wrong event must not decide: a window far off counts with its logarithm. The
 states of a window appear in its own residuals only; projecting these off the states' derivatives
 (Schur complement) leaves a least-squares problem in the shared parameters alone.
 """

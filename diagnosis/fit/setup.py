@@ -6,13 +6,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import models
-from diagnosis.data.measured import Measured, arrange
+from diagnosis.data.measured import Measured, arrange, identification_of
 from diagnosis.fit.memory import counted
 from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.prediction import Predictor
 from diagnosis.fit.solver import Fitted, fit_thoroughly
 from diagnosis.fit.starts import calibrate_base
-from diagnosis.fit.unknowns import fixed_values, of_specimen
+from diagnosis.fit.unknowns import fixed_values, of_specimen, without_instruments
 from diagnosis.fit.whitening import responses, sensor_noise_only, with_base_noise
 from grids.recordings.base import Recording
 from grids.specimen import Specimen
@@ -21,18 +21,28 @@ from models.model import Model
 
 
 def vertical_acts(specimen: Specimen, model: Model, recordings: Sequence[Recording]) -> bool:
-    """Whether the base model feels the measured vertical motion."""
+    """Whether the measured vertical motion acts on the base model."""
     if specimen.vertical is not None:
         return specimen.vertical
     return model.vertical_by_default and all("base_acceleration_z" in r.channels for r in recordings)
 
 
 def measure(specimen: Specimen, recordings: Sequence[Recording], reference_peak: float | None = None) -> Measured:
-    """The recordings cut in windows. Raises InputError when there is nothing to compare."""
+    """The recordings cut in windows. Raises InputError when there is nothing to compare.
+
+    ``reference_peak`` (rad): what levels of instruments are given over where the specimen does not say; default:
+    the largest value of the leading channel of the first recording.
+    """
     if not recordings:
         raise InputError("no recording to learn from: name at least one.")
     model = models.get(specimen.model)
-    return arrange(model, recordings, vertical_acts(specimen, model, recordings), reference_peak)
+    windows = identification_of(model).windows
+    lengths = None
+    if windows is not None:
+        values = {u.name: u.start for u in of_specimen(specimen, model)} | fixed_values(specimen)
+        lengths = windows.in_seconds(model.derive(without_instruments(values), specimen.options))
+    vertical = vertical_acts(specimen, model, recordings)
+    return arrange(model, recordings, vertical, lengths, specimen.reference_peak or reference_peak)
 
 
 def base_fit(specimen: Specimen, measured: Measured, seed: int = 0) -> Fitted:

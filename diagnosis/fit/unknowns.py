@@ -70,11 +70,16 @@ def values_of(unknowns: Sequence[Unknown], u: FloatArray) -> dict[str, float]:
     return {x.name: x.value(float(c)) for x, c in zip(unknowns, u, strict=True)}
 
 
+def library(model: Model) -> dict[str, Mechanism]:
+    """Every mechanism of the model and of instruments, by name."""
+    return {**model.mechanisms, **INSTRUMENTS}
+
+
 def of_specimen(specimen: Specimen, model: Model) -> tuple[Unknown, ...]:
     """Toleranced parameters with their priors, and those to calibrate within their ranges."""
     units = {p.name: p.unit for p in model.parameters}
-    known = {**model.mechanisms, **INSTRUMENTS}
-    units |= {f"{m}.{p.name}": p.unit for m in known for p in known[m].parameters}
+    known = library(model)
+    units |= {f"{m}.{p.name}": p.unit for m in known for p in known[m].addressable(model.name)}
     found = []
     for name, relative in specimen.tolerance.items():
         nominal = specimen.parameters[name]
@@ -109,11 +114,16 @@ def fixed_values(specimen: Specimen) -> dict[str, float]:
     return values
 
 
-def split(values: Mapping[str, float], names: Sequence[str]) -> dict[str, dict[str, float]]:
-    """The values of some mechanisms by mechanism and parameter."""
+def instruments_of(values: Mapping[str, float]) -> dict[str, dict[str, float]]:
+    """The values of instruments by mechanism and parameter."""
     found: dict[str, dict[str, float]] = {}
     for key, value in values.items():
-        mechanism, dot, parameter = key.partition(".")
-        if dot and mechanism in names:
+        mechanism, _, parameter = key.partition(".")
+        if mechanism in INSTRUMENTS:
             found.setdefault(mechanism, {})[parameter] = value
     return found
+
+
+def without_instruments(values: Mapping[str, float]) -> dict[str, float]:
+    """The values of the wall alone."""
+    return {key: value for key, value in values.items() if key.partition(".")[0] not in INSTRUMENTS}

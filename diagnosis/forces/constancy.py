@@ -13,35 +13,25 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.forces.columns import KINDS, Forces
+from diagnosis.forces.columns import Forces
 from models.base import FloatArray
+from models.identification import Identification
 
 FLAG = 15.0
 SCAN_FLAG = 25.0
 """The scan over time tries many intervals."""
-SPELL = "a spell of time"
-SHORTEST_SPELL = 2
+FOR_A_WHILE = "a limited time"
+AMPLITUDE = "amplitude of the motion"
+TIME = "time"
+SHORTEST_INTERVAL = 2
 """Windows."""
-SAME_FORCE = {
-    ("lean", "direction of motion"): ("coulomb_damping", "side"),
-    ("stiffness", "direction of motion"): ("coulomb_damping", "size of the rotation"),
-}
-"""One force under two names: sign(theta theta') = sign(theta') sign(theta); told as the right one."""
-WITHOUT_STRENGTH = ("lean",)
-"""A couple in one direction has a sign, not a strength."""
-STRONGER = {
-    "side": ("for theta < 0, to the left", "for theta > 0, to the right"),
-    "amplitude of the motion": ("in weak motion", "in strong motion"),
-    "size of the rotation": ("at small rotation", "at large rotation"),
-    "time": ("early", "late"),
-    "direction of motion": ("on the way back", "on the way out"),
-}
-"""Where a force is, with the smaller and with the larger value of what it depends on."""
+STRONGER = {AMPLITUDE: ("in weak motion", "in strong motion"), TIME: ("early", "late")}
+"""Where a force is, with the smaller and with the larger value of what it depends on, for every model."""
 
 
 @dataclass(frozen=True)
 class Constancy:
-    """A parameter that is not the same everywhere, what it depends on, and where it is ``stronger`` ("" if untold)."""
+    """A parameter that is not the same everywhere, what it depends on, and where it is ``stronger`` ("" if unknown)."""
 
     parameter: str
     depends_on: str
@@ -67,16 +57,15 @@ class Tested:
 def modulations(forces: Forces) -> Iterator[tuple[str, FloatArray]]:
     """What a force may depend on, as factors (W, N) about zero."""
     m = forces.fitted.measured
-    yield "side", np.sign(forces.rotation)
-    yield "amplitude of the motion", np.broadcast_to(_centred(forces.peak), forces.rotation.shape)
-    yield "size of the rotation", _centred(np.abs(forces.rotation) / np.max(forces.peak))
-    length = max(r.time[-1] for r in m.recordings)
-    yield "time", _centred(forces.time / length)
-    yield "direction of motion", np.sign(forces.rotation * forces.rate)
+    for dependence in m.identification.dependences:
+        factor = dependence.factor(forces.motion)
+        yield dependence.name, _centred(factor) if dependence.about_mean else factor
+    shape = forces.time.shape
+    yield AMPLITUDE, np.broadcast_to(_centred(forces.peak), shape)
+    yield TIME, _centred(forces.time / max(r.time[-1] for r in m.recordings))
     record = m.recording_of[:, None]
     for r, recording in enumerate(m.recordings[1:], start=1):
-        inside = np.broadcast_to(record == r, forces.rotation.shape).astype(float)
-        yield f"recording ({recording.name})", _centred(inside)
+        yield f"recording ({recording.name})", _centred(np.broadcast_to(record == r, shape).astype(float))
 
 
 def _centred(values: FloatArray) -> FloatArray:
@@ -94,13 +83,13 @@ def tests(forces: Forces) -> list[Tested]:
     """All tests, strongest first."""
     screen, excess = forces.screen, inflation(forces)
     found = []
-    for kind in KINDS:
+    for kind in forces.kinds:
         plain = forces.column(kind)
         norm = screen.product(plain, plain)
         if norm < 1e-9:
             continue
         along = screen.scores_with_residual(plain)
-        found.append(Tested(kind, "", along**2 / norm / excess))
+        found.append(Tested(kind.name, "", along**2 / norm / excess))
         for depends_on, factor in modulations(forces):
             column = forces.column(kind, factor)
             cross = screen.product(column, plain) / norm
@@ -110,9 +99,9 @@ def tests(forces: Forces) -> list[Tested]:
             score = screen.scores_with_residual(column) - cross * along
             sign = float(np.sign(score) * np.sign(along))
             statistic = without_loudest(*screen.by_window(column - cross * plain))
-            found.append(Tested(kind, depends_on, statistic / excess, sign, -float(np.sign(score))))
-        spell = _spell(forces, plain) / excess
-        found.append(Tested(kind, SPELL, spell * FLAG / SCAN_FLAG))
+            found.append(Tested(kind.name, depends_on, statistic / excess, sign, -float(np.sign(score))))
+        interval = _in_an_interval(forces, plain) / excess
+        found.append(Tested(kind.name, FOR_A_WHILE, interval * FLAG / SCAN_FLAG))
     return sorted(found, key=lambda t: -t.statistic)
 
 
@@ -122,8 +111,8 @@ def without_loudest(score: FloatArray, information: FloatArray) -> float:
     return float(np.min((score.sum() - score) ** 2 / left))
 
 
-def _spell(forces: Forces, column: FloatArray) -> float:
-    """Largest statistic of the force acting in one spell of windows, the loudest left out, against acting always."""
+def _in_an_interval(forces: Forces, column: FloatArray) -> float:
+    """Largest statistic of a force in successive windows alone, the loudest left out, against acting always."""
     score, information = forces.screen.by_window(column)
     total_score, total = score.sum(), information.sum()
     records = forces.fitted.measured.recording_of
@@ -131,7 +120,7 @@ def _spell(forces: Forces, column: FloatArray) -> float:
     for r in np.unique(records):
         own = np.flatnonzero(records == r)
         for a in range(own.size):
-            for b in range(a + SHORTEST_SPELL, own.size + 1):
+            for b in range(a + SHORTEST_INTERVAL, own.size + 1):
                 inside, part = _but_loudest(score[own[a:b]], information[own[a:b]])
                 left = part * (1.0 - part / total)
                 if left > 1e-3 * total:
@@ -145,7 +134,7 @@ def _but_loudest(score: FloatArray, information: FloatArray) -> tuple[float, flo
     return float(score.sum() - score[loudest]), float(information.sum() - information[loudest])
 
 
-def flags(tested: list[Tested], threshold: float = FLAG) -> tuple[Constancy, ...]:
+def flags(forces: Forces, tested: list[Tested], threshold: float = FLAG) -> tuple[Constancy, ...]:
     """Dependences beyond the threshold: one a kind of force, the strongest first, each force under one name.
 
     Plain forces are no flags: each has its mechanism in the library, which was refitted and is the better judge.
@@ -156,15 +145,16 @@ def flags(tested: list[Tested], threshold: float = FLAG) -> tuple[Constancy, ...
             strongest.setdefault(test.kind, test)
     found: dict[str, Constancy] = {}
     for test in strongest.values():
-        one = flag(test, test.statistic)
+        one = flag(forces.fitted.measured.identification, test, test.statistic)
         found.setdefault(one.parameter, one)
     return tuple(found.values())
 
 
-def flag(test: Tested, evidence: float) -> Constancy:
-    """A dependence told, with the end at which the force is stronger."""
-    kind, depends_on = SAME_FORCE.get((test.kind, test.depends_on), (test.kind, test.depends_on))
-    ends = STRONGER.get(depends_on)
-    if ends is None or kind in WITHOUT_STRENGTH or not test.extra:
-        return Constancy(kind, depends_on, evidence)
-    return Constancy(kind, depends_on, evidence, ends[1 if test.extra > 0.0 else 0])
+def flag(declared: Identification, test: Tested, evidence: float) -> Constancy:
+    """A dependence under the name that the model declares, with the end at which the force is stronger."""
+    kinds = {kind.name: kind for kind in declared.forces}
+    name, depends_on = kinds[test.kind].named.get(test.depends_on, (test.kind, test.depends_on))
+    ends = {**STRONGER, **{d.name: d.stronger for d in declared.dependences}}.get(depends_on)
+    if ends is None or kinds[name].signed or not test.extra:
+        return Constancy(name, depends_on, evidence)
+    return Constancy(name, depends_on, evidence, ends[1 if test.extra > 0.0 else 0])

@@ -1,4 +1,4 @@
-"""The shape of a force that is in no library, by sparse regression over (theta, theta', contact, a).
+"""The shape of a force that is in no library, by sparse regression over the leading coordinate, its rate and the base.
 
 Columns of every kind of force, plain and modulated, compete by orthogonal matching pursuit: the one
 that takes most off the misfit enters, all are refitted, until the next would bring less than FLAG.
@@ -11,28 +11,30 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.forces.columns import KINDS, Forces
-from diagnosis.forces.constancy import FLAG, Tested, modulations
+from diagnosis.forces.columns import Forces
+from diagnosis.forces.constancy import FLAG, modulations
+from models.identification import Motion
 
 MOST_TERMS = 4
 CURVE_POINTS = 41
 
 
-def missing_force(forces: Forces, tested: Sequence[Tested]) -> Mapping[str, Any]:
+def missing_force(forces: Forces) -> Mapping[str, Any]:
     """Terms with their coefficients (over the base acceleration, m s-2, that would do the same) and a curve.
 
-    ``terms``: kind, dependence, coefficient, standard error, gain; ``curve``: rotation (rad) and the force
-    at zero velocity that the terms along the rotation add up to.
+    ``terms``: kind, dependence, coefficient, standard error, gain; ``curve``: the leading coordinate and the
+    force at zero rate and without shaking that the terms along the coordinate add up to.
     """
     screen = forces.screen
-    factors = {"": np.ones_like(forces.rotation), **dict(modulations(forces))}
+    factors = {"": np.ones_like(forces.time), **dict(modulations(forces))}
     library = {}
-    for kind in KINDS:
+    kinds = {kind.name: kind for kind in forces.kinds}
+    for kind in forces.kinds:
         for depends_on, factor in factors.items():
             column = forces.column(kind, factor)
             norm = screen.product(column, column)
             if norm > 1e-6:
-                library[kind, depends_on] = column
+                library[kind.name, depends_on] = column
     chosen: list[tuple[str, str]] = []
     gains: list[float] = []
     solution, errors, reached = np.zeros(0), np.zeros(0), 0.0
@@ -50,9 +52,9 @@ def missing_force(forces: Forces, tested: Sequence[Tested]) -> Mapping[str, Any]
         gains.append(best[1][2] - reached)
         solution, errors, reached = best[1]
     terms = [
-        {"kind": kind, "meaning": KINDS[kind], "depends_on": depends_on, "coefficient": float(c),
+        {"kind": name, "meaning": kinds[name].meaning, "depends_on": depends_on, "coefficient": float(c),
          "standard_error": float(e), "gain": float(g)}
-        for (kind, depends_on), c, e, g in zip(chosen, solution, errors, gains, strict=True)
+        for (name, depends_on), c, e, g in zip(chosen, solution, errors, gains, strict=True)
     ]  # fmt: skip
     return {"unit": "m s-2", "terms": terms, "curve": _curve(forces, terms)}
 
@@ -71,13 +73,16 @@ def _solve(forces: Forces, columns: Sequence[np.ndarray]) -> tuple[np.ndarray, n
 
 
 def _curve(forces: Forces, terms: Sequence[Mapping[str, Any]]) -> dict[str, list[float]]:
-    """Force over rotation at zero velocity, from the terms that depend on nothing else."""
-    peak = float(np.max(forces.peak))
-    rotation = np.linspace(-peak, peak, CURVE_POINTS)
-    shapes = {"contact": np.sign(rotation), "stiffness": rotation / peak, "lean": np.ones_like(rotation)}
-    factors = {"": 1.0, "side": np.sign(rotation), "size of the rotation": np.abs(rotation) / peak}
+    """Force over the leading coordinate at zero rate, from the terms that depend on nothing else."""
+    reach = forces.motion.reach
+    rotation = np.linspace(-reach, reach, CURVE_POINTS)
+    still = Motion(rotation, np.zeros_like(rotation), np.zeros_like(rotation), reach)
+    kinds = {kind.name: kind for kind in forces.kinds}
+    factors = {d.name: d.factor for d in forces.fitted.measured.identification.dependences}
     force = np.zeros_like(rotation)
     for term in terms:
-        if term["kind"] in shapes and term["depends_on"] in factors:
-            force += term["coefficient"] * shapes[term["kind"]] * factors[term["depends_on"]]
+        along, depends_on = kinds[term["kind"]].along, term["depends_on"]
+        if along is not None and (not depends_on or depends_on in factors):
+            factor = factors[depends_on](still) if depends_on else 1.0
+            force += term["coefficient"] * along(still) * factor
     return {"rotation": rotation.tolist(), "force": force.tolist()}

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import models
 from diagnosis.answer.result import Diagnosis
+from diagnosis.fit.unknowns import library
 from grids.specimen import Specimen
-
-BASES = {"second_body": "stacked", "compliant_base": "interface"}
-"""Effects that are another base model."""
 
 
 def extend(specimen: Specimen, diagnosis: Diagnosis) -> Specimen:
@@ -26,30 +25,20 @@ def extend(specimen: Specimen, diagnosis: Diagnosis) -> Specimen:
             mechanisms.setdefault(mechanism, {})[parameter] = value.estimate
         else:
             parameters[name] = value.estimate
-    model = specimen.model
+    known = library(models.get(specimen.model))
     for effect in diagnosis.effects:
-        if effect.name in BASES:
-            model = BASES[effect.name]
-            parameters |= {name: value.estimate for name, value in effect.parameters.items()}
-        else:
-            fitted = {name: value.estimate for name, value in effect.parameters.items()}
-            mechanisms[effect.name] = {**_off(effect.name, model), **mechanisms.get(effect.name, {}), **fitted}
+        fitted = {name: value.estimate for name, value in effect.parameters.items()}
+        off = {p.name: p.null for p in known[effect.name].parameters if not p.shape}
+        if not off.keys() & fitted.keys() and effect.name not in mechanisms:
+            fitted = off | fitted  # what acts through a shape alone (a high-pass) names the effect's own value too
+        mechanisms[effect.name] = mechanisms.get(effect.name, {}) | fitted
     unknown = {name: ends for name, ends in specimen.calibrate.items() if name not in diagnosis.base}
     return replace(
         specimen,
         title=f"{specimen.title}, extended" if diagnosis.effects else specimen.title,
-        model=model,
         parameters=parameters,
         calibrate=unknown,
         tolerance={name: value for name, value in specimen.tolerance.items() if name in parameters},
         mechanisms=mechanisms,
+        reference_peak=diagnosis.reference_peak or specimen.reference_peak,
     )
-
-
-def _off(name: str, model: str) -> dict[str, float]:
-    """The null of a mechanism's own parameters: what acts through a shape alone (a high-pass) names them too."""
-    import models
-    from grids.instruments import INSTRUMENTS
-
-    mechanism = {**models.get(model).mechanisms, **INSTRUMENTS}[name]
-    return {p.name: p.null for p in mechanism.parameters if not p.shape}

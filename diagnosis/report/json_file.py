@@ -59,6 +59,7 @@ def as_mapping(diagnosis: Diagnosis) -> dict[str, Any]:
             {"recording": name, "suspicion": what} for name, all_of in diagnosis.suspicions.items() for what in all_of
         ],
         "p_value": diagnosis.p_value,
+        "reference_peak": diagnosis.reference_peak,
         "fit": {
             "train": _fit(diagnosis.train),
             "holdout": None if diagnosis.holdout is None else _holdout(diagnosis.holdout),

@@ -10,11 +10,14 @@ import numpy as np
 
 import models
 from diagnosis.answer.heldout import HORIZON
+from diagnosis.answer.locate import words_of
 from diagnosis.answer.result import Diagnosis, Rival, Windows
+from diagnosis.data.measured import identification_of
+from diagnosis.fit.unknowns import library
 from diagnosis.report import words
-from diagnosis.report.suspects import Suspect, suspect_of
 from grids.recordings import CHANNELS, Recording, noise_levels
 from grids.specimen import Specimen
+from models.base import Mechanism
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -50,7 +53,10 @@ def report_page(
 ) -> str:
     """The page as text, with the pictures ``drawn``. What it says of the fit stands in ``diagnosis``."""
     model = models.get(specimen.model)
-    effects = [suspect_of(effect.name, diagnosis.provenance["model"]) for effect in diagnosis.effects]
+    known, declared = library(model), identification_of(model)
+    meanings = {name: channel.meaning for name, channel in CHANNELS.items()} | {
+        quantity.name: quantity.meaning for quantity in model.observables
+    }
     return (
         _environment()
         .get_template("report.html.j2")
@@ -60,10 +66,17 @@ def report_page(
             model=model,
             headline=headline(diagnosis),
             effects=[
-                (effect, entry, entry.says({name: value.estimate for name, value in effect.parameters.items()}))
-                for effect, entry in zip(diagnosis.effects, effects, strict=True)
+                (
+                    effect,
+                    known[effect.name],
+                    known[effect.name].says({n: v.estimate for n, v in effect.parameters.items()}),
+                )
+                for effect in diagnosis.effects
             ],
-            rivals=_rivals(diagnosis),
+            rivals=_rivals(diagnosis, known),
+            channels={name: meaning.partition(",")[0] for name, meaning in meanings.items()},
+            phases=words_of(declared),
+            forces={kind.name: kind.meaning for kind in declared.forces},
             recordings=[_read_row(r, held) for held, rs in ((False, train), (True, holdout)) for r in rs],
             horizons=_horizons(diagnosis),
             windows=_window_counts(diagnosis.windows),
@@ -86,9 +99,9 @@ def _environment() -> Environment:
         lstrip_blocks=True,
     )
     environment.filters |= {
-        "plain": words.plain, "channel": words.channel, "where": words.where, "number": words.number,
-        "percent": words.percent, "chance": words.chance, "unit": words.unit_text, "listed": words.listed,
-        "estimate": words.estimate_texts, "stated": words.stated, "force": words.force,
+        "plain": words.plain, "number": words.number, "percent": words.percent, "chance": words.chance,
+        "unit": words.unit_text, "listed": words.listed, "named": words.named, "estimate": words.estimate_texts,
+        "stated": words.stated,
     }  # fmt: skip
     return environment
 
@@ -111,13 +124,13 @@ def _read_row(recording: Recording, held_out: bool) -> dict[str, Any]:
     return {"recording": recording, "held_out": held_out, "channels": channels}
 
 
-def _rivals(diagnosis: Diagnosis) -> list[tuple[Rival, Suspect, str]]:
-    """Each rival with the library's entry and what it would mean, from its own refit where there is one."""
+def _rivals(diagnosis: Diagnosis, known: Mapping[str, Mechanism]) -> list[tuple[Rival, Mechanism, str]]:
+    """Each rival with its mechanism and what it would mean by its own refit; the equation without one."""
     refitted = {tried.name: tried.estimate or {} for tried in diagnosis.screen}
     found = []
     for rival in diagnosis.rivals:
-        entry = suspect_of(rival.name, diagnosis.provenance["model"])
-        found.append((rival, entry, entry.says(refitted.get(rival.name, {}))))
+        mechanism, estimate = known[rival.name], refitted.get(rival.name)
+        found.append((rival, mechanism, mechanism.says(estimate) if estimate else mechanism.equation))
     return found
 
 
@@ -145,8 +158,9 @@ def _horizon(seconds: float) -> str:
 def _parameters(diagnosis: Diagnosis, specimen: Specimen) -> list[Mapping[str, Any]]:
     """Effects first, then the base: estimate and interval as texts, what was stated, bounds hit."""
     rows: list[Mapping[str, Any]] = []
+    known = library(models.get(specimen.model))
     for effect in diagnosis.effects:
-        declared = suspect_of(effect.name, diagnosis.provenance["model"]).meanings
+        declared = {p.name: p.meaning for p in known[effect.name].addressable(specimen.model)}
         for name, value in effect.parameters.items():
             rows.append(
                 {

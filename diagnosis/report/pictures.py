@@ -6,7 +6,9 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
+import models
 from diagnosis.answer.result import Diagnosis
+from diagnosis.data.measured import identification_of
 from diagnosis.report.figures import (
     plot_before_after,
     plot_fits,
@@ -23,7 +25,7 @@ from grids.specimen import Specimen
 from study.store import write_text
 
 OURS = "<!-- drawn by rocking diagnose -->\n"
-"""Ends every figure written, so that one drawn earlier can be told from a user's own."""
+"""Ends every figure written, so that a figure drawn earlier is known from a user's own."""
 
 
 def drawings(diagnosis: Diagnosis, specimen: Specimen, recordings: Sequence[Recording]) -> dict[str, Draw]:
@@ -33,9 +35,9 @@ def drawings(diagnosis: Diagnosis, specimen: Specimen, recordings: Sequence[Reco
         found[f"read_{recording.name}"] = partial(plot_recording, recording)
     if diagnosis.windows:
         found["raster"] = partial(plot_raster, diagnosis.windows, diagnosis.located)
-    rotations = [t.channel for t in diagnosis.traces if t.channel.startswith("rotation_")]
-    if rotations:
-        found["phase_plane"] = partial(plot_phase_plane, diagnosis.traces, diagnosis.windows, channel=rotations[0])
+    lead = identification_of(models.get(specimen.model)).leads[0].channel
+    if any(trace.channel == lead for trace in diagnosis.traces):
+        found["phase_plane"] = partial(plot_phase_plane, diagnosis.traces, diagnosis.windows, channel=lead)
     if diagnosis.screen:
         named = {effect.name for effect in diagnosis.effects}
         found["suspects"] = partial(plot_suspects, diagnosis.screen, diagnosis.null_band, named=named)

@@ -3,26 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
-from diagnosis.answer.statement import WHERE
 from diagnosis.fit.intervals import Estimate
-from diagnosis.forces.columns import KINDS
 from diagnosis.search.null import LEAST_P
 
-CHANNEL_WORDS = {
-    "base_acceleration_x": "base acceleration, horizontal",
-    "base_acceleration_z": "base acceleration, vertical",
-    "base_displacement_x": "base displacement",
-    "rotation_1": "rotation of the block",
-    "rotation_2": "rotation of the upper body",
-    "rotation_rate_1": "angular velocity of the block",
-    "rotation_rate_2": "angular velocity of the upper body",
-    "displacement_1_x": "displacement of the block",
-    "displacement_2_x": "displacement of the upper body",
-    "level_acceleration_x": "acceleration of the levels",
-    "level_displacement_x": "displacement of the levels",
-}
 SMALL_UNITS = {"rad": ("mrad", 1e3), "s": ("ms", 1e3), "m": ("mm", 1e3)}
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 UNSURE = 0.05
@@ -33,21 +18,6 @@ GRAVITY = 9.80665
 def plain(name: str) -> str:
     """A name of the catalogue as words."""
     return name.replace("_", " ").replace(".", ": ")
-
-
-def channel(name: str) -> str:
-    """What a channel holds."""
-    return CHANNEL_WORDS.get(name, plain(name))
-
-
-def where(words: Iterable[str]) -> str:
-    """``("impact", "left")`` as words of a sentence."""
-    return listed([WHERE[word] for word in words])
-
-
-def force(kind: str) -> str:
-    """A kind of force that constancy is tested of."""
-    return KINDS.get(kind, plain(kind))
 
 
 def unit_text(unit: str) -> str:
@@ -127,3 +97,8 @@ def listed(words: Iterable[str], last: str = "and") -> str:
     """``a, b and c``."""
     *head, tail = [*words] or [""]
     return f"{', '.join(head)} {last} {tail}" if head else tail
+
+
+def named(keys: Iterable[str], names: Mapping[str, str]) -> list[str]:
+    """The name of each key."""
+    return [names[key] for key in keys]

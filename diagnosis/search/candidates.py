@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
 
 from diagnosis.data.measured import Measured
-from diagnosis.fit.unknowns import Unknown, of_parameter
-from grids.instruments import INSTRUMENTS
+from diagnosis.fit.unknowns import Unknown, library, of_parameter
 from grids.specimen import Specimen
-from models.base import FloatArray, Mechanism
+from models.base import FloatArray, Mechanism, MechanismParameter
 
 GRID = (0.03, 0.1, 0.3, 0.6, 0.95)
 """Shares of the way from the null to a bound."""
 FINE_GRID = tuple(np.geomspace(0.01, 0.95, 32).tolist())
 """The same where the effect sets in at a threshold somewhere on the way."""
 SHAPE_GRID = 3
-REFERENCE = "reference_peak"
 ORDERS = (1.0, 2.0, 4.0)
 
 
@@ -74,16 +72,23 @@ def _spread(unknown: Unknown) -> FloatArray:
 
 
 def candidates(measured: Measured, specimen: Specimen) -> tuple[Candidate, ...]:
-    """Every mechanism that can act on the model or its sensors and is not switched on already."""
-    known = {**measured.model.mechanisms, **INSTRUMENTS}
+    """Every mechanism that can act on the model or its instruments and is not switched on already.
+
+    Where a mechanism acts at two joints, each of them alone is a variant.
+    """
     found: list[Candidate] = []
-    for name, mechanism in known.items():
+    for name, mechanism in library(measured.model).items():
         if name in specimen.mechanisms or not _usable(name, measured):
             continue
         if name == "filter":
             found += _filters(mechanism)
-        else:
-            found.append(_generic(mechanism, measured))
+            continue
+        plain = mechanism.parameters
+        of_joints = mechanism.addressable(measured.model.name)[len(plain) :]
+        for parameters in (plain, of_joints[0::2], of_joints[1::2]):
+            if parameters:
+                unknowns = tuple(_unknown(mechanism, p, measured) for p in parameters)
+                found.append(Candidate(mechanism, unknowns, {}))
     return tuple(found)
 
 
@@ -93,19 +98,14 @@ def _usable(name: str, measured: Measured) -> bool:
     return all(s.vertical is not None and not s.vertical_acts for s in measured.shakings)
 
 
-def _generic(mechanism: Mechanism, measured: Measured) -> Candidate:
-    unknowns = []
-    for parameter in mechanism.parameters:
-        if parameter.name == REFERENCE:
-            continue
-        unknown = of_parameter(mechanism, parameter)
-        if parameter.shape and parameter.unit == "rad":
-            high = min(unknown.high, 0.9 * measured.reference_peak)
-            unknown = replace(unknown, high=high, scale=high / 20.0)
-        elif parameter.shape and unknown.low > 0.0 and unknown.high / unknown.low > 3.0:
-            unknown = replace(unknown, kind="log", scale=0.1)
-        unknowns.append(unknown)
-    return Candidate(mechanism, tuple(unknowns), {})
+def _unknown(mechanism: Mechanism, parameter: MechanismParameter, measured: Measured) -> Unknown:
+    unknown = of_parameter(mechanism, parameter)
+    if parameter.shape and parameter.unit == "rad":
+        high = min(unknown.high, 0.9 * measured.reference_peak)
+        return replace(unknown, high=high, scale=high / 20.0)
+    if parameter.shape and unknown.low > 0.0 and unknown.high / unknown.low > 3.0:
+        return replace(unknown, kind="log", scale=0.1)
+    return unknown
 
 
 def _filters(mechanism: Mechanism) -> list[Candidate]:
@@ -115,7 +115,3 @@ def _filters(mechanism: Mechanism) -> list[Candidate]:
         unknown = of_parameter(mechanism, mechanism.parameter(parameter))
         found += [Candidate(mechanism, (unknown,), {f"{mechanism.name}.order": order}) for order in orders]
     return found
-
-
-def of_name(found: Sequence[Candidate], name: str) -> tuple[Candidate, ...]:
-    return tuple(c for c in found if c.name == name)

@@ -22,7 +22,7 @@ from models.base import FloatArray
 DRAWS = 20_000
 TAIL = 0.01
 LEAST_P = 1e-6
-"""Least p-value told; it stands for "at most this": nobody has tested a null distribution further out."""
+"""Least p-value stated; it stands for "at most this": nobody has tested a null distribution further out."""
 
 
 @dataclass(frozen=True)

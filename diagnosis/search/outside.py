@@ -33,4 +33,4 @@ def outside(single: Explanation, seconds: Sequence[Score]) -> Constancy | None:
     library = max((s.statistic for s in seconds), default=0.0)
     if largest < FACTOR * library + MARGIN:
         return None
-    return flag(test, largest - library)
+    return flag(single.measured.identification, test, largest - library)

@@ -114,7 +114,7 @@ def reshaped(explanation: Explanation) -> Explanation:
 
 
 def with_memory(explanation: Explanation) -> Explanation:
-    """The same model refitted with the impacts before each window counted along its own motion, if that is better.
+    """The same model refitted with the events before each window counted along its own motion, if that is better.
 
     Counts and parameters depend on each other: repeated until the loss stays.
     """

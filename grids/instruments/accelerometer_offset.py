@@ -20,5 +20,6 @@ MECHANISM = Mechanism(
     signature="differs left and right, between impacts; the first uplift",
     sentence="the accelerometer of the base reads {offset:+.3f} m/s2 too much (below zero: too little)",
     acts={"base": move},
+    static_test="read the accelerometer of the base at rest",
     source="readings at rest settle it",
 )

@@ -11,42 +11,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
-from models.base import FloatArray, Values
-from models.shaking import Shaking
+from models.base import FloatArray, MechanismParameter
 
 Channels = Mapping[str, FloatArray]
 """Response channels ``(..., samples)`` by standard name."""
+
+
+Switched = Mapping[str, Mapping[str, float]]
+"""Parameter values by mechanism, as in `Specimen.mechanisms`; other mechanisms are passed over."""
 
 
 @dataclass(frozen=True)
 class Surroundings:
     """What an instrument may need beside its own signal.
 
-    ``base_acceleration`` (..., samples): the measured horizontal one, at the samples of the channels.
+    ``base_acceleration`` (..., samples): the measured horizontal one, at the samples of the channels, in m s-2.
+    ``reference_peak``: the rotation (rad) over which levels are given; None: the largest of the run itself.
     """
 
     time_step: float
     base_acceleration: FloatArray
+    reference_peak: float | None = None
+
+    def peak(self, channels: Channels) -> float:
+        """The rotation (rad) over which levels are given; without one, the largest of the first rotation channel."""
+        if self.reference_peak is not None:
+            return self.reference_peak
+        return next((float(abs(x).max()) for name, x in channels.items() if is_rotation(name)), 0.0)
 
 
-BaseAct = Callable[[Shaking, Values], Shaking]
-ClockAct = Callable[[Values], tuple[float, float]]
-ResponseAct = Callable[[Channels, Values, Surroundings], Channels]
-
-REFERENCE_MEANING = "rotation that the level refers to; 0: the largest of the run itself"
+class Level(MechanismParameter):
+    """A parameter given over the reference peak of the recordings (`Surroundings.reference_peak`)."""
 
 
 def is_rotation(channel: str) -> bool:
     """Whether a channel is a rotation (not its rate)."""
     return channel.startswith("rotation_") and "rate" not in channel
-
-
-def reference_peak(channels: Channels, values: Values) -> float:
-    """The rotation (rad) that a level or offset is given over."""
-    given = float(values["reference_peak"])
-    if given > 0.0:
-        return given
-    return float(abs(channels["rotation_1"]).max())

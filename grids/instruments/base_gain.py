@@ -22,5 +22,6 @@ MECHANISM = Mechanism(
     signature="between impacts, with the base acceleration; the first uplift",
     sentence="the base moves {gain:+.1%} more than its accelerometer says (below zero: less)",
     acts={"base": move},
+    static_test="calibrate the accelerometer of the base",
     source="calibration of the accelerometer settles it",
 )

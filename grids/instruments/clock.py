@@ -19,5 +19,6 @@ MECHANISM = Mechanism(
     signature="a lag that grows with time",
     sentence="the clock of the response channels differs from that of the base by {rate:+.2%}",
     acts={"clock": clock},
+    static_test="put one signal on a response and a base channel and compare the times at start and end",
     source="loggers without a common trigger clock",
 )

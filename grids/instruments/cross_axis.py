@@ -24,5 +24,6 @@ MECHANISM = Mechanism(
     signature="follows the base acceleration, at rest too",
     sentence="the rotation sensors read {rotation_per_acceleration:.2g} rad for each m/s2 of the base's acceleration",
     acts={"response": respond},
+    static_test="shake the table with the block tied down and read the rotation sensors",
     source="inclinometers and tilted accelerometers do this",
 )  # fmt: skip

@@ -17,5 +17,6 @@ MECHANISM = Mechanism(
     signature="with the angular velocity, everywhere",
     sentence="the response channels lag the base by {delay:.4f} s",
     acts={"clock": clock},
+    static_test="put one signal on a response and a base channel and compare the times",
     source="channels of different loggers or filters",
 )

@@ -118,5 +118,6 @@ MECHANISM = Mechanism(
         "{high_pass_hz:.3g} Hz"
     },
     acts={"response": respond, "lag": delay, "windowed": respond_in_windows},
+    static_test="look up the filter settings of the logger",
     source="anti-alias and display filters of loggers",
 )  # fmt: skip

@@ -19,5 +19,6 @@ MECHANISM = Mechanism(
     signature="in proportion to the rotation, everywhere",
     sentence="the rotation sensors read {gain:+.1%} of the true rotation too much (below zero: too little)",
     acts={"response": respond},
+    static_test="calibrate the rotation sensors statically",
     source="calibration of displacement transducers; static calibration settles it",
 )

@@ -40,6 +40,8 @@ CHANNELS: Mapping[str, Channel] = {
     "level_displacement_x": Channel("m", "horizontal displacement of a level", by_level=True),
 }
 REQUIRED = "base_acceleration_x"
+SHARE = "1"
+"""Unit of a share of contact, which a simulation writes and no instrument measures."""
 
 
 @dataclass(frozen=True, eq=False)

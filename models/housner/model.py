@@ -10,6 +10,7 @@ from models.base import FloatArray, Values
 from models.errors import InputError
 from models.housner import declaration
 from models.housner.block import Block, assemble
+from models.housner.identification import IDENTIFICATION
 from models.model import Model
 from models.runs import Request, Run
 
@@ -32,6 +33,7 @@ class Housner(Model[Block]):
     derived = declaration.DERIVED
     observables = declaration.OBSERVABLES
     states = declaration.STATES
+    identification = IDENTIFICATION
     integrators = ("lanes", "reference", "newmark")
 
     def assemble(self, values: Values, options: Mapping[str, str], *, vertical: bool, size: int) -> Block:

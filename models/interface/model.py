@@ -13,8 +13,10 @@ from numpy.typing import NDArray
 from models import choices
 from models.base import Event, FloatArray, History, Mechanism, Parameter, Quantity, Values
 from models.errors import InputError
+from models.identification import Identification
 from models.interface import declaration, modes
 from models.interface.assembly import build
+from models.interface.identification import IDENTIFICATION
 from models.interface.layered import LayeredWall
 from models.mechanisms import acting_on
 from models.shaking import Shaking
@@ -39,7 +41,7 @@ class Interface:
     observables: tuple[Quantity, ...] = declaration.OBSERVABLES
     states: tuple[str, ...] = declaration.STATES
     integrators: tuple[str, ...] = ("lanes", "reference")
-    chaotic: bool = True
+    identification: Identification | None = IDENTIFICATION
     takes_vertical: bool = True
     vertical_by_default: bool = True
 

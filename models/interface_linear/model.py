@@ -6,10 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from models.base import Quantity
+from models.identification import Identification
 from models.interface import modes
 from models.interface.layered import LayeredWall
 from models.interface.model import Interface
 from models.interface_linear import declaration, equation
+from models.interface_linear.identification import IDENTIFICATION
 
 
 @dataclass(frozen=True)
@@ -26,6 +28,7 @@ class InterfaceLinear(Interface):
     title: str = "the paper's linear wall and block on rubber layers (Eq. 6, corrected)"
     version: str = "2"
     outputs: tuple[Quantity, ...] = declaration.OUTPUTS
+    identification: Identification | None = IDENTIFICATION
 
     @property
     def options(self) -> Mapping[str, tuple[str, ...]]:

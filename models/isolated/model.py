@@ -12,9 +12,11 @@ from numpy.typing import NDArray
 from models import choices
 from models.base import Event, FloatArray, History, Mechanism, Parameter, Quantity, Values
 from models.errors import InputError
+from models.identification import Identification
 from models.isolated import declaration, modes
 from models.isolated.assembly import build, complaints
 from models.isolated.chain import Chain
+from models.isolated.identification import IDENTIFICATION
 from models.isolated.observe import observe
 from models.mechanisms import acting_on
 from models.shaking import Shaking
@@ -39,7 +41,7 @@ class Isolated:
     observables: tuple[Quantity, ...] = declaration.OBSERVABLES
     states: tuple[str, ...] = declaration.STATES
     integrators: tuple[str, ...] = ("lanes", "reference")
-    chaotic: bool = False
+    identification: Identification | None = IDENTIFICATION
     takes_vertical: bool = False
     vertical_by_default: bool = False
 

@@ -24,5 +24,6 @@ MECHANISM = Mechanism(
     signature="at large rotations, between impacts",
     sentence="a spring of {over_m_g_R:+.3f} M g R per radian acts beyond {gap:.4f} rad",
     acts={"housner": on_housner},
+    static_test="push the block over slowly and read force over rotation",
     source="Makris, Vassiliou (Earthquake Engng Struct. Dyn. 44, 2015), vertically restrained blocks",
 )

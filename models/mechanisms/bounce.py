@@ -23,5 +23,6 @@ MECHANISM = Mechanism(
     signature="only at impacts; constant theta' for a while after them",
     sentence="the landing corner bounces with {contact_restitution:.3f} of its vertical velocity",
     acts={"housner": on_housner},
+    static_test="film an impact, or add a vertical accelerometer at a corner",
     source="rigid-body impact without slip; landings: models/housner/flight.py",
 )

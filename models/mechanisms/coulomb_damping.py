@@ -18,5 +18,6 @@ MECHANISM = Mechanism(
     signature="between impacts, with the sign of theta'",
     sentence="dry friction of {over_m_g_b:.4f} M g b acts against the rotation",
     acts={"housner": on_housner},
+    static_test="let the block rock freely and follow the last small swings",
     source="Coulomb's law on a couple",
 )

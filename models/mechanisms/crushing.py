@@ -24,5 +24,6 @@ MECHANISM = Mechanism(
     sentence="the corners crush: the pivots have moved inwards by {inset_per_rotation:.2f} of the half width per "
     "radian of the largest rotation",
     acts={"housner": on_housner},
+    static_test="inspect the corners and push the block over slowly before and after a run",
     source="form of this project; the inset stays under .35 of the half width",
 )  # fmt: skip

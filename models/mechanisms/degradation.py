@@ -26,6 +26,7 @@ OF_RUBBER = Mechanism(
     signature="grows with time and record",
     sentence="the rubber loses {final_loss:.1%} of its stiffness, over {cycles:.0f} cycles",
     acts={"isolated": on_isolated},
+    static_test="repeat a run and compare",
     source="form of this project: models/isolated/bearing.py",
 )
 
@@ -41,5 +42,6 @@ MECHANISM = Mechanism(
     signature="grows with time and record, at impacts",
     sentence="each impact takes {loss_of_restitution_per_impact:.2%} of the restitution, down to {floor:.2f} of it",
     acts={"housner": on_housner},
+    static_test="repeat a run and compare",
     source="form of this project",
 )

@@ -21,5 +21,6 @@ MECHANISM = Mechanism(
     signature="at the first uplift and at small rotations",
     sentence="the joint is flexible: the restoring moment builds up over {angle:.2e} rad",
     acts={"housner": on_housner},
+    static_test="push the block slowly and read the rotation before it lifts",
     source="form of this project, after the smooth moment-rotation curves of masonry joints",
 )

@@ -41,5 +41,6 @@ MECHANISM = Mechanism(
     sentence="the block rocks on points {inset_over_half_width:.1%} of the half width inside its corners",
     acts={"housner": on_housner, "stacked": on_stacked, "interface": on_interface, "interface_linear": on_interface},
     at_joints=("stacked",),
+    static_test="push the block over slowly and read the force at which it lifts",
     source="Mordant, Denoel, Degee (COMPDYN 2015), section 2.1",
 )

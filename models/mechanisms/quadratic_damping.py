@@ -18,5 +18,6 @@ MECHANISM = Mechanism(
     signature="between impacts, with theta' |theta'|",
     sentence="drag grows with the square of the angular velocity, coefficient {coefficient:.3f}",
     acts={"housner": on_housner},
+    static_test="let the block rock freely from several held rotations",
     source="turbulent drag on a turning body",
 )

@@ -31,5 +31,6 @@ MECHANISM = Mechanism(
     sentence="each impact keeps {factor_on_housner:.3f} times the angular velocity that angular momentum predicts",
     acts={"housner": on_housner, "stacked": on_stacked},
     at_joints=("stacked",),
+    static_test="let the block rock freely from a held rotation",
     source="ElGawady et al. (Earthquake Engng Struct. Dyn. 40, 2011): .95 on concrete, .67 on rubber",
 )

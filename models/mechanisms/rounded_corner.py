@@ -22,5 +22,6 @@ MECHANISM = Mechanism(
     signature="grows with |theta|; the onset comes earlier",
     sentence="the corners are rounded to {radius_over_half_width:.1%} of the half width and roll",
     acts={"housner": on_housner},
+    static_test="push the block over slowly and read force over rotation",
     source="Lagrange's equation of a body rolling on arcs: models/housner/equation.py",
 )

@@ -24,5 +24,6 @@ MECHANISM = Mechanism(
     signature="only where the friction demand |H|/N exceeds mu",
     sentence="the block slides on its base at a friction coefficient of {friction:.3f}",
     acts={"housner": on_housner},
+    static_test="mark the base before a run and look for a shift after it",
     source="Shenton (J. Eng. Mech. 122, 1996); law at impacts: models/housner/slip.py",
 )

@@ -26,5 +26,6 @@ MECHANISM = Mechanism(
     signature="everywhere, coherent with the base acceleration and its second derivative",
     sentence="the table pitches by {pitch_per_acceleration:+.2e} rad per m/s2 below {low_pass_hz:.0f} Hz",
     acts={"housner": on_housner},
+    static_test="measure the pitch of the table with the block on it",
     source="rigid-body dynamics in the turning frame: models/housner/pitch.py",
 )  # fmt: skip

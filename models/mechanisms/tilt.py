@@ -27,5 +27,6 @@ MECHANISM = Mechanism(
     signature="differs left and right; onset at unequal accelerations",
     sentence="the base leans by {tilt:+.4f} rad (clockwise positive)",
     acts={"housner": on_housner, "stacked": on_stacked},
+    static_test="put a level on the base",
     source="statics of a plane that leans",
 )

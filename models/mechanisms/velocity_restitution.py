@@ -18,5 +18,6 @@ MECHANISM = Mechanism(
     signature="only at impacts, more at fast ones",
     sentence="impacts lose more the faster they are: e falls by {beta:.3f} of itself at |theta'| = p alpha",
     acts={"housner": on_housner},
+    static_test="let the block rock freely from several held rotations",
     source="form of this project, linear in the dimensionless velocity",
 )

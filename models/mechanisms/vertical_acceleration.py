@@ -40,5 +40,6 @@ MECHANISM = Mechanism(
     signature="between impacts at constant sign of theta, coherent with the vertical acceleration",
     sentence="{kappa:.2f} times the measured vertical acceleration acts on the block",
     acts={"housner": on_housner, "interface": on_interface, "interface_linear": on_interface},
+    static_test="repeat a run without vertical shaking",
     source="Yim, Chopra, Penzien (Earthquake Engng Struct. Dyn. 8, 1980)",
 )

@@ -23,5 +23,6 @@ MECHANISM = Mechanism(
     signature="between impacts, with theta'",
     sentence="a dashpot takes {rate:.3f} of the angular velocity per second",
     acts={"housner": on_housner, "stacked": on_stacked},
+    static_test="let the block rock freely from several held rotations",
     source="linear viscous couple",
 )

@@ -25,5 +25,6 @@ MECHANISM = Mechanism(
     signature="above 10 Hz after impacts; a softer, earlier first uplift",
     sentence="the wall bends with a first frequency of {first_frequency:.1f} Hz and rings after impacts",
     acts={"housner": on_housner},
+    static_test="tap the standing wall and read its first frequency",
     source="Acikgoz, DeJong (Earthquake Engng Struct. Dyn. 41, 2012) for the interplay; shape of a uniform cantilever",
 )  # fmt: skip

@@ -10,6 +10,7 @@ from models.base import FloatArray, Values
 from models.model import Model
 from models.runs import Request, Run
 from models.stacked import account, declaration
+from models.stacked.identification import IDENTIFICATION
 from models.stacked.observe import initial_state, observe, settled_history
 from models.stacked.stack import Stack, assemble
 
@@ -34,6 +35,7 @@ class Stacked(Model[Stack]):
     derived = declaration.DERIVED
     observables = declaration.OBSERVABLES
     states = declaration.STATES
+    identification = IDENTIFICATION
 
     def assemble(self, values: Values, options: Mapping[str, str], *, vertical: bool, size: int) -> Stack:
         return assemble(values, vertical, size)

@@ -95,8 +95,8 @@ def test_share_is_exact_and_honest_at_the_ends() -> None:
 def test_over_peak_is_compared_in_radians() -> None:
     effect = {"name": "offset", "class": "offset", "parameters": {"offset_over_peak": 0.1}}
     hidden = {**key("single"), "effects": [effect]}
-    own = {"offset_over_peak": estimate(0.04, 0.06), "reference_peak": {"estimate": 0.04}}
-    answered = {"effects": [{"name": "offset", "parameters": own}]}
+    own = {"offset_over_peak": estimate(0.04, 0.06)}
+    answered = {"effects": [{"name": "offset", "parameters": own}], "reference_peak": 0.04}
     assert covered(Scored("1", answered, hidden)) == [True]
     assert base_covered(Scored("1", {"base": {"width": estimate(0.27, 0.3)}}, hidden)) == [False]
 

@@ -10,11 +10,14 @@ from scipy.signal import butter, sosfiltfilt
 
 import models
 from grids.instruments import moved, recorded
+from grids.instruments.base import Surroundings
 from grids.recordings.base import Recording
 from grids.specimen import Specimen
 from models.shaking import Shaking
 
 TIME_STEP = 0.005
+PEAK = 0.1
+"""rad, over which levels of instruments are given."""
 TRUE = {"width": 0.2505, "height": 1.795, "mass": 540.0}
 SPECIMEN = Specimen(
     title="test block",
@@ -47,7 +50,8 @@ def _made(
         {**TRUE, **of_wall}, moved(measured, mechanisms), duration=measured.duration, integrator="reference"
     )
     true = {"rotation_1": np.ravel(ran.channels["rotation_1"])}
-    seen = recorded(true, mechanisms, TIME_STEP, measured.horizontal)["rotation_1"]
+    around = Surroundings(TIME_STEP, measured.horizontal, PEAK)
+    seen = recorded(true, mechanisms, around)["rotation_1"]
     rng = np.random.default_rng(seed + 1000)
     peak = float(np.max(np.abs(seen)))
     channels = {

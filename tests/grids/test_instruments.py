@@ -2,24 +2,27 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from diagnosis.fit.prediction import read_at
 from grids.instruments import INSTRUMENTS, moved, recorded
 from grids.instruments.base import Surroundings
+from grids.instruments.windowed import read_at
 from models.shaking import Shaking
 
 STEP = 0.002
 TIME = np.arange(2001) * STEP
 TRUE = {"rotation_1": 0.02 * np.sin(2 * np.pi * 1.3 * TIME), "rotation_rate_1": np.cos(2 * np.pi * 1.3 * TIME)}
 BASE = np.cos(2 * np.pi * 2.1 * TIME)
+AROUND = Surroundings(STEP, BASE)
 
 
 @pytest.mark.parametrize("name", INSTRUMENTS)
 def test_null_changes_nothing(name: str) -> None:
     switched = {name: INSTRUMENTS[name].nulls}
-    found = recorded(TRUE, switched, STEP, BASE)
+    found = recorded(TRUE, switched, AROUND)
     for channel, values in TRUE.items():
         np.testing.assert_allclose(found[channel], values, rtol=0, atol=1e-16)
     shaking = Shaking(STEP, BASE)
@@ -37,21 +40,21 @@ def test_declares_what_a_fit_needs(name: str) -> None:
 
 
 def test_gain_leaves_rates_alone() -> None:
-    found = recorded(TRUE, {"gain": {"gain": 0.1}}, STEP, BASE)
+    found = recorded(TRUE, {"gain": {"gain": 0.1}}, AROUND)
     np.testing.assert_allclose(found["rotation_1"], 1.1 * TRUE["rotation_1"])
     np.testing.assert_array_equal(found["rotation_rate_1"], TRUE["rotation_rate_1"])
 
 
 def test_levels_are_over_the_given_peak() -> None:
-    found = recorded(TRUE, {"saturation": {"level_over_peak": 0.5, "reference_peak": 0.01}}, STEP, BASE)
+    found = recorded(TRUE, {"saturation": {"level_over_peak": 0.5}}, replace(AROUND, reference_peak=0.01))
     assert np.max(np.abs(found["rotation_1"])) == pytest.approx(0.005)
-    found = recorded(TRUE, {"offset": {"offset_over_peak": 0.1}}, STEP, BASE)
+    found = recorded(TRUE, {"offset": {"offset_over_peak": 0.1}}, AROUND)
     shift = 0.1 * np.max(np.abs(TRUE["rotation_1"]))
     np.testing.assert_allclose(found["rotation_1"] - TRUE["rotation_1"], shift)
 
 
 def test_cross_axis_adds_the_measured_base() -> None:
-    found = recorded(TRUE, {"cross_axis": {"rotation_per_acceleration": 0.004}}, STEP, BASE)
+    found = recorded(TRUE, {"cross_axis": {"rotation_per_acceleration": 0.004}}, AROUND)
     np.testing.assert_allclose(found["rotation_1"] - TRUE["rotation_1"], 0.004 * BASE, atol=1e-15)
 
 
@@ -62,7 +65,7 @@ def test_base_sensors_tell_what_the_base_did() -> None:
 
 
 def test_delay_and_clock_shift_time() -> None:
-    found = recorded(TRUE, {"delay": {"delay": 0.01}, "clock": {"rate": 0.02}}, STEP, BASE)
+    found = recorded(TRUE, {"delay": {"delay": 0.01}, "clock": {"rate": 0.02}}, AROUND)
     inside = (1.02 * TIME - 0.01 > 0) & (TIME[-1] > 1.02 * TIME - 0.01)
     wanted = 0.02 * np.sin(2 * np.pi * 1.3 * (1.02 * TIME - 0.01))
     np.testing.assert_allclose(found["rotation_1"][inside], wanted[inside], atol=2e-6)
@@ -81,10 +84,12 @@ def test_a_late_response_is_an_early_base() -> None:
 @pytest.mark.parametrize("corner", [3.0, 12.0])
 def test_filter_is_butterworth(order: int, corner: float) -> None:
     switched = {"filter": {"corner_hz": corner, "order": float(order)}}
-    constant = recorded({"rotation_1": np.full(500, 0.3)}, switched, STEP, BASE[:500])["rotation_1"]
+    constant = recorded({"rotation_1": np.full(500, 0.3)}, switched, replace(AROUND, base_acceleration=BASE[:500]))[
+        "rotation_1"
+    ]
     np.testing.assert_allclose(constant, 0.3, rtol=1e-9)
     wave = np.sin(2 * np.pi * corner * np.arange(6000) * STEP)
-    out = recorded({"rotation_1": wave}, switched, STEP, np.zeros(6000))["rotation_1"][3000:]
+    out = recorded({"rotation_1": wave}, switched, Surroundings(STEP, np.zeros(6000)))["rotation_1"][3000:]
     assert np.sqrt(2 * np.mean(out**2)) == pytest.approx(np.sqrt(0.5), rel=5e-3)
 
 

@@ -40,7 +40,7 @@ def plot_phase_plane(
     traces: Sequence[Trace],
     windows: Sequence[Windows],
     *,
-    channel: str = "rotation_1",
+    channel: str,
     width: float = WIDE,
     palette: Palette = PAPER,
 ) -> tuple[Axes, Axes]:

@@ -1,4 +1,4 @@
-"""Where a mismatch is told to live: what stands out is found, what does not is not."""
+"""Where the base model misses: what stands out is found, what does not is not."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ import pytest
 
 from diagnosis.answer.locate import LEVEL, intervals, locate, phases
 from diagnosis.forces import constancy
+from models.housner.identification import IDENTIFICATION
 
 WINDOWS, SAMPLES = 14, 60
-PLAIN = [constancy.Tested("couple", "", 400.0)]
+PLAIN = [constancy.Tested("viscous_damping", "", 400.0)]
 
 
 def shown(where: tuple[int, ...], explained: bool) -> Any:
@@ -21,6 +22,7 @@ def shown(where: tuple[int, ...], explained: bool) -> Any:
     missing = np.zeros(shape)
     missing[list(where)] = 2.0 * np.sin(np.linspace(0.0, 6.0, SAMPLES))
     measured = SimpleNamespace(
+        identification=IDENTIFICATION,
         recordings=tuple(SimpleNamespace(name=f"run_{r}", time_step=0.01) for r in range(2)),
         channels=("rotation_1",),
         windows=tuple(
@@ -54,8 +56,8 @@ def test_all_scans_together_are_wrong_at_most_as_often_as_said() -> None:
 
 
 def test_a_dependence_within_chance_is_no_phase() -> None:
-    weak = [constancy.Tested("couple", "", 20.0), constancy.Tested("couple", "side", 8.0, 1.0)]
-    assert phases(weak) == ("between_impacts",)
-    strong = [constancy.Tested("couple", "", 60.0), constancy.Tested("couple", "side", 30.0, 1.0)]
-    assert phases(strong) == ("between_impacts", "right")
-    assert phases([constancy.Tested("restitution", "", 60.0)]) == ("impact",)
+    weak = [constancy.Tested("viscous_damping", "", 20.0), constancy.Tested("viscous_damping", "side", 8.0, 1.0)]
+    assert phases(IDENTIFICATION, weak) == ("between_impacts",)
+    strong = [constancy.Tested("viscous_damping", "", 60.0), constancy.Tested("viscous_damping", "side", 30.0, 1.0)]
+    assert phases(IDENTIFICATION, strong) == ("between_impacts", "right")
+    assert phases(IDENTIFICATION, [constancy.Tested("restitution", "", 60.0)]) == ("impact",)

@@ -9,12 +9,11 @@ import pytest
 
 import models
 from diagnosis.answer.result import Diagnosis, Effect, Fit, Undecided, Verdict
-from diagnosis.answer.statement import effect_told, statement
+from diagnosis.answer.statement import effect_text, statement
 from diagnosis.fit.intervals import Estimate
 from diagnosis.forces.constancy import Constancy
 from diagnosis.report import diagnosis_json
 from diagnosis.report.page import headline
-from diagnosis.report.suspects import suspect_of
 from diagnosis.search.null import LEAST_P
 from grids.instruments import INSTRUMENTS
 from tests.diagnosis.report.example import diagnosis
@@ -28,14 +27,14 @@ LOW = Effect("filter", "filter", {"corner_hz": Estimate(12.0, 10.0, 15.0, "Hz"),
     ("effect", "said", "unsaid"),
     [(HIGH, "high-pass of order 1 at 3.6 Hz", "low-pass"), (LOW, "low-pass of order 1 at 12 Hz", "high-pass")],
 )
-def test_a_filter_is_told_by_what_it_lets_through(effect: Effect, said: str, unsaid: str) -> None:
+def test_a_filter_is_named_by_what_it_lets_through(effect: Effect, said: str, unsaid: str) -> None:
     values = {name: value.estimate for name, value in effect.parameters.items()}
-    for text in (effect_told(effect, INSTRUMENTS["filter"]), suspect_of("filter", "housner").says(values)):
+    for text in (effect_text(effect, INSTRUMENTS["filter"]), INSTRUMENTS["filter"].says(values)):
         assert said in text and unsaid not in text and "inf" not in text
 
 
 def said(verdict: Verdict = "missing", **changes: object) -> str:
-    return statement(answer(verdict, **changes), {**models.get("housner").mechanisms, **INSTRUMENTS})
+    return statement(answer(verdict, **changes), models.get("housner"))
 
 
 def answer(verdict: Verdict = "missing", **changes: object) -> Diagnosis:
@@ -106,7 +105,7 @@ def test_a_held_out_recording_without_noise_is_not_measured_by_it() -> None:
     assert "(94% of what the noise allows)" in said(holdout=fit)
     assert "hardly bear" not in said(holdout=fit)
     poor = replace(fit, share_of_achievable=0.2)
-    assert "so they hardly bear the explanation out" in said(holdout=poor)
+    assert "so they hardly confirm the explanation" in said(holdout=poor)
     text = said(holdout=replace(fit, noise_free=True))
     assert "noise allows" not in text and "94% of it" in text and "no noise of their own" in text
 

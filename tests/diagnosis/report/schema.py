@@ -90,6 +90,7 @@ class AnswerFile(Part):
     undecided: UndecidedPart | None
     suspicions: list[SuspicionPart]
     p_value: float | None = Field(ge=1e-6, le=1.0)
+    reference_peak: float | None
     fit: FitPart
     statement: str = Field(min_length=1)
     next_experiment: dict[str, Any] | None

@@ -47,4 +47,3 @@ def test_units_and_chances() -> None:
 
 def test_lists() -> None:
     assert [words.listed(x) for x in ([], ["a"], ["a", "b"], ["a", "b", "c"])] == ["", "a", "a and b", "a, b and c"]
-    assert words.where(("impact", "left")) == "at impacts and while rocking to the left"

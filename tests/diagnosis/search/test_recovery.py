@@ -11,11 +11,12 @@ import models
 from diagnosis.fit.intervals import covariances
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.setup import base_fit, measure
-from diagnosis.search.candidates import candidates, of_name
+from diagnosis.search.candidates import candidates
 from diagnosis.search.refit import Explanation, again, best_of, extend, with_memory
 from diagnosis.search.screen import score
 from grids.instruments import INSTRUMENTS
-from tests.diagnosis.made import SPECIMEN, recording
+from grids.instruments.base import Level
+from tests.diagnosis.made import PEAK, SPECIMEN, recording
 
 EFFECTS: dict[str, dict[str, float]] = {
     "sliding": {"friction": 0.142},
@@ -36,12 +37,12 @@ EFFECTS: dict[str, dict[str, float]] = {
     "wall_flexibility": {"first_frequency": 10.0},
     "accelerometer_offset": {"offset": 0.06},
     "gain": {"gain": 0.04},
-    "offset": {"offset_over_peak": 0.03, "reference_peak": 0.1},
+    "offset": {"offset_over_peak": 0.03},
     "delay": {"delay": 0.006},
     "clock": {"rate": 0.002},
     "filter": {"corner_hz": 8.0, "order": 2.0},
     "base_gain": {"gain": 0.04},
-    "saturation": {"level_over_peak": 0.75, "reference_peak": 0.1},
+    "saturation": {"level_over_peak": 0.75},
     "cross_axis": {"rotation_per_acceleration": 0.0006},
 }
 """One value of each, some times what the recordings can tell."""
@@ -66,7 +67,7 @@ def test_every_mechanism_of_the_block_and_its_sensors_is_here() -> None:
 @pytest.mark.parametrize("name", EFFECTS)
 def test_a_simulated_effect_is_seen_and_recovered(name: str) -> None:
     before = base(name)
-    own = of_name(candidates(before.measured, SPECIMEN), name)
+    own = [c for c in candidates(before.measured, SPECIMEN) if c.name == name]
     seen = [s for s in score(linearise_about(before.fitted), own) if s.starts]
     assert max(s.statistic for s in seen) > 15.0
     after = with_memory(best_of([again(extend(before, s.candidate, start)) for s in seen for start in s.starts]))
@@ -81,7 +82,6 @@ def test_a_simulated_effect_is_seen_and_recovered(name: str) -> None:
 
 def _truth(name: str, before: Explanation) -> float:
     """The effect's parameter; a level over the peak is fitted over the one that was seen."""
-    value, *shapes = EFFECTS[name].values()
-    if "reference_peak" in EFFECTS[name]:
-        return value * shapes[0] / before.measured.reference_peak
-    return value
+    value = next(iter(EFFECTS[name].values()))
+    level = name in INSTRUMENTS and isinstance(INSTRUMENTS[name].parameters[0], Level)
+    return value * PEAK / before.measured.reference_peak if level else value

@@ -1,0 +1,68 @@
+"""Instruments in windows: the clock of the responses is carried by the base, and memories are advanced.
+
+A lag or clock error of the responses is a change of the base's clock, recorded(t) = true((1 + rate) t - lag): the
+base is read at (1 + rate) t - lag and a window starts where it started, so nothing is read across its start.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from grids.instruments.base import Channels, Surroundings, Switched
+from grids.instruments.catalogue import switched_on
+from models.base import FloatArray
+from models.shaking import Shaking
+
+
+def seconds_ahead(mechanisms: Switched) -> float:
+    """Time in s beyond a window's end for which the instruments need the motion."""
+    return float(sum(one.acts["lag"](values) for one, values in switched_on(mechanisms) if "lag" in one.acts))
+
+
+def same_base(mechanisms: Switched) -> tuple[object, ...]:
+    """What two settings of the instruments must share for one motion of the base."""
+    return tuple(
+        (one.name, tuple(sorted(mechanisms[one.name].items())))
+        for one, _ in switched_on(mechanisms)
+        if not {"base", "clock", "lag"}.isdisjoint(one.acts)
+    )
+
+
+def moved_in_windows(shaking: Shaking, mechanisms: Switched) -> Shaking:
+    """The motion that the base makes, on the clock of the responses."""
+    rate, lag = 0.0, 0.0
+    for one, values in switched_on(mechanisms):
+        if "base" in one.acts:
+            shaking = one.acts["base"](shaking, values)
+        if "clock" in one.acts:
+            more_rate, more_lag = one.acts["clock"](values)
+            rate, lag = rate + more_rate, lag + more_lag
+        if "lag" in one.acts:
+            lag += one.acts["lag"](values)
+    return read_at(shaking, rate, lag) if rate or lag else shaking
+
+
+def read_at(shaking: Shaking, rate: float, lag: float) -> Shaking:
+    """The shaking with sample k read at (1 + rate) t_k - lag, on a step (1 + rate) times as long."""
+    from scipy.interpolate import CubicSpline
+
+    time = shaking.time
+    at = (1.0 + rate) * time - lag
+    inside = (at >= 0.0) & (at <= time[-1])
+
+    def read(samples: FloatArray) -> FloatArray:
+        return np.where(inside, CubicSpline(time, samples)(np.clip(at, 0.0, time[-1])), 0.0)
+
+    vertical = None if shaking.vertical is None else read(shaking.vertical)
+    step = (1.0 + rate) * shaking.time_step
+    return replace(shaking, time_step=step, horizontal=read(shaking.horizontal), vertical=vertical)
+
+
+def recorded_in_windows(channels: Channels, mechanisms: Switched, around: Surroundings) -> Channels:
+    """Channels (windows, samples) as the instruments record them, clocks apart (see `moved_in_windows`)."""
+    for one, values in switched_on(mechanisms):
+        if "response" in one.acts:
+            channels = one.acts.get("windowed", one.acts["response"])(channels, values, around)
+    return channels

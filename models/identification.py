@@ -1,0 +1,180 @@
+"""What calibration and diagnosis need to know of a model, declared beside it as data.
+
+A recording is compared with a model window by window. A window starts from states that were measured and from
+memories of what came before it; what no model of the library explains is described by forces along the leading
+coordinate. Nothing of this is known to the diagnosis itself: each model says it in
+``models/<name>/identification.py`` (`Model.identification`; None: neither calibrated nor diagnosed).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from models.base import FloatArray
+
+Derived = Mapping[str, FloatArray]
+"""Auxiliary constants of a model, by the names of its `derived`."""
+
+
+@dataclass(frozen=True)
+class Lead:
+    """A channel that says when a ``body`` moves on its ``joint``: windows begin at its peaks."""
+
+    channel: str
+    body: int
+    joint: str
+
+
+@dataclass(frozen=True)
+class State:
+    """A state that a window starts from.
+
+    ``channel`` measures it, or the coordinate whose rate it is (``rate``; a recorded channel of the state's own
+    name is preferred). Without a channel it is latent: no recording holds it. ``at_rest``: its value at rest as a
+    function of the derived constants; None for 0.
+    """
+
+    name: str
+    channel: str = ""
+    rate: bool = False
+    at_rest: Callable[[Derived], FloatArray] | None = None
+
+    @property
+    def latent(self) -> bool:
+        return not self.channel
+
+
+@dataclass(frozen=True)
+class Largest:
+    """Memory ``name``: largest absolute value of a channel before a window, read off the smoothed measurement."""
+
+    name: str
+    channel: str
+
+
+@dataclass(frozen=True)
+class Count:
+    """Memory ``name``: number of events of a kind before a window, counted along the model.
+
+    The first guess is the number of sign changes of ``channel`` in the measurement.
+    """
+
+    name: str
+    event: str
+    channel: str
+
+
+@dataclass(frozen=True)
+class WindowLengths:
+    """How a recording is cut, in units of ``unit(derived)`` s (None: in s).
+
+    ``shortest``, ``aim``, ``longest``: length of a window; ``quiet``: time without motion that ends one;
+    ``smoothing``: width of the filter that finds the peaks.
+    """
+
+    shortest: float
+    aim: float
+    longest: float
+    quiet: float
+    smoothing: float
+    unit: Callable[[Derived], FloatArray] | None = None
+
+    def in_seconds(self, derived: Derived) -> WindowLengths:
+        """The same in s, for a wall with these constants."""
+        if self.unit is None:
+            return self
+        unit = float(np.min(self.unit(derived)))
+        return WindowLengths(
+            unit * self.shortest, unit * self.aim, unit * self.longest, unit * self.quiet, unit * self.smoothing
+        )
+
+
+@dataclass(frozen=True)
+class Motion:
+    """The fitted motion along all windows: leading coordinate, its rate and the base acceleration, arrays (W, N).
+
+    ``reach``: the largest absolute value of the coordinate inside the windows.
+    """
+
+    coordinate: FloatArray
+    rate: FloatArray
+    base: FloatArray
+    reach: float
+
+
+@dataclass(frozen=True)
+class Force:
+    """A kind of force that a model may lack, acting on ``body`` at ``joint`` along the leading coordinate.
+
+    ``along``: the force over the motion, of order one; None for one that acts at the instants of ``event``
+    (see `Separation`), in proportion to the rate before. ``named``: by the dependence, the kind and dependence
+    under which the same force is reported. ``signed``: it has a direction and no strength.
+    """
+
+    name: str
+    meaning: str
+    body: int
+    joint: str
+    along: Callable[[Motion], FloatArray] | None
+    event: str = ""
+    named: Mapping[str, tuple[str, str]] = field(default_factory=dict)
+    signed: bool = False
+
+
+@dataclass(frozen=True)
+class Dependence:
+    """What a force may depend on: ``factor`` (W, N), less its mean where ``about_mean``.
+
+    ``stronger``: words for its lower and its upper end; ``phases``: the phase words of a located interval for
+    either end, empty for none.
+    """
+
+    name: str
+    factor: Callable[[Motion], FloatArray]
+    stronger: tuple[str, str]
+    phases: tuple[str, str] = ("", "")
+    about_mean: bool = False
+
+
+@dataclass(frozen=True)
+class Separation:
+    """The event that separates phases of the motion: sign changes of ``signal``; words for at it and between."""
+
+    event: str
+    signal: Callable[[Motion], FloatArray]
+    between: str
+
+
+@dataclass(frozen=True)
+class Identification:
+    """The declaration of one model.
+
+    ``chaotic``: neighbouring trajectories part quickly, so that runs from rest say little. ``windows`` None: each
+    recording is one window. ``forces`` empty: laws outside the library are not tested for. ``phases``: every phase
+    word in plain English. ``not_carried``: what else a window would have to inherit and does not yet; with it, or
+    with a latent state, calibration and diagnosis are refused.
+    """
+
+    leads: tuple[Lead, ...]
+    states: tuple[State, ...]
+    windows: WindowLengths | None
+    chaotic: bool
+    memories: tuple[Largest | Count, ...] = ()
+    forces: tuple[Force, ...] = ()
+    dependences: tuple[Dependence, ...] = ()
+    separation: Separation | None = None
+    phases: Mapping[str, str] = field(default_factory=dict)
+    not_carried: tuple[str, ...] = ()
+
+    def rest(self, derived: Derived) -> dict[str, float]:
+        """Every state at rest."""
+        return {s.name: 0.0 if s.at_rest is None else float(s.at_rest(derived).item()) for s in self.states}
+
+    def refusal(self) -> str:
+        """Why recordings cannot be compared with this model; empty where they can."""
+        latent = [state.name for state in self.states if state.latent]
+        lacking = [f"{', '.join(latent)} at the start of a window, which no recording holds"] if latent else []
+        return " and ".join([*lacking, *self.not_carried])
