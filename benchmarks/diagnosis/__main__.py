@@ -11,13 +11,15 @@ from benchmarks.diagnosis.suite import EVALUATION_SEED
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.diagnosis", description=__doc__)
     parser.add_argument(
-        "what", nargs="?", choices=("own", "concealed", "methods"), default="own",
-        help="cases of our own (default), the block's of a folder, or what other methods say of our own",
+        "what", nargs="?", choices=("own", "concealed", "methods", "same"), default="own",
+        help="cases of our own (default), the block's of a folder, what other methods say of our own, or whether two "
+        "runs over our own answer the same",
     )  # fmt: skip
     parser.add_argument("--out", type=Path, default=Path("results/bench"), help="folder of the results")
     parser.add_argument("--jobs", type=int, default=2, help="processes")
     parser.add_argument("--minutes", type=float, default=600.0, help="begin no case after this time")
     parser.add_argument("--run", default="answers", help="name of this run: another one answers anew")
+    parser.add_argument("--against", default="before", help="of same: the run that --run is compared with")
     parser.add_argument("--cases", type=int, help="only the first so many of our own cases")
     parser.add_argument("--seed", type=int, default=EVALUATION_SEED, help="of our own cases")
     parser.add_argument("--half", choices=("odd", "even"), help="which cases of the folder")
@@ -34,6 +36,11 @@ def main() -> None:
         from benchmarks.diagnosis.methods import compare
 
         compare(given.out, seed=given.seed, cases=given.cases, **common)
+    elif given.what == "same":
+        from benchmarks.diagnosis.same import same
+
+        if not same(given.out, seed=given.seed, run=given.run, against=given.against, say=say):
+            raise SystemExit(1)
     else:
         from benchmarks.diagnosis.bench import bench
 
