@@ -60,7 +60,7 @@ def threshold(
         close = (high - low) / (LANES * high)
         tail = (np.log(1.0 / close) + 8.0) / p
         over = outcomes(integrator, values, shaking, scale, tail=tail, linear=linear)["overturned"]
-        beyond = over if overturns_above else ~over
+        beyond = over == (1 if overturns_above else 0)
         first = int(np.argmax(beyond))
         assert not beyond[0], f"beyond the threshold already at {low}"
         assert beyond[first], f"not beyond the threshold even at {high}"
