@@ -28,8 +28,8 @@ class Piece:
         return self.first[0] + past * self.slope[0], self.first[1] + past * self.slope[1]
 
 
-class Felt(Protocol):
-    """What a wall of one lane makes of the base's motion: a = offset + scale a_x, G = gravity + factor scale a_z."""
+class BaseMotion(Protocol):
+    """How the base's motion acts on a wall of one lane: a = offset + scale a_x, G = gravity + factor scale a_z."""
 
     @property
     def offset(self) -> FloatArray: ...
@@ -39,7 +39,7 @@ class Felt(Protocol):
     def vertical_factor(self) -> FloatArray: ...
 
 
-def pieces(wall: Felt, shaking: Shaking, scale: float, until: float) -> Iterator[Piece]:
+def pieces(wall: BaseMotion, shaking: Shaking, scale: float, until: float) -> Iterator[Piece]:
     """Pieces from 0 to ``until`` (s) for one wall.
 
     The record may jump at its ends, beyond which only the constant offset acts.

@@ -53,6 +53,12 @@ class Request:
             return self.shaking.duration + self.tail
         return float(self.last[0]) * self.shaking.time_step
 
+    @property
+    def times(self) -> FloatArray:
+        """Samples (s) from the start of the shaking to the end of a request that starts with it."""
+        step = self.shaking.time_step
+        return step * np.arange(round(self.until / step) + 1, dtype=np.float64)
+
     def steps(self, per_sample: int, end: int) -> tuple[Index, Index]:
         """First and last step (n,) of every lane at ``per_sample`` steps a sample, ``end`` that of the tail."""
         n = self.scale.size

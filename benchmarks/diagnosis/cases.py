@@ -2,7 +2,7 @@
 
 A case is a folder in the format of the concealed recordings (specimen.toml, train_1.nc, train_2.nc,
 test_1.nc) and, elsewhere, its key. The truth of a catalogue effect comes from the model's plain reference
-(`models.housner.reference`, DOP853); that of a law outside the catalogue from
+(`models.housner.reference.run`, DOP853); that of a law outside the catalogue from
 `truth`, a program of its own. Sizes follow `size`. A motion is scaled so that the block without the effect
 reaches .1-.5 alpha and impacts more than 8 times without overturning; with the effect it must still rock.
 """

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.diagnosis import instruments, shakings, size, specimens, truth
-from models.housner import reference
 from models.housner.lanes import run as lanes
 from models.housner.model import MODEL
+from models.housner.reference import run as reference
 from models.runs import Request
 from models.shaking import Shaking
 
@@ -83,11 +83,11 @@ class Scene:
             return ran.rotation[::every], ran.rate[::every], ran.impacts
         block = MODEL.build({**true, **effects.mechanisms}, vertical=self.vertical_told)
         if exact:
-            found = reference.run(block, shakings.on_fine_grid(shaking), tail=0.0, rtol=1e-8)
-            if found.outputs["overturned"]:
+            ran = reference.run(block, Request(shakings.on_fine_grid(shaking), np.ones(1)), 1e-8)
+            if ran.outputs["overturned"][0]:
                 raise Unsuitable
-            return found.rotation, found.rate, int(found.outputs["impacts"])
-        ran = lanes.run(block, Request(shaking, np.ones(1), samples=shaking.horizontal.size))
+        else:
+            ran = lanes.run(block, Request(shaking, np.ones(1), samples=shaking.horizontal.size))
         return ran.samples[0, :, 0], ran.samples[0, :, 1], int(ran.outputs["impacts"][0])
 
     def strength(self, k: int, effects: Effects, rotation: FloatArray, rate: FloatArray, peak: float) -> float:

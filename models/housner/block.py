@@ -22,7 +22,7 @@ class Block:
 
     The base acceleration is ``offset + scale a(t)``, the apparent gravity
     G = ``gravity + vertical_factor scale a_z(t)``.
-    Impact (see `models.housner.impact`): ``restitution`` is a given absolute ratio (nan: angular
+    Impact (see `models.housner.reference.impact`): ``restitution`` is a given absolute ratio (nan: angular
     momentum decides), times ``restitution_factor``, and the laws' coefficients.
     The remaining fields belong to mechanisms; their null switches them off.
     """

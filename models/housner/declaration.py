@@ -101,7 +101,7 @@ OUTPUTS = (
     ),
     Quantity("dissipated_energy", "E_d", "J", "energy lost at impacts and in couples", "counted to overturning"),
     Quantity(
-        "needed_friction",
+        "friction_demand",
         "max |H|/N",
         "1",
         "largest friction demand while rocking",

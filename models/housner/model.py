@@ -20,7 +20,7 @@ class Housner(Model[Block]):
 
     theta'' = -p^2 [ (G/g) sin(alpha s - theta) + (a/g) cos(alpha s - theta) ],  G = g + a_z,
     p^2 = M g R/I_O, s = sign(theta); rocking starts when |a| > G tan(alpha); an impact multiplies
-    theta' by e. No sliding and no lift-off: ``needed_friction`` tells when that would fail.
+    theta' by e. No sliding and no lift-off: ``friction_demand`` tells when that would fail.
     """
 
     name = "housner"
@@ -83,14 +83,9 @@ class Housner(Model[Block]):
             )
         if integrator != "newmark":
             return super().run(integrator, coefficients, request)
-        from models.housner import newmark
+        from models.housner.reference.newmark import run
 
-        ran = newmark.run(
-            coefficients, request.shaking, request.scale, linear=request.linear, duration=request.until,
-            initial=request.start, follow=request.history,
-        )  # fmt: skip
-        samples = np.stack([ran.rotation, ran.rate, np.zeros_like(ran.rate)], axis=-1)
-        return Run(ran.outputs, samples, ran.events)
+        return run(coefficients, request)
 
     def run_lanes(self, coefficients: Block, request: Request) -> Run:
         from models.housner.lanes.run import run
@@ -98,13 +93,9 @@ class Housner(Model[Block]):
         return run(coefficients, request)
 
     def run_reference(self, coefficients: Block, request: Request) -> Run:
-        from models.housner import reference
+        from models.housner.reference.run import run
 
-        ran = reference.run(
-            coefficients, request.shaking, float(request.scale[0]), linear=request.linear, duration=request.until,
-            initial=request.start, follow=request.history,
-        )  # fmt: skip
-        return Run.of_one(ran.outputs, np.stack([ran.rotation, ran.rate, ran.shift], axis=-1), ran.events)
+        return run(coefficients, request)
 
     def observe(self, coefficients: Block, samples: FloatArray) -> dict[str, FloatArray]:
         """The observables of theta, theta' and what sliding, bouncing or bending adds to the displacement (m)."""

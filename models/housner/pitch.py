@@ -3,8 +3,8 @@
     psi(t) = pitch_per_acceleration * lowpass(a(t)),  clockwise positive
 
 with a second-order Butterworth low-pass run forwards and backwards (no phase). Against the table,
-which turns about the middle of the block's base, the mass centre (height h) feels to first order in
-psi a horizontal acceleration a - G psi, and the frame's angular acceleration adds the couple
+which turns about the middle of the block's base, a base acceleration a - G psi acts on the mass centre
+(height h), to first order in psi, and the frame's angular acceleration adds the couple
 -(I + M h^2) psi''. (The frame's Coriolis force does no work, its centrifugal one is of second order.)
 """
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
-
+from models.lanes.arrays import Counts, Table
 from models.lanes.compiler import inlined
 
 
 @inlined
-def note(log: Any, count: Any, lane: int, time: float, kind: float, body: float) -> None:
+def note(log: Table, count: Counts, lane: int, time: float, kind: float, body: float) -> None:
     """Write an event at ``time`` (s) in the log (n, most, 3) of a lane, as long as there is room; count it anyway."""
     if log.shape[1] > 0:
         if count[lane] < log.shape[1]:

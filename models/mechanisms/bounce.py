@@ -24,5 +24,5 @@ MECHANISM = Mechanism(
     sentence="the landing corner bounces with {contact_restitution:.3f} of its vertical velocity",
     acts={"housner": on_housner},
     static_test="film an impact, or add a vertical accelerometer at a corner",
-    source="rigid-body impact without slip; landings: models/housner/flight.py",
+    source="rigid-body impact without slip; landings: models/housner/reference/flight.py",
 )

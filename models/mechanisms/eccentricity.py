@@ -33,5 +33,5 @@ MECHANISM = Mechanism(
     sentence="the mass centre lies {offset_over_half_width:+.1%} of the half width off the middle (positive to +x)",
     acts={"housner": on_housner, "stacked": on_stacked},
     static_test="turn the block by 180 degrees and repeat a run",
-    source="geometry; impact between unequal sides: models/housner/impact.py",
+    source="geometry; impact between unequal sides: models/housner/reference/impact.py",
 )  # fmt: skip

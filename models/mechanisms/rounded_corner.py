@@ -23,5 +23,5 @@ MECHANISM = Mechanism(
     sentence="the corners are rounded to {radius_over_half_width:.1%} of the half width and roll",
     acts={"housner": on_housner},
     static_test="push the block over slowly and read force over rotation",
-    source="Lagrange's equation of a body rolling on arcs: models/housner/equation.py",
+    source="Lagrange's equation of a body rolling on arcs: models/housner/reference/equation.py",
 )

@@ -25,5 +25,5 @@ MECHANISM = Mechanism(
     sentence="the block slides on its base at a friction coefficient of {friction:.3f}",
     acts={"housner": on_housner},
     static_test="mark the base before a run and look for a shift after it",
-    source="Shenton (J. Eng. Mech. 122, 1996); law at impacts: models/housner/slip.py",
+    source="Shenton (J. Eng. Mech. 122, 1996); law at impacts: models/housner/reference/slip.py",
 )

@@ -21,7 +21,7 @@ MECHANISM = Mechanism(
             null=np.inf, fit_inverse=True, stiff=True,
         ),
     ),
-    equation="Lagrange's equations of theta and of the mode's amplitude: models/housner/flexure.py",
+    equation="Lagrange's equations of theta and of the mode's amplitude: models/housner/reference/flexure.py",
     signature="above 10 Hz after impacts; a softer, earlier first uplift",
     sentence="the wall bends with a first frequency of {first_frequency:.1f} Hz and rings after impacts",
     acts={"housner": on_housner},

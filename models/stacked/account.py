@@ -39,13 +39,13 @@ def outputs(stack: Stack, table: Table) -> dict[str, NDArray[Any]]:
     over = ~np.isnan(table[:, [OVERTURNED_1, OVERTURNED_2]])
     peak = np.where(over, half, table[:, [PEAK_1, PEAK_2]])
     end = np.where(over, np.copysign(half, table[:, [END_1, END_2]]), table[:, [END_1, END_2]])
-    spent = table[:, TIME_IN:]
+    durations = table[:, TIME_IN:]
     lost = table[:, [LOST_BASE, LOST_TOP]]
     friction = table[:, [FRICTION_BASE, FRICTION_TOP]]
     found: dict[str, NDArray[Any]] = {
         **_both("peak_rotation", "12", peak, np.max(peak, axis=1)),
         **_ratio(peak / np.stack([stack.slenderness, stack.slenderness_2], axis=1)),
-        **_uplift(spent),
+        **_uplift(durations),
         **_both("onset_time", "bt", table[:, [ONSET_BASE, ONSET_TOP]]),
         **_both("overturned", "12", over, np.any(over, axis=1)),
         **_both("overturning_time", "12", table[:, [OVERTURNED_1, OVERTURNED_2]]),
@@ -55,9 +55,9 @@ def outputs(stack: Stack, table: Table) -> dict[str, NDArray[Any]]:
     impacts = table[:, [IMPACTS_BASE, IMPACTS_TOP]].astype(np.int32)
     found |= _both("impacts", "bt", impacts, np.max(impacts, axis=1))
     friction = np.where(friction >= BOUNDLESS, np.inf, friction)
-    found |= _both("needed_friction", "bt", friction, np.max(friction, axis=1))
+    found |= _both("friction_demand", "bt", friction, np.max(friction, axis=1))
     found["configurations"] = table[:, VISITED].astype(np.int16)
-    found |= {f"time_in_{name}": spent[:, k] for k, name in enumerate(NAMES)}
+    found |= {f"time_in_{name}": durations[:, k] for k, name in enumerate(NAMES)}
     rocked = (peak > 0.0).any(axis=1) | ~np.isnan(found["onset_time"])
     status = np.where(rocked, STATUS.index("rocking"), STATUS.index("rest"))
     status = np.where(found["overturned"], STATUS.index("overturned"), status)
@@ -82,8 +82,8 @@ def _ratio(ratio: NDArray[Any]) -> dict[str, NDArray[Any]]:
     return _both("peak_rotation_ratio", "12", ratio, np.max(ratio, axis=1))
 
 
-def _uplift(spent: NDArray[Any]) -> dict[str, NDArray[Any]]:
+def _uplift(durations: NDArray[Any]) -> dict[str, NDArray[Any]]:
     base = [k for k, (s1, _) in enumerate(CONFIGURATIONS) if s1]
     top = [k for k, (_, s2) in enumerate(CONFIGURATIONS) if s2]
-    pair = np.stack([spent[:, base].sum(axis=1), spent[:, top].sum(axis=1)], axis=1)
+    pair = np.stack([durations[:, base].sum(axis=1), durations[:, top].sum(axis=1)], axis=1)
     return _both("uplift_duration", "bt", pair, np.max(pair, axis=1))

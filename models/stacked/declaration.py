@@ -65,7 +65,7 @@ OUTPUTS = (
         "at impacts, and at the base in couples; counted to overturning", "in all",
     ),
     *by_joint(
-        "needed_friction", "max |H|/N", "1", "largest friction demand while the stack rocks",
+        "friction_demand", "max |H|/N", "1", "largest friction demand while the stack rocks",
         "0 when it never rocks; inf when N <= 0; impulses not included", WORST,
     ),
     Quantity(

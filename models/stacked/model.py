@@ -9,9 +9,9 @@ import numpy as np
 from models.base import FloatArray, Values
 from models.model import Model
 from models.runs import Request, Run
-from models.stacked import account, declaration
+from models.stacked import declaration
 from models.stacked.identification import IDENTIFICATION
-from models.stacked.observe import initial_state, observe, settled_history
+from models.stacked.observe import observe
 from models.stacked.stack import Stack, assemble
 
 
@@ -19,9 +19,9 @@ class Stacked(Model[Stack]):
     """Two rigid blocks, one on the other, on a rigid base (Psycharis 1990; Spanos, Roussis, Politis 2001).
 
     Eight configurations and rest; Lagrange's equations of the two-link pendulum in each
-    (`models.stacked.equation`); impacts by projection in the kinetic metric (`models.stacked.impact`);
+    (`models.stacked.equation`); impacts by projection in the kinetic metric (`models.stacked.reference.impact`);
     what follows an impact, an opening or a start from rest by one complementarity condition
-    (`models.stacked.choice`). No sliding and no lift-off: ``needed_friction`` tells when that would fail.
+    (`models.stacked.reference.choice`). No sliding and no lift-off: ``friction_demand`` tells when that would fail.
     A rotation_2 not given at the start equals rotation_1 (seated).
     """
 
@@ -86,16 +86,9 @@ class Stacked(Model[Stack]):
         return run(coefficients, request)
 
     def run_reference(self, coefficients: Stack, request: Request) -> Run:
-        from models.stacked import reference
+        from models.stacked.reference.run import run
 
-        start = initial_state(request.initial, 1)
-        ran = reference.run(
-            coefficients, request.shaking, float(request.scale[0]), linear=request.linear, duration=request.until,
-            initial={name: float(value[0]) for name, value in start.items()}, follow=request.history,
-        )  # fmt: skip
-        table = ran.account[None]
-        samples = settled_history(ran.history.T[None], table)
-        return Run(account.outputs(coefficients, table), samples, (ran.events,))
+        return run(coefficients, request)
 
     def observe(self, coefficients: Stack, samples: FloatArray) -> dict[str, FloatArray]:
         return observe(coefficients, samples)

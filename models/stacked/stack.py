@@ -24,7 +24,7 @@ class Stack:
     The base acceleration is ``offset + scale a(t)``, the apparent gravity
     G = ``gravity + vertical_factor scale a_z(t)``.
     ``base_restitution``, ``top_restitution``: given ratio of the relative angular velocities at a
-    joint (nan: by projection), times ``base_factor``, ``top_factor``; see `models.stacked.impact`.
+    joint (nan: by projection), times ``base_factor``, ``top_factor``; see `models.stacked.reference.impact`.
     ``viscous``: couple on block 1 over the inertia of both about the corner and over theta_1', s-1.
     """
 

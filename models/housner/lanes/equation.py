@@ -15,38 +15,19 @@ from __future__ import annotations
 
 from typing import Any
 
-from models.housner.lanes.rows import (
-    CB,
-    CH,
-    COULOMB,
-    CRUSH,
-    DIRECTION,
-    GAP,
-    IM,
-    JOINT,
-    LAMBDA,
-    PEAK,
-    QUADRATIC,
-    RHO,
-    SIDE,
-    VISCOUS,
-    B,
-    H,
-    K,
-    W,
-)  # fmt: skip
+from models.housner.lanes import rows as r
+from models.lanes.arrays import Table
 from models.lanes.compiler import inlined
 from models.lanes.elementary import exponential_decay, sine_cosine
 
-Table = Any
 MOST_INSET = 0.35
 
 
 @inlined
 def present_half_width(w: Table, lane: int, theta: float) -> float:
     """b after crushing: inset = min(.35, rate times the largest rotation so far)."""
-    largest = max(w[PEAK * W + lane], abs(theta))
-    return float(w[B * W + lane] * (1.0 - min(MOST_INSET, w[CRUSH * W + lane] * largest)))
+    largest = max(w[r.PEAK, lane], abs(theta))
+    return float(w[r.B, lane] * (1.0 - min(MOST_INSET, w[r.CRUSH, lane] * largest)))
 
 
 @inlined
@@ -56,26 +37,26 @@ def acceleration(
 ) -> tuple[float, float, float, float]:  # fmt: skip
     """theta'', and for the reactions: X_theta, Z_theta (m), and the power lost in couples over M."""
     if general is not None:
-        s = w[SIDE * W + lane]
-        rho = w[RHO * W + lane]
+        s = w[r.SIDE, lane]
+        rho = w[r.RHO, lane]
         half = present_half_width(w, lane, theta)
-        height = w[H * W + lane]
+        height = w[r.H, lane]
         sine, cosine = sine_cosine(theta)
         bp = s * (half - rho)
         hp = height - rho
         x = rho + bp * sine + hp * cosine
         z = bp * cosine - hp * sine
-        inertia = w[IM * W + lane]
+        inertia = w[r.IM, lane]
         jm = inertia + x * x + z * z
         corner = inertia + height * height + half * half
         size = abs(theta)
-        joint = w[JOINT * W + lane]
+        joint = w[r.JOINT, lane]
         share = 1.0 - exponential_decay(size * max(joint, 0.0))
         share = share if joint >= 0.0 else 1.0
-        couple = w[K * W + lane] * max(size - w[GAP * W + lane], 0.0) * s
+        couple = w[r.K, lane] * max(size - w[r.GAP, lane], 0.0) * s
         damping = (
-            corner * (w[VISCOUS * W + lane] * omega + w[QUADRATIC * W + lane] * omega * abs(omega))
-            + w[COULOMB * W + lane] * w[DIRECTION * W + lane]
+            corner * (w[r.VISCOUS, lane] * omega + w[r.QUADRATIC, lane] * omega * abs(omega))
+            + w[r.COULOMB, lane] * w[r.DIRECTION, lane]
         )
         # rounding must not tell the general equation at its nulls from the plain one by more than an ulp or two
         moment = (a - g * psi) * x + g * share * z + rho * z * omega * omega
@@ -85,9 +66,9 @@ def acceleration(
             z,
             damping * omega,
         )
-    cb = w[CB * W + lane]
-    ch = w[CH * W + lane]
-    size = w[LAMBDA * W + lane]
+    cb = w[r.CB, lane]
+    ch = w[r.CH, lane]
+    size = w[r.LAMBDA, lane]
     if linear is not None:
         z = cb - ch * theta
         return -(g * z + a * ch), size * ch, size * z, 0.0
@@ -105,7 +86,7 @@ def friction_demand(
     square = omega * omega
     across = a + x * accel + z * square
     if general is not None:
-        rho = w[RHO * W + lane]
+        rho = w[r.RHO, lane]
         up = g + z * accel - (x - rho) * square
     else:
         up = g + z * accel - x * square
@@ -127,10 +108,10 @@ def rk4(
     half = 0.5 * step
     am, gm, pm, qm = 0.5 * (a0 + a1), 0.5 * (g0 + g1), 0.5 * (p0 + p1), 0.5 * (q0 + q1)
     k1, x1, z1, e1 = acceleration(w, lane, theta, omega, a0, g0, p0, q0, general, linear)
-    felt = a0
+    base = a0
     if general is not None:
-        felt = a0 - g0 * p0 + w[H * W + lane] * q0
-    demand = friction_demand(w, lane, k1, omega, x1, z1, felt, g0, general)
+        base = a0 - g0 * p0 + w[r.H, lane] * q0
+    demand = friction_demand(w, lane, k1, omega, x1, z1, base, g0, general)
     o2 = omega + half * k1
     k2, _, _, e2 = acceleration(w, lane, theta + half * omega, o2, am, gm, pm, qm, general, linear)
     o3 = omega + half * k2

@@ -24,19 +24,18 @@ from models.housner.lanes.step import (
     start_at,
     turning,
 )  # fmt: skip
+from models.lanes.arrays import Counts, Table
 from models.lanes.compiler import inlined
 from models.lanes.events import note, turning_point
-
-Table = Any
 
 
 @inlined
 def land(
     given: Table, result: Table, w: Table, lane: int, slot: int, omega: float, time: float,
-    log: Table, count: Table, linear: Any,
+    log: Table, count: Counts, linear: Any,
 ) -> float:  # fmt: skip
     """An impact at theta = 0 with velocity ``omega``: change of pivot, loss; returns the velocity after."""
-    side = w[r.SIDE * r.W + slot]
+    side = w[r.SIDE, slot]
     e = restitution(given, result, w, lane, slot, side, omega)
     before = kinetic_energy(given, w, lane, slot, side, omega)
     after = e * omega
@@ -46,7 +45,7 @@ def land(
     note(log, count, lane, time, r.LOG_IMPACT, 1.0)
     stand_on(given, w, lane, slot, -side, linear)
     calm = abs(after) < given[lane, r.Q_REST]
-    if w[r.JOINT * r.W + slot] >= 0.0:
+    if w[r.JOINT, slot] >= 0.0:
         result[lane, r.R_ENERGY] = max(result[lane, r.R_ENERGY], before)
         calm = left < 1e-6 * result[lane, r.R_ENERGY]
     if calm:
@@ -58,7 +57,7 @@ def land(
 @inlined
 def one_step(
     given: Table, result: Table, w: Table, lane: int, slot: int, record: Table, i: int, h: float,
-    log: Table, count: Table, general: Any, linear: Any,
+    log: Table, count: Counts, general: Any, linear: Any,
 ) -> None:  # fmt: skip
     """Advance a lane over step i from theta0, theta0' in ``work``, whatever happens in it.
 
@@ -71,12 +70,12 @@ def one_step(
         if given[lane, r.Q_FRICTION] < math.inf:
             slide(given, result, w, lane, slot, record, i, h, log, count, general, linear)
             return
-    theta, omega = w[r.TH0 * r.W + slot], w[r.OM0 * r.W + slot]
-    f = w[r.START0 * r.W + slot]
-    stepped = w[r.LIMIT * r.W + slot] > 0.0
-    w[r.ROUNDS * r.W + slot] = w[r.ROUNDS * r.W + slot] + 1.0 if f > 0.0 else 0.0
+    theta, omega = w[r.TH0, slot], w[r.OM0, slot]
+    f = w[r.START0, slot]
+    stepped = w[r.LIMIT, slot] > 0.0
+    w[r.ROUNDS, slot] = w[r.ROUNDS, slot] + 1.0 if f > 0.0 else 0.0
     while f < 1.0:
-        if w[r.ROUNDS * r.W + slot] > MOST_IMPACTS_PER_STEP:
+        if w[r.ROUNDS, slot] > MOST_IMPACTS_PER_STEP:
             result[lane, r.R_STATUS] = r.NOT_CONVERGED
             result[lane, r.R_MODE] = r.DOWN
             theta, omega = 0.0, 0.0
@@ -86,9 +85,9 @@ def one_step(
             at, side = onset(given, w, lane, slot, record, i, f, linear)
             if at == f and omega != 0.0:
                 # a slow landing while the ground pushes on: the block keeps rocking
-                side = w[r.SIDE * r.W + slot]
+                side = w[r.SIDE, slot]
             else:
-                result[lane, r.R_DISSIPATED] += kinetic_energy(given, w, lane, slot, w[r.SIDE * r.W + slot], omega)
+                result[lane, r.R_DISSIPATED] += kinetic_energy(given, w, lane, slot, w[r.SIDE, slot], omega)
                 omega = 0.0
             if at > f:
                 come_down(result, lane, (i + f) * h, log, count)
@@ -105,41 +104,41 @@ def one_step(
                 break
             result[lane, r.R_MODE] = r.UP
         if omega != 0.0:
-            w[r.DIRECTION * r.W + slot] = 1.0 if omega > 0.0 else -1.0
+            w[r.DIRECTION, slot] = 1.0 if omega > 0.0 else -1.0
         rest = 1.0 - f
         if stepped:
             stepped = False
-            th1, om1, work = w[r.TH * r.W + slot], w[r.OM * r.W + slot], w[r.WORK_STEP * r.W + slot]
+            th1, om1, work = w[r.TH, slot], w[r.OM, slot], w[r.WORK_STEP, slot]
         else:
             th1, om1, work = part(w, slot, theta, omega, record, i, f, rest, h, general, linear)
-        if w[r.SIDE * r.W + slot] * th1 < 0.0:
+        if w[r.SIDE, slot] * th1 < 0.0:
             rest, om1, work = crossing(
                 w, slot, theta, omega, th1, om1, record, i, f, rest, h, general, linear
             )  # fmt: skip
             if omega * om1 < 0.0:
                 raise_peak(result, w, lane, slot, turning_point(theta, omega, 0.0, om1, rest * h))
             f += rest
-            w[r.WORK * r.W + slot] += work
+            w[r.WORK, slot] += work
             theta = 0.0
             demand_at_landing(w, slot, om1, record, i, f, general, linear)
             omega = land(given, result, w, lane, slot, om1, (i + f) * h, log, count, linear)
             if general is not None:
                 if given[lane, r.Q_BOUNCE] > 0.0 and result[lane, r.R_MODE] == r.UP:
                     omega = take_off(given, result, w, lane, slot, om1, omega)
-            if result[lane, r.R_MODE] == r.UP and f < 1.0 and w[r.LIMIT * r.W + slot] > 0.0:
+            if result[lane, r.R_MODE] == r.UP and f < 1.0 and w[r.LIMIT, slot] > 0.0:
                 start_at(w, slot, record, i, f)
                 break
-            w[r.ROUNDS * r.W + slot] += 1.0
+            w[r.ROUNDS, slot] += 1.0
             continue
         if omega * om1 < 0.0:
-            if w[r.COULOMB * r.W + slot] > 0.0:
+            if w[r.COULOMB, slot] > 0.0:
                 rest, th1, work = turning(w, slot, theta, omega, record, i, f, rest, h, general, linear)
                 om1 = 0.0
-                w[r.DIRECTION * r.W + slot] = -w[r.DIRECTION * r.W + slot]
+                w[r.DIRECTION, slot] = -w[r.DIRECTION, slot]
                 result[lane, r.R_MODE] = r.HELD
                 raise_peak(result, w, lane, slot, abs(th1))
             else:
                 raise_peak(result, w, lane, slot, turning_point(theta, omega, th1, om1, rest * h))
-        w[r.WORK * r.W + slot] += work
+        w[r.WORK, slot] += work
         theta, omega, f = th1, om1, f + rest
-    w[r.TH * r.W + slot], w[r.OM * r.W + slot] = theta, omega
+    w[r.TH, slot], w[r.OM, slot] = theta, omega

@@ -8,10 +8,10 @@ from typing import Any
 from models.housner.lanes import rows as r
 from models.housner.lanes.impact import pivot
 from models.housner.lanes.step import inputs
+from models.lanes.arrays import Table
 from models.lanes.chunks import CHUNK
 from models.lanes.compiler import called, inlined
 
-Table = Any
 NONE = 2.0
 """A fraction of the step that never comes."""
 
@@ -26,11 +26,11 @@ def excess(
     b = pivot(given, w, lane, slot, side)
     inertia = given[lane, r.Q_INERTIA] / given[lane, r.Q_MASS]
     push = -side * ((a - g * psi) * h + (inertia + h * h) * psi2)
-    if w[r.JOINT * r.W + slot] >= 0.0:
-        return float(push - w[r.COULOMB * r.W + slot])
+    if w[r.JOINT, slot] >= 0.0:
+        return float(push - w[r.COULOMB, slot])
     if linear is not None:
         return float(push - g * h * math.atan(b / h))
-    return float(push - g * b - w[r.COULOMB * r.W + slot])
+    return float(push - g * b - w[r.COULOMB, slot])
 
 
 @called
@@ -86,18 +86,18 @@ def next_onset(
     b = min(pivot(given, w, lane, slot, 1.0), pivot(given, w, lane, slot, -1.0))
     if linear is not None:
         b = h * math.atan(b / h)
-    if w[r.JOINT * r.W + slot] >= 0.0:
+    if w[r.JOINT, slot] >= 0.0:
         b = 0.0
     mu = given[lane, r.Q_FRICTION]
     b = min(b, mu * h)
     inertia = given[lane, r.Q_INERTIA] / given[lane, r.Q_MASS] + h * h
-    scale, pitch = abs(w[r.SCALE * r.W + slot]), abs(w[r.PITCH * r.W + slot])
+    scale, pitch = abs(w[r.SCALE, slot]), abs(w[r.PITCH, slot])
     while i < last:
         if i % CHUNK == 0 and i + CHUNK <= last:
             c = i // CHUNK
-            low = w[r.GRAVITY * r.W + slot] - abs(w[r.VSCALE * r.W + slot]) * chunk[1, c]
-            high = w[r.GRAVITY * r.W + slot] + abs(w[r.VSCALE * r.W + slot]) * chunk[1, c]
-            push = (scale * chunk[0, c] + abs(w[r.OFFSET * r.W + slot]) + high * pitch * chunk[2, c]) * h
+            low = w[r.GRAVITY, slot] - abs(w[r.VSCALE, slot]) * chunk[1, c]
+            high = w[r.GRAVITY, slot] + abs(w[r.VSCALE, slot]) * chunk[1, c]
+            push = (scale * chunk[0, c] + abs(w[r.OFFSET, slot]) + high * pitch * chunk[2, c]) * h
             if push + inertia * pitch * chunk[3, c] < low * b:
                 i += CHUNK
                 continue

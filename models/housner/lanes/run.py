@@ -15,7 +15,7 @@ from models.housner.lanes import rows as r
 from models.housner.lanes.advance import advance
 from models.housner.pitch import pitch
 from models.lanes.record import recorded
-from models.lanes.tables import Tables, filled, groups
+from models.lanes.tables import empty, filled, groups, logged, put
 from models.runs import Request, Run
 
 EVENTS = ("onset", "impact", "rest", "overturned")
@@ -99,22 +99,21 @@ def run(block: Block, request: Request, refinement: int = 1) -> Run:
     fixed corners (m). ``initial`` may hold ``peak_rotation_1`` (rad) and ``impacts`` before the run, too.
     """
     shaking = request.shaking
-    found, steps = Tables.empty(request, r.N_RESULT, 3), 0
+    found, steps = empty(request, r.N_RESULT, 3), 0
     pitched = np.where(block.pitch_per_acceleration != 0.0, block.pitch_low_pass, 0.0)
     for (per_sample, corner), lanes in groups(substeps(block, shaking.time_step) * refinement, pitched):
         part, asked = block.take(lanes), request.take(lanes)
         psi = pitch(shaking.horizontal, shaking.time_step, corner) if corner > 0.0 else (None, None)
         record = recorded(shaking, per_sample, request.tail, psi)
         first, last = asked.steps(per_sample, record.end)
-        tables = Tables.empty(asked, r.N_RESULT, 3)
+        tables = empty(asked, r.N_RESULT, 3)
         steps += advance(
-            record.samples, record.extremes, record.step, record.shaken, first, last,
-            given_table(part, asked.scale, asked.initial), tables.result, per_sample if asked.history else 0,
-            tables.trace, tables.log, tables.count, asked.history,
-            None if part.plain else True, True if request.linear else None,
+            record, first, last, given_table(part, asked.scale, asked.initial), tables,
+            per_sample if asked.history else 0, asked.history, None if part.plain else True,
+            True if request.linear else None,
         )  # fmt: skip
-        found.put(lanes, tables)
-    return Run(outputs(block, found.result), found.trace, found.events(EVENTS), steps)
+        put(found, lanes, tables)
+    return Run(outputs(block, found.result), found.trace, logged(found, EVENTS), steps)
 
 
 def outputs(block: Block, result: NDArray[np.float64]) -> dict[str, NDArray[Any]]:
@@ -130,6 +129,6 @@ def outputs(block: Block, result: NDArray[np.float64]) -> dict[str, NDArray[Any]
         "impacts": result[:, r.R_IMPACTS].astype(np.int32),
         "residual_rotation": result[:, r.R_ROTATION],
         "dissipated_energy": result[:, r.R_DISSIPATED],
-        "needed_friction": np.where(result[:, r.R_DEMAND] > 1e299, np.inf, result[:, r.R_DEMAND]),
+        "friction_demand": np.where(result[:, r.R_DEMAND] > 1e299, np.inf, result[:, r.R_DEMAND]),
         "status": status,
     }

@@ -10,10 +10,9 @@ from typing import Any
 
 from models.housner.lanes import rows as r
 from models.housner.lanes.equation import acceleration, friction_demand, rk4
+from models.lanes.arrays import Counts, Table
 from models.lanes.compiler import called, inlined
 from models.lanes.events import note
-
-Table = Any
 
 
 @inlined
@@ -22,18 +21,18 @@ def stand_on(given: Table, w: Table, lane: int, slot: int, side: float, linear: 
     half = given[lane, r.Q_RIGHT] if side > 0.0 else given[lane, r.Q_LEFT]
     height, mass, inertia = given[lane, r.Q_HEIGHT], given[lane, r.Q_MASS], given[lane, r.Q_INERTIA]
     corner = inertia + mass * (height * height + half * half)
-    w[r.SIDE * r.W + slot] = side
-    w[r.B * r.W + slot] = half
-    w[r.H * r.W + slot] = height
-    w[r.IM * r.W + slot] = inertia / mass
-    w[r.LAMBDA * r.W + slot] = corner / mass
+    w[r.SIDE, slot] = side
+    w[r.B, slot] = half
+    w[r.H, slot] = height
+    w[r.IM, slot] = inertia / mass
+    w[r.LAMBDA, slot] = corner / mass
     if linear is not None:
         ch = mass * math.sqrt(height * height + half * half) / corner
-        w[r.CB * r.W + slot] = side * math.atan(half / height) * ch
-        w[r.CH * r.W + slot] = ch
+        w[r.CB, slot] = side * math.atan(half / height) * ch
+        w[r.CH, slot] = ch
     else:
-        w[r.CB * r.W + slot] = side * mass * half / corner
-        w[r.CH * r.W + slot] = mass * height / corner
+        w[r.CB, slot] = side * mass * half / corner
+        w[r.CH, slot] = mass * height / corner
 
 
 @inlined
@@ -46,10 +45,10 @@ def inputs(w: Table, slot: int, record: Table, i: int, f: float) -> tuple[float,
     v = first * record[1, i] + second * record[1, i + 1]
     p = first * record[2, i] + second * record[2, i + 1]
     q = first * record[3, i] + second * record[3, i + 1]
-    scale, pitch = w[r.SCALE * r.W + slot], w[r.PITCH * r.W + slot]
+    scale, pitch = w[r.SCALE, slot], w[r.PITCH, slot]
     return (
-        scale * a + w[r.OFFSET * r.W + slot],
-        w[r.GRAVITY * r.W + slot] + w[r.VSCALE * r.W + slot] * v,
+        scale * a + w[r.OFFSET, slot],
+        w[r.GRAVITY, slot] + w[r.VSCALE, slot] * v,
         pitch * p,
         pitch * q,
     )
@@ -64,7 +63,7 @@ def part(
     a0, g0, p0, q0 = inputs(w, slot, record, i, f)
     a1, g1, p1, q1 = inputs(w, slot, record, i, f + share)
     th1, om1, demand, work = rk4(w, slot, theta, omega, share * h, a0, a1, g0, g1, p0, p1, q0, q1, general, linear)
-    w[r.DEMAND * r.W + slot] = max(w[r.DEMAND * r.W + slot], demand)
+    w[r.DEMAND, slot] = max(w[r.DEMAND, slot], demand)
     return th1, om1, work
 
 
@@ -93,7 +92,7 @@ def crossing(
     It stops where the last correction is under 1e-7 of the step and applies it to both: the error
     left is of its square.
     """
-    side = w[r.SIDE * r.W + slot]
+    side = w[r.SIDE, slot]
     low, high, work = 0.0, rest, 0.0
     share = rest * hermite_root(theta, omega, th1, om1, rest * h)
     if not low < share < high:
@@ -142,7 +141,7 @@ def released(w: Table, slot: int, theta: float, record: Table, i: int, f: float,
     """Whether the other moments overcome the Coulomb couple that holds the block; sets its direction."""
     a, g, p, q = inputs(w, slot, record, i, f)
     for direction in (1.0, -1.0):
-        w[r.DIRECTION * r.W + slot] = direction
+        w[r.DIRECTION, slot] = direction
         accel, _, _, _ = acceleration(w, slot, theta, 0.0, a, g, p, q, general, linear)
         if accel * direction > 0.0:
             return True
@@ -153,9 +152,9 @@ def released(w: Table, slot: int, theta: float, record: Table, i: int, f: float,
 def start_at(w: Table, slot: int, record: Table, i: int, f: float) -> None:
     """Let the lane's next step begin at the fraction f of step i."""
     a, g, p, q = inputs(w, slot, record, i, f)
-    w[r.A0 * r.W + slot], w[r.G0 * r.W + slot] = a, g
-    w[r.P0 * r.W + slot], w[r.PP0 * r.W + slot] = p, q
-    w[r.START * r.W + slot] = f
+    w[r.A0, slot], w[r.G0, slot] = a, g
+    w[r.P0, slot], w[r.PP0, slot] = p, q
+    w[r.START, slot] = f
 
 
 @inlined
@@ -164,9 +163,9 @@ def raise_peak(result: Table, w: Table, lane: int, slot: int, size: float) -> No
     result[lane, r.R_SWING] = max(result[lane, r.R_SWING], size)
     if size > result[lane, r.R_PEAK]:
         result[lane, r.R_PEAK] = size
-        w[r.PEAK * r.W + slot] = size
-        if w[r.TURN * r.W + slot] >= 0.0:
-            w[r.TURN * r.W + slot] = size
+        w[r.PEAK, slot] = size
+        if w[r.TURN, slot] >= 0.0:
+            w[r.TURN, slot] = size
 
 
 @inlined
@@ -176,20 +175,20 @@ def demand_at_landing(
     """The friction demand just before an impact, where it jumps."""
     a, g, p, q = inputs(w, slot, record, i, f)
     accel, x, z, _ = acceleration(w, slot, 0.0, omega, a, g, p, q, general, linear)
-    felt = a - g * p + w[r.H * r.W + slot] * q
-    demand = friction_demand(w, slot, accel, omega, x, z, felt, g, general)
-    w[r.DEMAND * r.W + slot] = max(w[r.DEMAND * r.W + slot], demand)
+    base = a - g * p + w[r.H, slot] * q
+    demand = friction_demand(w, slot, accel, omega, x, z, base, g, general)
+    w[r.DEMAND, slot] = max(w[r.DEMAND, slot], demand)
 
 
 @inlined
 def lift_off(
-    given: Table, result: Table, w: Table, lane: int, slot: int, side: float, time: float, log: Table, count: Table,
+    given: Table, result: Table, w: Table, lane: int, slot: int, side: float, time: float, log: Table, count: Counts,
     linear: Any,
 ) -> None:  # fmt: skip
     """The block at rest (or just landed) starts to rock on ``side``."""
     result[lane, r.R_MODE] = r.UP
     stand_on(given, w, lane, slot, side, linear)
-    w[r.DIRECTION * r.W + slot] = side
+    w[r.DIRECTION, slot] = side
     if not result[lane, r.R_UP_SINCE] == result[lane, r.R_UP_SINCE]:
         result[lane, r.R_UP_SINCE] = time
         note(log, count, lane, time, r.LOG_ONSET, 1.0)
@@ -198,7 +197,7 @@ def lift_off(
 
 
 @inlined
-def come_down(result: Table, lane: int, time: float, log: Table, count: Table) -> None:
+def come_down(result: Table, lane: int, time: float, log: Table, count: Counts) -> None:
     """The base is in full contact from ``time`` on: the account of a stretch of rocking."""
     since = result[lane, r.R_UP_SINCE]
     if since == since:

@@ -1,14 +1,12 @@
-"""Which configuration follows, one lane: the complementarity condition of `models.stacked.choice`."""
+"""Which configuration follows, one lane: the complementarity condition of `models.stacked.reference.choice`."""
 
 from __future__ import annotations
 
 import math
-from typing import Any
 
+from models.lanes.arrays import Table
 from models.lanes.compiler import called, inlined
 from models.stacked.lanes.corners import line
-
-Table = Any
 
 
 @inlined

@@ -4,34 +4,33 @@ from __future__ import annotations
 
 from typing import Any
 
+from models.lanes.arrays import Counts, Table
 from models.lanes.compiler import called
 from models.lanes.events import note
-from models.stacked.account import IMPACTS_BASE, IMPACTS_TOP, LOST_BASE, LOST_TOP
+from models.stacked import account as acc
+from models.stacked.lanes import rows as r
 from models.stacked.lanes.bookkeeping import configure
 from models.stacked.lanes.choice import choose
 from models.stacked.lanes.corners import impulses, kinetic_energy, motion
 from models.stacked.lanes.impact import imposed, land
-from models.stacked.lanes.rows import LOG_IMPACT, LOG_REST, P_CALM_1, P_CALM_2, R_SIDE_1, R_SIDE_2
-
-Table = Any
 
 
 @called
 def close(
     given: Table, result: Table, w: Table, system: Table, lane: int, slot: int, joint: int, q1: float, q2: float,
-    v1: float, v2: float, a: float, g: float, time: float, log: Table, count: Table, linear: Any,
+    v1: float, v2: float, a: float, g: float, time: float, log: Table, count: Counts, linear: Any,
 ) -> tuple[float, float]:  # fmt: skip
     """The impact of ``joint`` at ``time``; sets the configuration, returns the rates after it.
 
     Rates so small that the swing ahead does not matter end, if the forces of now keep the joint closed.
     """
-    s1, s2 = result[lane, R_SIDE_1], result[lane, R_SIDE_2]
+    s1, s2 = result[lane, r.R_SIDE_1], result[lane, r.R_SIDE_2]
     c1 = s1 if s1 != 0.0 else 1.0
     c2 = s2 if s2 != 0.0 else 1.0
     energy = impulses(system, given, lane, c1, c2, q1, q2, v1, v2, linear)
     landing = land(system, given, lane, joint, s1, s2, v1, v2, energy)
-    calm_1 = abs(landing[2]) < given[lane, P_CALM_1]
-    calm_2 = abs(landing[3]) < given[lane, P_CALM_2]
+    calm_1 = abs(landing[2]) < given[lane, r.P_CALM_1]
+    calm_2 = abs(landing[3]) < given[lane, r.P_CALM_2]
     up, calm = (landing[0], calm_1) if joint == 0 else (landing[1], calm_2)
     after = landing
     rests = False
@@ -56,13 +55,13 @@ def close(
     k2 = n2 if n2 != 0.0 else 1.0
     lost = energy - kinetic_energy(given, lane, k1, k2, q1, q2, after[2], after[3], linear)
     if joint == 0:
-        result[lane, IMPACTS_BASE] += 1.0
-        result[lane, LOST_BASE] += lost
+        result[lane, acc.IMPACTS_BASE] += 1.0
+        result[lane, acc.LOST_BASE] += lost
     else:
-        result[lane, IMPACTS_TOP] += 1.0
-        result[lane, LOST_TOP] += lost
-    note(log, count, lane, time, LOG_IMPACT, joint + 1.0)
+        result[lane, acc.IMPACTS_TOP] += 1.0
+        result[lane, acc.LOST_TOP] += lost
+    note(log, count, lane, time, r.LOG_IMPACT, joint + 1.0)
     configure(given, result, w, lane, slot, n1, n2, time)
     if n1 == 0.0 and n2 == 0.0:
-        note(log, count, lane, time, LOG_REST, 1.0)
+        note(log, count, lane, time, r.LOG_REST, 1.0)
     return after[2], after[3]

@@ -1,31 +1,17 @@
 """M x = R of one lane for the four pairs of pivots: forces in motion, impulses at an impact.
 
 ``system`` (4, 5) holds M11, M12, M22, R1, R2 in the line 2 (s1 < 0) + (s2 < 0); the formulas are
-those of `models.stacked.equation` and `models.stacked.impact`.
+those of `models.stacked.equation` and `models.stacked.reference.impact`.
 """
 
 from __future__ import annotations
 
 from typing import Any
 
+from models.lanes.arrays import Table
 from models.lanes.compiler import called, inlined
 from models.lanes.elementary import sine_cosine
-from models.stacked.lanes.rows import (
-    P_B1,
-    P_B2,
-    P_D1,
-    P_D2,
-    P_H1,
-    P_H2,
-    P_I1,
-    P_I2,
-    P_M1,
-    P_M2,
-    P_TALL,
-    P_VISCOUS,
-)  # fmt: skip
-
-Table = Any
+from models.stacked.lanes import rows as r
 
 
 @inlined
@@ -37,10 +23,10 @@ def line(s1: float, s2: float) -> int:
 @inlined
 def corner_inertia(given: Table, lane: int, side: float) -> float:
     """I_O of both as one body about a pivot of the base."""
-    u1, u2 = side * given[lane, P_B1] - given[lane, P_D1], side * given[lane, P_B1] - given[lane, P_D2]
-    tall = given[lane, P_TALL] + given[lane, P_H2]
-    own = given[lane, P_I1] + given[lane, P_M1] * (given[lane, P_H1] ** 2 + u1 * u1)
-    return float(own + given[lane, P_I2] + given[lane, P_M2] * (tall * tall + u2 * u2))
+    u1, u2 = side * given[lane, r.P_B1] - given[lane, r.P_D1], side * given[lane, r.P_B1] - given[lane, r.P_D2]
+    tall = given[lane, r.P_TALL] + given[lane, r.P_H2]
+    own = given[lane, r.P_I1] + given[lane, r.P_M1] * (given[lane, r.P_H1] ** 2 + u1 * u1)
+    return float(own + given[lane, r.P_I2] + given[lane, r.P_M2] * (tall * tall + u2 * u2))
 
 
 @inlined
@@ -49,10 +35,10 @@ def vectors(
 ) -> tuple[float, float, float, float, float, float]:
     """A, C, D (x and z each) for the sines and cosines of theta_1 and theta_2."""
     sine_1, cosine_1, sine_2, cosine_2 = sc
-    left = given[lane, P_D1] - s1 * given[lane, P_B1]
-    joint = left + s2 * given[lane, P_B2] - given[lane, P_D1]
-    right = given[lane, P_D2] - s2 * given[lane, P_B2]
-    h1, tall, h2 = given[lane, P_H1], given[lane, P_TALL], given[lane, P_H2]
+    left = given[lane, r.P_D1] - s1 * given[lane, r.P_B1]
+    joint = left + s2 * given[lane, r.P_B2] - given[lane, r.P_D1]
+    right = given[lane, r.P_D2] - s2 * given[lane, r.P_B2]
+    h1, tall, h2 = given[lane, r.P_H1], given[lane, r.P_TALL], given[lane, r.P_H2]
     cx = right * cosine_2 + h2 * sine_2
     cz = h2 * cosine_2 - lift * right * sine_2
     return (
@@ -68,9 +54,9 @@ def vectors(
 @inlined
 def products(given: Table, lane: int, p: tuple[float, ...], o: tuple[float, ...]) -> tuple[float, float, float, float]:
     """C11, C12, C21, C22 of the motions with vectors ``p`` (after) and ``o`` (before)."""
-    m1, m2, i2 = given[lane, P_M1], given[lane, P_M2], given[lane, P_I2]
+    m1, m2, i2 = given[lane, r.P_M1], given[lane, r.P_M2], given[lane, r.P_I2]
     return (
-        given[lane, P_I1] + m1 * (p[0] * o[0] + p[1] * o[1]) + i2 + m2 * (p[4] * o[4] + p[5] * o[5]),
+        given[lane, r.P_I1] + m1 * (p[0] * o[0] + p[1] * o[1]) + i2 + m2 * (p[4] * o[4] + p[5] * o[5]),
         i2 + m2 * (p[4] * o[2] + p[5] * o[3]),
         i2 + m2 * (p[2] * o[4] + p[3] * o[5]),
         i2 + m2 * (p[2] * o[2] + p[3] * o[3]),
@@ -98,9 +84,9 @@ def motion(
     """M and F for each pair of pivots."""
     sc = turns(q1, q2, linear)
     lift = 1.0 if linear is None else 0.0
-    m1, m2 = given[lane, P_M1], given[lane, P_M2]
+    m1, m2 = given[lane, r.P_M1], given[lane, r.P_M2]
     for s1 in (1.0, -1.0):
-        drag = given[lane, P_VISCOUS] * corner_inertia(given, lane, s1) * v1
+        drag = given[lane, r.P_VISCOUS] * corner_inertia(given, lane, s1) * v1
         for s2 in (1.0, -1.0):
             k = line(s1, s2)
             v = vectors(given, lane, s1, s2, sc, lift)

@@ -8,38 +8,20 @@ from __future__ import annotations
 
 from typing import Any
 
+from models.lanes.arrays import Table
 from models.lanes.compiler import inlined
 from models.lanes.elementary import sine_cosine
-from models.stacked.lanes.rows import (
-    BX,
-    BZ,
-    CX,
-    CZ,
-    DRAG,
-    FREE_1,
-    FREE_2,
-    J1,
-    J2,
-    KX,
-    KZ,
-    SHARE,
-    SIDE_1,
-    SIDE_2,
-    WIDE_1,
-    WIDE_2,
-    W,
-)  # fmt: skip
+from models.stacked.lanes import rows as r
 
-Table = Any
 BOUNDLESS = 1e300
 
 
 @inlined
 def turned(w: Table, lane: int, q1: float, q2: float, linear: Any) -> tuple[float, ...]:
     """K, B and C (weighted as in `rows`) at rotations q1 and q1 + q2, and the sine and cosine of the latter."""
-    kx, kz = w[KX * W + lane], w[KZ * W + lane]
-    bx, bz = w[BX * W + lane], w[BZ * W + lane]
-    cx, cz = w[CX * W + lane], w[CZ * W + lane]
+    kx, kz = w[r.KX, lane], w[r.KZ, lane]
+    bx, bz = w[r.BX, lane], w[r.BZ, lane]
+    cx, cz = w[r.CX, lane], w[r.CZ, lane]
     if linear is not None:
         t2 = q1 + q2
         return kx + kz * q1, kz, bx + bz * q1, bz, cx + cz * t2, cz, t2, 1.0
@@ -63,24 +45,24 @@ def forces(
 ) -> tuple[float, float, float, float, float]:
     """M11, M12, M22 and F1, F2, over the total mass."""
     kx, kz, bx, bz, cx, cz, _, _ = place
-    j2 = w[J2 * W + lane]
+    j2 = w[r.J2, lane]
     f2 = g * cx - a * cz
-    f1 = g * kx - a * kz + f2 - w[DRAG * W + lane] * v1
+    f1 = g * kx - a * kz + f2 - w[r.DRAG, lane] * v1
     if linear is not None:
-        dot = w[BX * W + lane] * w[CX * W + lane] + w[BZ * W + lane] * w[CZ * W + lane]
+        dot = w[r.BX, lane] * w[r.CX, lane] + w[r.BZ, lane] * w[r.CZ, lane]
     else:
         dot = bx * cx + bz * cz
         cross = bz * cx - bx * cz
         f1 += cross * v2 * (v1 + v1 + v2)
         f2 -= cross * v1 * v1
     m12 = j2 + dot
-    return w[J1 * W + lane] + m12 + dot, m12, j2, f1, f2
+    return w[r.J1, lane] + m12 + dot, m12, j2, f1, f2
 
 
 @inlined
 def solve(w: Table, lane: int, m11: float, m12: float, m22: float, f1: float, f2: float) -> tuple[float, float]:
     """q'' of the joints that are up, 0 of the closed ones."""
-    free_1, free_2 = w[FREE_1 * W + lane], w[FREE_2 * W + lane]
+    free_1, free_2 = w[r.FREE_1, lane], w[r.FREE_2, lane]
     mixed = free_1 * free_2 * m12
     scale = 1.0 / (m11 * m22 - mixed * mixed)
     return free_1 * scale * (m22 * f1 - mixed * f2), free_2 * scale * (m11 * f2 - mixed * f1)
@@ -109,7 +91,7 @@ def contact(
     kx, kz, bx, bz, cx, cz, sine, cosine = place
     m11, m12, m22, f1, f2 = forces(w, lane, v1, v2, a, g, place, linear)
     x1, x2 = solve(w, lane, m11, m12, m22, f1, f2)
-    share = w[SHARE * W + lane]
+    share = w[r.SHARE, lane]
     w1, w2, t2 = v1 * v1, (v1 + v2) * (v1 + v2), x1 + x2
     top_h = share * (a + x1 * bz - w1 * bx) + t2 * cz - w2 * cx
     top_n = share * (g - x1 * bx - w1 * bz) - t2 * cx - w2 * cz
@@ -120,15 +102,15 @@ def contact(
     r2 = f2 - m12 * x1 - m22 * x2
     if linear is not None:
         # the linear equations hold the block at its upright inertia, and so its lever arms
-        across = share * g - x1 * w[BX * W + lane] * share - t2 * w[CX * W + lane]
-        below = g - x1 * w[KX * W + lane] - t2 * w[CX * W + lane]
+        across = share * g - x1 * w[r.BX, lane] * share - t2 * w[r.CX, lane]
+        below = g - x1 * w[r.KX, lane] - t2 * w[r.CX, lane]
     else:
         across = cosine * top_n + sine * top_h
         below = base_n
-    closed_1 = min(-r1, r1 + w[WIDE_1 * W + lane] * below)
-    closed_2 = min(-r2, r2 + w[WIDE_2 * W + lane] * across)
-    margin_1 = w[SIDE_1 * W + lane] * q1 if w[FREE_1 * W + lane] > 0.0 else closed_1
-    margin_2 = w[SIDE_2 * W + lane] * q2 if w[FREE_2 * W + lane] > 0.0 else closed_2
+    closed_1 = min(-r1, r1 + w[r.WIDE_1, lane] * below)
+    closed_2 = min(-r2, r2 + w[r.WIDE_2, lane] * across)
+    margin_1 = w[r.SIDE_1, lane] * q1 if w[r.FREE_1, lane] > 0.0 else closed_1
+    margin_2 = w[r.SIDE_2, lane] * q2 if w[r.FREE_2, lane] > 0.0 else closed_2
     base = abs(base_h) / base_n
     top = abs(top_h) / top_n
     return (
@@ -159,7 +141,7 @@ def rk4(
     p4, r4 = v1 + step * z1, v2 + step * z2
     u1, u2 = acceleration(w, lane, q1 + step * p3, q2 + step * r3, p4, r4, a1, g1, linear)
     sixth = step / 6.0
-    work = sixth * w[DRAG * W + lane] * (v1 * v1 + 2.0 * (p2 * p2 + p3 * p3) + p4 * p4)
+    work = sixth * w[r.DRAG, lane] * (v1 * v1 + 2.0 * (p2 * p2 + p3 * p3) + p4 * p4)
     return (
         q1 + sixth * (v1 + 2.0 * (p2 + p3) + p4),
         q2 + sixth * (v2 + 2.0 * (r2 + r3) + r4),

@@ -1,16 +1,15 @@
-"""What an impact leaves, one lane: the projection of `models.stacked.impact`."""
+"""What an impact leaves, one lane: the projection of `models.stacked.reference.impact`."""
 
 from __future__ import annotations
 
 import math
-from typing import Any
 
+from models.lanes.arrays import Table
 from models.lanes.compiler import called, inlined
+from models.stacked.lanes import rows as r
 from models.stacked.lanes.choice import choose, held
 from models.stacked.lanes.corners import line
-from models.stacked.lanes.rows import P_FACTOR_1, P_FACTOR_2, P_GIVEN_1, P_GIVEN_2
 
-Table = Any
 Landing = tuple[float, float, float, float]
 BASE, TOP = 0, 1
 
@@ -28,9 +27,9 @@ def land(
     n1, n2 = choose(system, base, top, False)
     x1, x2 = held(system, n1, n2)
     if joint == BASE:
-        ratio, factor, before, after = given[lane, P_GIVEN_1], given[lane, P_FACTOR_1], v1, x1
+        ratio, factor, before, after = given[lane, r.P_GIVEN_1], given[lane, r.P_FACTOR_1], v1, x1
     else:
-        ratio, factor, before, after = given[lane, P_GIVEN_2], given[lane, P_FACTOR_2], v2, x2
+        ratio, factor, before, after = given[lane, r.P_GIVEN_2], given[lane, r.P_FACTOR_2], v2, x2
     wanted = factor * (ratio * before if ratio == ratio else after)
     if wanted == after:
         return n1, n2, x1, x2

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
+from models.lanes.arrays import Table
 from models.lanes.chunks import CHUNK
 from models.lanes.compiler import called, inlined
+from models.stacked.lanes import rows as r
 from models.stacked.lanes.equation import contact, rk4
-from models.stacked.lanes.rows import GRAVITY, OFFSET, P_LEFT, P_RIGHT, SCALE, SIDE_1, SIDE_2, VSCALE, W
 
-Table = Any
 State = tuple[float, float, float, float]
 Pair = tuple[float, float]
 NONE = 2.0
@@ -26,7 +26,7 @@ def inputs(w: Table, slot: int, record: Table, i: int, f: float) -> tuple[float,
     first, second = live * (1.0 - f), live * f
     a = first * record[0, i] + second * record[0, i + 1]
     v = first * record[1, i] + second * record[1, i + 1]
-    return w[SCALE * W + slot] * a + w[OFFSET * W + slot], w[GRAVITY * W + slot] + w[VSCALE * W + slot] * v
+    return w[r.SCALE, slot] * a + w[r.OFFSET, slot], w[r.GRAVITY, slot] + w[r.VSCALE, slot] * v
 
 
 @called
@@ -40,7 +40,7 @@ def onset(given: Table, w: Table, lane: int, slot: int, record: Table, i: int, f
     a1, g1 = inputs(w, slot, record, i, 1.0)
     first = NONE
     for side in (1.0, -1.0):
-        k = given[lane, P_RIGHT] if side > 0.0 else given[lane, P_LEFT]
+        k = given[lane, r.P_RIGHT] if side > 0.0 else given[lane, r.P_LEFT]
         m0 = -side * a0 - g0 * k
         m1 = -side * a1 - g1 * k
         if m0 > 0.0:
@@ -56,13 +56,13 @@ def next_onset(given: Table, w: Table, lane: int, slot: int, record: Table, i: i
 
     ``chunk`` (2, n) holds the extremes of the record over `CHUNK` steps: |a|, |a_z|.
     """
-    k = min(given[lane, P_RIGHT], given[lane, P_LEFT])
-    scale, lift = abs(w[SCALE * W + slot]), abs(w[VSCALE * W + slot])
+    k = min(given[lane, r.P_RIGHT], given[lane, r.P_LEFT])
+    scale, lift = abs(w[r.SCALE, slot]), abs(w[r.VSCALE, slot])
     while i < last:
         if i % CHUNK == 0 and i + CHUNK <= last:
             c = i // CHUNK
-            push = scale * chunk[0, c] + abs(w[OFFSET * W + slot])
-            if push < (w[GRAVITY * W + slot] - lift * chunk[1, c]) * k:
+            push = scale * chunk[0, c] + abs(w[r.OFFSET, slot])
+            if push < (w[r.GRAVITY, slot] - lift * chunk[1, c]) * k:
                 i += CHUNK
                 continue
         if onset(given, w, lane, slot, record, i, 0.0) < NONE:
@@ -122,7 +122,7 @@ def closing(
     It has closed by ``rest`` of the step. Newton within a bracket on the step itself, from the root of
     the interpolant; the last correction, under 1e-7 of the step, is applied to the state.
     """
-    side = w[SIDE_1 * W + slot] if joint == 0 else w[SIDE_2 * W + slot]
+    side = w[r.SIDE_1, slot] if joint == 0 else w[r.SIDE_2, slot]
     low, high = 0.0, rest
     share = rest * hermite_root(
         state[joint], state[joint + 2], second[joint], end[joint], end[joint + 2], second_end[joint], rest * h

@@ -1,8 +1,8 @@
 """Where a quantity stands in the tables of the lane kernel.
 
-``work`` is one flat array: row r of the W lanes under way lies at ``work[r * W : (r + 1) * W]``
-(constant offsets let the compiler prove that rows do not overlap). ``given`` and ``result`` are
-tables (n, columns) over all lanes; ``result`` starts with the columns of `models.stacked.account`.
+``work`` (N_WORK, W) has a row for a quantity and a column for each lane under way; its sizes are constants,
+so the compiler proves that rows do not overlap. ``given`` and ``result`` are tables (n, columns) over all
+lanes; ``result`` starts with the columns of `models.stacked.account`.
 Masses and moments of a lane are over its total mass M.
 """
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from models.base import FloatArray
 from models.lanes.record import recorded
-from models.lanes.tables import Tables, filled, groups
+from models.lanes.tables import empty, filled, groups, logged, put
 from models.runs import Request, Run
 from models.stacked.account import N_ACCOUNT, outputs
 from models.stacked.declaration import REST_VELOCITY
@@ -94,18 +94,16 @@ def run(stack: Stack, request: Request, refinement: int = 1) -> Run:
 
     Samples: theta_1, r (rad) and their rates (rad s-1).
     """
-    found, steps = Tables.empty(request, r.N_RESULT, 4), 0
+    found, steps = empty(request, r.N_RESULT, 4), 0
     for (per_sample,), lanes in groups(substeps(stack, request.shaking.time_step) * refinement):
         part, asked = stack.take(lanes), request.take(lanes)
         record = recorded(request.shaking, per_sample, request.tail)
         first, last = asked.steps(per_sample, record.end)
-        tables = Tables.empty(asked, r.N_RESULT, 4)
+        tables = empty(asked, r.N_RESULT, 4)
         steps += advance(
-            record.samples, record.extremes, record.step, record.shaken, first, last,
-            given_table(part, asked.scale, initial_state(asked.initial, part.size)), tables.result,
-            per_sample if asked.history else 0, tables.trace, tables.log, tables.count, asked.history,
-            True if request.linear else None,
+            record, first, last, given_table(part, asked.scale, initial_state(asked.initial, part.size)), tables,
+            per_sample if asked.history else 0, asked.history, True if request.linear else None,
         )  # fmt: skip
-        found.put(lanes, tables)
+        put(found, lanes, tables)
     account = found.result[:, :N_ACCOUNT]
-    return Run(outputs(stack, account), settled_history(found.trace, account), found.events(EVENTS), steps)
+    return Run(outputs(stack, account), settled_history(found.trace, account), logged(found, EVENTS), steps)

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 import models
-from models.base import FloatArray, History
+from models.base import Event, FloatArray, History
+from models.housner.block import Block
+from models.housner.reference import run as reference
+from models.runs import Request
 from models.shaking import Shaking
 
 MODEL = models.get("housner")
@@ -62,3 +66,32 @@ def history(
         options={"formulation": "linear" if linear else "nonlinear"},
         integrator=integrator,
     )
+
+
+@dataclass(frozen=True)
+class Told:
+    """What the reference says of one block: outputs, history at the samples, events."""
+
+    outputs: dict[str, float]
+    time: FloatArray
+    rotation: FloatArray
+    rate: FloatArray
+    shift: FloatArray
+    events: tuple[Event, ...]
+
+
+def by_reference(
+    block: Block,
+    shaking: Shaking,
+    scale: float = 1.0,
+    *,
+    tail: float = 0.0,
+    initial: Mapping[str, float] | None = None,
+    rtol: float = 1e-10,
+) -> Told:
+    """One block by the reference."""
+    start = {name: np.array([value]) for name, value in (initial or {}).items()}
+    request = Request(shaking, np.array([scale]), tail=tail, initial=start)
+    run = reference.run(block, request, rtol)
+    outputs = {name: float(values[0]) for name, values in run.outputs.items()}
+    return Told(outputs, request.times, *np.moveaxis(run.samples[0], -1, 0), run.events[0])

@@ -29,7 +29,7 @@ def test_lanes_agree_with_the_reference_away_from_the_separatrix(case: Case) -> 
     np.testing.assert_allclose(fast["peak_rotation"][0], slow["peak_rotation"][0], rtol=1e-5)
     np.testing.assert_allclose(fast["onset_time"][0], slow["onset_time"][0], rtol=1e-9)
     np.testing.assert_allclose(fast["dissipated_energy"][0], slow["dissipated_energy"][0], rtol=1e-3)
-    np.testing.assert_allclose(fast["needed_friction"][0], slow["needed_friction"][0], rtol=2e-2)
+    np.testing.assert_allclose(fast["friction_demand"][0], slow["friction_demand"][0], rtol=2e-2)
     assert fast["impacts"][0] == slow["impacts"][0]
 
 

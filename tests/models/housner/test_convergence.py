@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from models.housner import newmark, reference
 from models.housner.block import Block
 from models.housner.lanes import run as lanes
 from models.housner.model import MODEL
+from models.housner.reference import newmark
+from models.housner.reference import run as reference
 from models.runs import Request
 from models.shaking import Shaking
 from tests.models.housner.adapter import rectangle
@@ -28,22 +29,19 @@ def forced() -> tuple[Block, Shaking]:
 def final_state(steps: int, integrator: str, rtol: float = 1e-13) -> np.ndarray:
     """theta and theta'/p at the end of the record over alpha, with ``steps`` steps a sample."""
     block, shaking = forced()
+    request = Request(shaking, np.ones(1), samples=shaking.horizontal.size)
     if integrator == "newmark":
-        result = newmark.run(block, shaking, np.ones(1), tail=0.0, substeps=steps)
-        state = np.array([result.rotation[0, -1], result.rate[0, -1] / 2.0])
+        rotation, rate, _ = newmark.run(block, request, steps).samples[0, -1]
     elif integrator == "lanes":
-        size = shaking.horizontal.size
-        rotation, rate, _ = lanes.run(block, Request(shaking, np.ones(1), samples=size), steps).samples[0, -1]
-        state = np.array([rotation, rate / 2.0])
+        rotation, rate, _ = lanes.run(block, request, steps).samples[0, -1]
     else:
-        run = reference.run(block, shaking, tail=0.0, rtol=rtol)
-        state = np.array([run.rotation[-1], run.rate[-1] / 2.0])
-    return state / ALPHA
+        rotation, rate, _ = reference.run(block, request, rtol).samples[0, -1]
+    return np.array([rotation, rate / 2.0]) / ALPHA
 
 
 def test_the_run_has_what_an_order_test_needs() -> None:
     block, shaking = forced()
-    run = reference.run(block, shaking, tail=0.0, rtol=1e-13)
+    run = reference.run(block, Request(shaking, np.ones(1)), 1e-13)
     assert run.outputs["impacts"] >= 2
     assert 0.1 < run.outputs["peak_rotation_ratio"] < 0.8
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from models.housner.impact import momentum_restitution
 from models.housner.model import MODEL
+from models.housner.reference.impact import momentum_restitution
 
 
 def derived(**values: float) -> dict[str, float]:

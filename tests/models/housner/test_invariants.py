@@ -5,9 +5,8 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-from models.housner import reference
 from models.shaking import Shaking
-from tests.models.housner.adapter import INTEGRATORS, MODEL, outcomes, rectangle
+from tests.models.housner.adapter import INTEGRATORS, MODEL, by_reference, outcomes, rectangle
 from tests.models.strategies import SEEDS, cases, random_block, random_motion
 
 SETTINGS = settings(max_examples=15, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
@@ -55,7 +54,7 @@ def test_no_rocking_below_the_onset_and_rocking_above(integrator: str, vertical:
     assert found["status"].tolist() == [1, 2]
     assert np.isnan(found["onset_time"][0])
     assert found["onset_time"][1] == pytest.approx(0.05, abs=1e-8)
-    assert found["uplift_duration"][0] == 0.0 == found["needed_friction"][0] == found["peak_rotation"][0]
+    assert found["uplift_duration"][0] == 0.0 == found["friction_demand"][0] == found["peak_rotation"][0]
 
 
 @SETTINGS
@@ -67,7 +66,8 @@ def test_energy_between_impacts_and_at_impacts(seed: int, start: float) -> None:
     assume(block.momentum_restitution[0] > 0.05)
     alpha, theta = float(block.slenderness[0]), start * float(block.slenderness[0])
     p = float(block.frequency_parameter[0])
-    run = reference.run(block, Shaking.silence(8.0 / p, 0.02 / p), tail=0.0, initial={"rotation_1": theta})
+    silence = Shaking.silence(8.0 / p, 0.02 / p)
+    run = by_reference(block, silence, initial={"rotation_1": theta})
     turning = 0.5 * float(block.pivot_inertia[0])
     weight = float(block.mass[0] * block.gravity[0] * block.radius[0])
     energy = turning * run.rate**2 + weight * (np.cos(alpha - np.abs(run.rotation)) - np.cos(alpha))

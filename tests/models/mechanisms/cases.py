@@ -10,9 +10,9 @@ import numpy as np
 
 import models
 from models.base import FloatArray
-from models.housner import reference
 from models.housner.lanes import run as lanes
-from models.runs import Request
+from models.housner.reference import run as reference
+from models.runs import Request, Run
 from models.shaking import Shaking
 
 HOUSNER = models.get("housner")
@@ -75,21 +75,23 @@ def by_lanes(
 ) -> Told:
     """One run by the kernel, as long as the record."""
     block = HOUSNER.build(values, vertical=shaking.vertical is not None and shaking.vertical_acts)
-    request = Request(
-        shaking, np.ones(1), initial={k: np.array([v]) for k, v in (initial or {}).items()},
-        samples=shaking.horizontal.size, log=2000,
-    )  # fmt: skip
-    ran = lanes.run(block, request, refinement)
-    outputs = {k: float(v[0]) for k, v in ran.outputs.items()}
-    rotation, rate, shift = np.moveaxis(ran.samples[0], -1, 0)
-    return Told(outputs, rotation, rate, shift, tuple((e.time, e.kind) for e in ran.events[0]))
+    return _told(lanes.run(block, _request(shaking, initial), refinement))
 
 
 def by_reference(values: Mapping[str, Any], shaking: Shaking, initial: Mapping[str, float] | None = None) -> Told:
     """The same by the reference."""
     block = HOUSNER.build(values, vertical=shaking.vertical is not None and shaking.vertical_acts)
-    ran = reference.run(block, shaking, 1.0, tail=0.0, initial=initial)
-    return Told(ran.outputs, ran.rotation, ran.rate, ran.shift, tuple((e.time, e.kind) for e in ran.events))
+    return _told(reference.run(block, _request(shaking, initial)))
+
+
+def _request(shaking: Shaking, initial: Mapping[str, float] | None) -> Request:
+    start = {name: np.array([value]) for name, value in (initial or {}).items()}
+    return Request(shaking, np.ones(1), initial=start, samples=shaking.horizontal.size, log=2000)
+
+
+def _told(run: Run) -> Told:
+    outputs = {name: float(values[0]) for name, values in run.outputs.items()}
+    return Told(outputs, *np.moveaxis(run.samples[0], -1, 0), tuple((e.time, e.kind) for e in run.events[0]))
 
 
 def released(start: float) -> float:

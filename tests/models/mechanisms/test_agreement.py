@@ -58,7 +58,7 @@ def test_kernel_equals_reference(name: str) -> None:
             expected = slow.outputs[output]
             np.testing.assert_allclose(fast.outputs[output], expected, rtol=max(1e-6, accuracy), err_msg=output)
         # the kernel looks at the ends of its steps and at events, the reference at eight points of its own
-        np.testing.assert_allclose(fast.outputs["needed_friction"], slow.outputs["needed_friction"], rtol=5e-3)
+        np.testing.assert_allclose(fast.outputs["friction_demand"], slow.outputs["friction_demand"], rtol=5e-3)
 
 
 @pytest.mark.parametrize(

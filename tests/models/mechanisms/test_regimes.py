@@ -37,14 +37,14 @@ def test_a_block_slides_before_it_rocks_if_friction_is_under_its_slope() -> None
         told = by_lanes({**WALL, "sliding.friction": factor * slope}, pulse(6.0, 0.3))
         assert (told.outputs["uplift_duration"] > 0.0) == rocks
         assert np.max(np.abs(told.shift)) > 1e-3
-        assert told.outputs["needed_friction"] <= factor * slope * (1 + 1e-12)
+        assert told.outputs["friction_demand"] <= factor * slope * (1 + 1e-12)
 
 
 @pytest.mark.parametrize("factor", [1.1, 3.0])
 def test_friction_over_the_demand_changes_nothing(factor: float) -> None:
     shaking = pulse(3.9, 0.5)
     sticks = by_lanes(WALL, shaking)
-    told = by_lanes({**WALL, "sliding.friction": factor * sticks.outputs["needed_friction"]}, shaking)
+    told = by_lanes({**WALL, "sliding.friction": factor * sticks.outputs["friction_demand"]}, shaking)
     np.testing.assert_allclose(told.rotation, sticks.rotation, rtol=0, atol=1e-12)
     np.testing.assert_array_equal(told.shift, 0.0)
 

@@ -5,12 +5,13 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from models.housner.model import MODEL as HOUSNER
+from models.runs import Request
 from models.shaking import Shaking
-from models.stacked import reference
 from models.stacked.configuration import CONFIGURATIONS, State
 from models.stacked.equation import held, motion
 from models.stacked.model import MODEL
-from models.stacked.overturning import energy
+from models.stacked.reference import run as reference
+from models.stacked.reference.overturning import energy
 from tests.models.stacked.walls import LANES, A, B, G, random_stacks
 from tests.models.strategies import random_motion
 
@@ -84,7 +85,7 @@ def test_a_seated_top_block_makes_one_body(integrator: str) -> None:
         1 << CONFIGURATIONS.index(sides) for sides in ((0, 0), (1, 0), (-1, 0))
     )
     assert stacked.outputs["impacts_base"] == block.outputs["impacts"] >= 4
-    for name in ("onset_time", "uplift_duration", "dissipated_energy", "peak_rotation_ratio", "needed_friction"):
+    for name in ("onset_time", "uplift_duration", "dissipated_energy", "peak_rotation_ratio", "friction_demand"):
         here = f"{name}_base" if f"{name}_base" in stacked.outputs else f"{name}_1"
         assert stacked.outputs[here] == pytest.approx(block.outputs[name], rel=2e-5), name
     np.testing.assert_array_equal(stacked.channels["rotation_1"], stacked.channels["rotation_2"])
@@ -109,14 +110,12 @@ def test_the_linear_formulation_is_the_limit_of_small_rotations() -> None:
     for slender in (0.1, 0.05):
         stack = MODEL.build({**B, "wall_length": slender, "top_length": 0.6 * slender})
         alpha = float(stack.slenderness[0])
-        histories = [
-            reference.run(
-                stack, Shaking.silence(0.6, 0.005), tail=0.0, linear=linear,
-                initial={"q1": 0.3 * alpha, "q2": -0.5 * alpha},
-            )
-            for linear in (False, True)
-        ]  # fmt: skip
-        assert len(histories[0].events) >= 2
-        apart.append(np.abs(histories[0].history[:2] - histories[1].history[:2]).max() / alpha)
+        start = {"rotation_1": np.array([0.3 * alpha]), "rotation_2": np.array([-0.2 * alpha])}
+        plain, linear = (
+            reference.run(stack, Request(Shaking.silence(0.6, 0.005), np.ones(1), {"formulation": word}, initial=start))
+            for word in MODEL.options["formulation"]
+        )
+        assert len(plain.events[0]) >= 2
+        apart.append(np.abs(plain.samples[..., :2] - linear.samples[..., :2]).max() / alpha)
     assert apart[0] < 1e-2
     assert apart[0] / apart[1] == pytest.approx(4.0, rel=0.1)

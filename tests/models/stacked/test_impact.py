@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from models.stacked.choice import candidates, margin
 from models.stacked.configuration import BASE, TOP, State
-from models.stacked.impact import closed, impact, impulses, kinetic_energy
 from models.stacked.model import MODEL
+from models.stacked.reference.choice import candidates, margin
+from models.stacked.reference.impact import closed, impact, impulses, kinetic_energy
 from models.stacked.stack import Stack
 from tests.models.stacked.walls import A, random_stacks
 

@@ -52,7 +52,7 @@ def test_outputs_fit_together() -> None:
         np.testing.assert_array_equal(np.abs(found[name]), pair.max(axis=0))
     rest = found["status"] == 1
     assert np.all(found["peak_rotation"][rest] == 0.0) and np.all(np.isnan(found["onset_time"][rest]))
-    assert np.all(found["needed_friction"][~rest] > 0.1)
+    assert np.all(found["friction_demand"][~rest] > 0.1)
 
 
 def test_a_vertical_motion_that_does_not_act_is_left_out() -> None:

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from models.stacked.choice import SIDES, admissible, candidates, choose
 from models.stacked.configuration import CONFIGURATIONS
 from models.stacked.equation import held
 from models.stacked.model import MODEL
+from models.stacked.reference.choice import SIDES, admissible, candidates, choose
 from tests.models.stacked.walls import A, B, G, at_rest, random_stacks
 
 REST, UPPER, ONE_BODY, SAME_SIDE, OPPOSED = (0, 0), (0, 1), (1, 0), (1, 1), (1, -1)

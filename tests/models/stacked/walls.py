@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from models.base import FloatArray
-from models.stacked.choice import Corners
 from models.stacked.equation import motion
+from models.stacked.reference.choice import Corners
 from models.stacked.stack import Stack
 
 G = 9.81

@@ -1,4 +1,4 @@
-"""A wall that bends while it rocks or stands, one lane; equations in `models.housner.flexure`.
+"""A wall that bends while it rocks or stands, one lane; equations in `models.housner.reference.flexure`.
 
 All over M: m, f, k the mode's mass, force and moment integrals. U, U1 hold its amplitude eta and eta'. The
 rigid block's theta'' brings in gravity, the ground and all couples; the mode adds its own terms.
@@ -15,26 +15,25 @@ from models.housner.lanes import rows as r
 from models.housner.lanes.equation import acceleration
 from models.housner.lanes.impact import pivot, restitution
 from models.housner.lanes.step import come_down, inputs, lift_off, raise_peak, stand_on
+from models.lanes.arrays import Counts, Table
 from models.lanes.compiler import called
 from models.lanes.events import note, turning_point
-
-Table = Any
 
 
 @called
 def bend(
     given: Table, result: Table, w: Table, lane: int, slot: int, record: Table, i: int, h: float,
-    log: Table, count: Table, general: Any, linear: Any,
+    log: Table, count: Counts, general: Any, linear: Any,
 ) -> None:  # fmt: skip
     """Advance a lane over step i, in full contact or rocking."""
-    w[r.TH * r.W + slot], w[r.OM * r.W + slot] = w[r.TH0 * r.W + slot], w[r.OM0 * r.W + slot]
+    w[r.TH, slot], w[r.OM, slot] = w[r.TH0, slot], w[r.OM0, slot]
     f, rounds = 0.0, 0
     while f < 1.0:
         rounds += 1
         if rounds > MOST_IMPACTS_PER_STEP:
             result[lane, r.R_STATUS], result[lane, r.R_MODE] = r.NOT_CONVERGED, r.RINGING
             for row in (r.TH, r.OM, r.U, r.U1):
-                w[row * r.W + slot] = 0.0
+                w[row, slot] = 0.0
             break
         f = piece(given, result, w, lane, slot, record, i, f, h, log, count, general, linear)
 
@@ -42,13 +41,13 @@ def bend(
 @called
 def relax(given: Table, w: Table, lane: int, slot: int, record: Table, i: int, general: Any, linear: Any) -> None:
     """The mode starts where it would stay under the rigid block's motion."""
-    theta, omega = w[r.TH * r.W + slot], w[r.OM * r.W + slot]
+    theta, omega = w[r.TH, slot], w[r.OM, slot]
     a, g, p, q = inputs(w, slot, record, i, 0.0)
     second, _, _, _ = acceleration(w, slot, theta, omega, a, g, p, q, general, linear)
     m, k, force = given[lane, r.Q_MODAL_MASS], given[lane, r.Q_MODAL_MOMENT], given[lane, r.Q_MODAL_FORCE]
-    b = w[r.SIDE * r.W + slot] * pivot(given, w, lane, slot, w[r.SIDE * r.W + slot])
+    b = w[r.SIDE, slot] * pivot(given, w, lane, slot, w[r.SIDE, slot])
     push = force * (g * math.sin(theta) - (a - g * p) * math.cos(theta)) - k * (second + q) - b * force * omega * omega
-    w[r.U * r.W + slot] = push / (m * given[lane, r.Q_FREQUENCY] ** 2)
+    w[r.U, slot] = push / (m * given[lane, r.Q_FREQUENCY] ** 2)
 
 
 @called
@@ -60,17 +59,17 @@ def rates(
     m, k, force = given[lane, r.Q_MODAL_MASS], given[lane, r.Q_MODAL_MOMENT], given[lane, r.Q_MODAL_FORCE]
     natural = given[lane, r.Q_FREQUENCY]
     sine, cosine = math.sin(theta), math.cos(theta)
-    felt = a - g * p
+    base = a - g * p
     loss = 2.0 * STRUCTURAL_DAMPING * natural * speed
-    push = force * (g * sine - felt * cosine) - m * (loss + natural * natural * eta) - k * q
+    push = force * (g * sine - base * cosine) - m * (loss + natural * natural * eta) - k * q
     if not up:
         return 0.0, push / m, m * loss * speed
     second, x, z, power = acceleration(w, slot, theta, omega, a, g, p, q, general, linear)
-    bf = w[r.SIDE * r.W + slot] * pivot(given, w, lane, slot, w[r.SIDE * r.W + slot]) * force
-    rigid = w[r.IM * r.W + slot] + x * x + z * z
+    bf = w[r.SIDE, slot] * pivot(given, w, lane, slot, w[r.SIDE, slot]) * force
+    rigid = w[r.IM, slot] + x * x + z * z
     inertia = rigid - 2.0 * bf * eta + m * eta * eta
     push += omega * omega * (m * eta - bf)
-    moment = rigid * second + force * eta * (g * cosine + felt * sine) - 2.0 * omega * speed * (m * eta - bf)
+    moment = rigid * second + force * eta * (g * cosine + base * sine) - 2.0 * omega * speed * (m * eta - bf)
     alpha = (moment - k / m * push) / (inertia - k * k / m)
     return alpha, (push - k * alpha) / m, power + m * loss * speed
 
@@ -81,8 +80,8 @@ def move(
     general: Any, linear: Any,
 ) -> tuple[float, float, float, float, float]:  # fmt: skip
     """theta, theta', eta, eta' and the work lost over M after ``share`` of step i from its fraction f."""
-    theta, omega = w[r.TH * r.W + slot], w[r.OM * r.W + slot]
-    eta, speed = w[r.U * r.W + slot], w[r.U1 * r.W + slot]
+    theta, omega = w[r.TH, slot], w[r.OM, slot]
+    eta, speed = w[r.U, slot], w[r.U1, slot]
     step = share * h
     th, om, et, sp = theta, omega, eta, speed
     d_th, d_om, d_et, d_sp, work = 0.0, 0.0, 0.0, 0.0, 0.0
@@ -103,18 +102,18 @@ def note_demand(
     given: Table, w: Table, lane: int, slot: int, record: Table, i: int, f: float, general: Any, linear: Any
 ) -> None:
     """The friction demand |H|/N at the corner, the bending wall's inertia included."""
-    theta, omega = w[r.TH * r.W + slot], w[r.OM * r.W + slot]
-    eta, speed = w[r.U * r.W + slot], w[r.U1 * r.W + slot]
+    theta, omega = w[r.TH, slot], w[r.OM, slot]
+    eta, speed = w[r.U, slot], w[r.U1, slot]
     a, g, p, q = inputs(w, slot, record, i, f)
     alpha, beta, _ = rates(given, w, lane, slot, True, theta, omega, eta, speed, a, g, p, q, general, linear)
     _, x, z, _ = acceleration(w, slot, theta, omega, a, g, p, q, general, linear)
     force, sine, cosine = given[lane, r.Q_MODAL_FORCE], math.sin(theta), math.cos(theta)
     across, along = beta - eta * omega * omega, 2.0 * speed * omega + eta * alpha
-    right = a - g * p + w[r.H * r.W + slot] * q + x * alpha + z * omega * omega
+    right = a - g * p + w[r.H, slot] * q + x * alpha + z * omega * omega
     right += force * (across * cosine - along * sine)
-    up = g + z * alpha - (x - w[r.RHO * r.W + slot]) * omega * omega - force * (across * sine + along * cosine)
+    up = g + z * alpha - (x - w[r.RHO, slot]) * omega * omega - force * (across * sine + along * cosine)
     demand = abs(right) / up if up > 0.0 else 1e300
-    w[r.DEMAND * r.W + slot] = max(w[r.DEMAND * r.W + slot], demand)
+    w[r.DEMAND, slot] = max(w[r.DEMAND, slot], demand)
 
 
 @called
@@ -128,24 +127,24 @@ def lifting(
     h = given[lane, r.Q_HEIGHT]
     own = given[lane, r.Q_INERTIA] / given[lane, r.Q_MASS] + h * h
     moment = given[lane, r.Q_MODAL_MOMENT] * beta + (a - g * p) * h + own * q - g * given[lane, r.Q_MODAL_FORCE] * eta
-    return float(-side * moment - g * pivot(given, w, lane, slot, side) - w[r.COULOMB * r.W + slot])
+    return float(-side * moment - g * pivot(given, w, lane, slot, side) - w[r.COULOMB, slot])
 
 
 @called
 def piece(
     given: Table, result: Table, w: Table, lane: int, slot: int, record: Table, i: int, f: float, h: float,
-    log: Table, count: Table, general: Any, linear: Any,
+    log: Table, count: Counts, general: Any, linear: Any,
 ) -> float:  # fmt: skip
     """From the fraction f of step i until it ends, or to an uplift or impact; returns the fraction."""
     up = result[lane, r.R_MODE] == r.UP
-    theta, omega = w[r.TH * r.W + slot], w[r.OM * r.W + slot]
-    side = w[r.SIDE * r.W + slot]
+    theta, omega = w[r.TH, slot], w[r.OM, slot]
+    side = w[r.SIDE, slot]
     if up:
         if omega != 0.0:
-            w[r.DIRECTION * r.W + slot] = 1.0 if omega > 0.0 else -1.0
+            w[r.DIRECTION, slot] = 1.0 if omega > 0.0 else -1.0
         note_demand(given, w, lane, slot, record, i, f, general, linear)
     else:
-        eta, speed = w[r.U * r.W + slot], w[r.U1 * r.W + slot]
+        eta, speed = w[r.U, slot], w[r.U1, slot]
         for s in (1.0, -1.0):
             if lifting(given, w, lane, slot, s, eta, speed, record, i, f, general, linear) > 0.0:
                 lift_off(given, result, w, lane, slot, s, (i + f) * h, log, count, linear)
@@ -180,13 +179,13 @@ def piece(
         th1, om1, eta1, speed1, work = move(given, w, lane, slot, up, record, i, f, share, h, general, linear)
     if omega * om1 < 0.0:
         raise_peak(result, w, lane, slot, turning_point(theta, omega, th1, om1, share * h))
-    w[r.TH * r.W + slot], w[r.OM * r.W + slot] = th1, om1
-    w[r.U * r.W + slot], w[r.U1 * r.W + slot] = eta1, speed1
-    w[r.WORK * r.W + slot] += work
+    w[r.TH, slot], w[r.OM, slot] = th1, om1
+    w[r.U, slot], w[r.U1, slot] = eta1, speed1
+    w[r.WORK, slot] += work
     if not over:
         return 1.0
     if up:
-        w[r.TH * r.W + slot] = 0.0
+        w[r.TH, slot] = 0.0
         land(given, result, w, lane, slot, (i + f + share) * h, log, count, linear)
     else:
         lift_off(given, result, w, lane, slot, side_up, (i + f + share) * h, log, count, linear)
@@ -195,11 +194,11 @@ def piece(
 
 @called
 def land(
-    given: Table, result: Table, w: Table, lane: int, slot: int, time: float, log: Table, count: Table, linear: Any
+    given: Table, result: Table, w: Table, lane: int, slot: int, time: float, log: Table, count: Counts, linear: Any
 ) -> None:
-    """An impact at theta = 0: the law of `models.housner.flexure`."""
-    side, omega = w[r.SIDE * r.W + slot], w[r.OM * r.W + slot]
-    eta, speed = w[r.U * r.W + slot], w[r.U1 * r.W + slot]
+    """An impact at theta = 0: the law of `models.housner.reference.flexure`."""
+    side, omega = w[r.SIDE, slot], w[r.OM, slot]
+    eta, speed = w[r.U, slot], w[r.U1, slot]
     m, k, force = given[lane, r.Q_MODAL_MASS], given[lane, r.Q_MODAL_MOMENT], given[lane, r.Q_MODAL_FORCE]
     own = given[lane, r.Q_INERTIA] / given[lane, r.Q_MASS] + given[lane, r.Q_HEIGHT] ** 2
     old, new = pivot(given, w, lane, slot, side), pivot(given, w, lane, slot, -side)
@@ -221,6 +220,6 @@ def land(
         speed1 = speed + min(kept, share) / k * omega
         result[lane, r.R_MODE] = r.RINGING
         come_down(result, lane, time, log, count)
-    w[r.OM * r.W + slot], w[r.U1 * r.W + slot] = om1, speed1
+    w[r.OM, slot], w[r.U1, slot] = om1, speed1
     left = 0.5 * (j_new * om1 + 2.0 * k * speed1) * om1 + 0.5 * m * speed1 * speed1
     result[lane, r.R_DISSIPATED] += given[lane, r.Q_MASS] * (before - left)

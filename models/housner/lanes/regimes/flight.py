@@ -14,9 +14,8 @@ from typing import Any
 from models.housner.lanes import rows as r
 from models.housner.lanes.impact import pivot
 from models.housner.lanes.step import inputs, raise_peak, stand_on
+from models.lanes.arrays import Table
 from models.lanes.compiler import called, inlined
-
-Table = Any
 
 
 @inlined
@@ -38,11 +37,11 @@ def corner(given: Table, w: Table, lane: int, slot: int, theta: float) -> tuple[
 def shift(given: Table, result: Table, w: Table, lane: int, slot: int) -> float:
     """Displacement of the mass centre beyond that of rocking on corners that stay where they are, in m."""
     if result[lane, r.R_MODE] == r.FLIGHT:
-        x, _, _, _ = corner(given, w, lane, slot, w[r.TH * r.W + slot])
-        return float(w[r.U * r.W + slot] - x)
+        x, _, _, _ = corner(given, w, lane, slot, w[r.TH, slot])
+        return float(w[r.U, slot] - x)
     if given[lane, r.Q_FREQUENCY] < math.inf:
-        return float(given[lane, r.Q_MODAL_FORCE] * w[r.U * r.W + slot] * math.cos(w[r.TH * r.W + slot]))
-    return float(w[r.U * r.W + slot])
+        return float(given[lane, r.Q_MODAL_FORCE] * w[r.U, slot] * math.cos(w[r.TH, slot]))
+    return float(w[r.U, slot])
 
 
 @inlined
@@ -58,7 +57,7 @@ def take_off(given: Table, result: Table, w: Table, lane: int, slot: int, before
 
     ``before`` is theta' before the impact, ``after`` what the law of restitution left of it.
     """
-    side, height = w[r.SIDE * r.W + slot], given[lane, r.Q_HEIGHT]
+    side, height = w[r.SIDE, slot], given[lane, r.Q_HEIGHT]
     new, old = pivot(given, w, lane, slot, side), pivot(given, w, lane, slot, -side)
     rebound = given[lane, r.Q_BOUNCE] * (old + new) * abs(before)
     if rebound <= new * given[lane, r.Q_REST]:
@@ -68,8 +67,8 @@ def take_off(given: Table, result: Table, w: Table, lane: int, slot: int, before
     result[lane, r.R_DISSIPATED] += energy(given, lane, after, height * after, side * new * after)
     result[lane, r.R_DISSIPATED] -= energy(given, lane, omega, across, up)
     result[lane, r.R_MODE] = r.FLIGHT
-    w[r.U1 * r.W + slot] = across
-    w[r.Z * r.W + slot], w[r.Z1 * r.W + slot] = height, up
+    w[r.U1, slot] = across
+    w[r.Z, slot], w[r.Z1, slot] = height, up
     return float(omega)
 
 
@@ -80,8 +79,8 @@ def fly(
 ) -> tuple[float, float, float]:  # fmt: skip
     """Free flight from the fraction f of step i to its end or to a landing: the fraction, theta, theta' then."""
     height = given[lane, r.Q_HEIGHT]
-    x, across = w[r.U * r.W + slot], w[r.U1 * r.W + slot]
-    z, up = w[r.Z * r.W + slot], w[r.Z1 * r.W + slot]
+    x, across = w[r.U, slot], w[r.U1, slot]
+    z, up = w[r.Z, slot], w[r.Z1, slot]
     a0, g0, p0, q0 = inputs(w, slot, record, i, f)
     a1, g1, p1, q1 = inputs(w, slot, record, i, 1.0)
     whole = (1.0 - f) * h
@@ -105,10 +104,10 @@ def fly(
             break
     th1 = theta + time * (omega + time * (0.5 * at + time * bt / 6.0))
     om1 = omega + time * (at + 0.5 * time * bt)
-    w[r.U * r.W + slot] = x + time * (across + time * (0.5 * ax + time * bx / 6.0))
-    w[r.U1 * r.W + slot] = across + time * (ax + 0.5 * time * bx)
-    w[r.Z * r.W + slot] = z + time * (up + time * (0.5 * az + time * bz / 6.0))
-    w[r.Z1 * r.W + slot] = up + time * (az + 0.5 * time * bz)
+    w[r.U, slot] = x + time * (across + time * (0.5 * ax + time * bx / 6.0))
+    w[r.U1, slot] = across + time * (ax + 0.5 * time * bx)
+    w[r.Z, slot] = z + time * (up + time * (0.5 * az + time * bz / 6.0))
+    w[r.Z1, slot] = up + time * (az + 0.5 * time * bz)
     raise_peak(result, w, lane, slot, abs(th1))
     if not landed:
         return 1.0, th1, om1
@@ -122,7 +121,7 @@ def touch(
 ) -> float:
     """A corner lands out of the air: it leaves again or stays; returns theta' after it."""
     mass = given[lane, r.Q_MASS]
-    across, up = w[r.U1 * r.W + slot], w[r.Z1 * r.W + slot]
+    across, up = w[r.U1, slot], w[r.Z1, slot]
     x, _, sway, lift = corner(given, w, lane, slot, theta)
     rebound = -given[lane, r.Q_BOUNCE] * (up - lift * omega)
     if rebound <= pivot(given, w, lane, slot, 1.0 if theta >= 0.0 else -1.0) * given[lane, r.Q_REST]:
@@ -133,13 +132,13 @@ def touch(
     across, up = sway * after, rebound + lift * after
     result[lane, r.R_DISSIPATED] -= energy(given, lane, after, across, up)
     side = 1.0 if theta >= 0.0 else -1.0
-    if side != w[r.SIDE * r.W + slot]:
+    if side != w[r.SIDE, slot]:
         result[lane, r.R_IMPACTS] += 1.0
         result[lane, r.R_SWING] = 0.0
         stand_on(given, w, lane, slot, side, linear)
-    w[r.U1 * r.W + slot], w[r.Z1 * r.W + slot] = across, up
+    w[r.U1, slot], w[r.Z1, slot] = across, up
     if rebound == 0.0:
         result[lane, r.R_MODE] = r.UP
-        w[r.U * r.W + slot] -= x
-        w[r.U1 * r.W + slot] = 0.0
+        w[r.U, slot] -= x
+        w[r.U1, slot] = 0.0
     return float(after)

@@ -20,29 +20,29 @@ from models.housner.lanes.equation import acceleration
 from models.housner.lanes.onset import excess, onset, slip_onset
 from models.housner.lanes.regimes.slip_impact import JAM, land
 from models.housner.lanes.step import inputs, lift_off, part, raise_peak, released
+from models.lanes.arrays import Counts, Table
 from models.lanes.compiler import called, inlined
 from models.lanes.events import turning_point
 
-Table = Any
 CROSSING, REVERSAL, DEMAND, TURNING = 0, 1, 2, 3
 
 
 @called
 def slide(
     given: Table, result: Table, w: Table, lane: int, slot: int, record: Table, i: int, h: float,
-    log: Table, count: Table, general: Any, linear: Any,
+    log: Table, count: Counts, general: Any, linear: Any,
 ) -> None:  # fmt: skip
     """Advance a lane over step i, stuck or slipping, rocking or flat."""
-    w[r.TH * r.W + slot], w[r.OM * r.W + slot] = w[r.TH0 * r.W + slot], w[r.OM0 * r.W + slot]
+    w[r.TH, slot], w[r.OM, slot] = w[r.TH0, slot], w[r.OM0, slot]
     f, rounds = 0.0, 0
     while f < 1.0:
         rounds += 1
         if rounds > MOST_IMPACTS_PER_STEP:
             result[lane, r.R_STATUS], result[lane, r.R_MODE] = r.NOT_CONVERGED, r.DOWN
-            w[r.TH * r.W + slot], w[r.OM * r.W + slot], w[r.U1 * r.W + slot] = 0.0, 0.0, 0.0
+            w[r.TH, slot], w[r.OM, slot], w[r.U1, slot] = 0.0, 0.0, 0.0
             break
         if result[lane, r.R_MODE] == r.HELD:
-            if not released(w, slot, w[r.TH * r.W + slot], record, i, f, general, linear):
+            if not released(w, slot, w[r.TH, slot], record, i, f, general, linear):
                 break
             result[lane, r.R_MODE] = r.UP
         if result[lane, r.R_MODE] == r.UP:
@@ -54,10 +54,10 @@ def slide(
 @called
 def stand(
     given: Table, result: Table, w: Table, lane: int, slot: int, record: Table, i: int, f: float, h: float,
-    log: Table, count: Table, linear: Any,
+    log: Table, count: Counts, linear: Any,
 ) -> float:  # fmt: skip
     """Full contact, from the fraction f of step i until it ends or something changes; returns the fraction."""
-    v, mu, height = w[r.U1 * r.W + slot], given[lane, r.Q_FRICTION], given[lane, r.Q_HEIGHT]
+    v, mu, height = w[r.U1, slot], given[lane, r.Q_FRICTION], given[lane, r.Q_HEIGHT]
     way = 1.0 if v > 0.0 else -1.0
     if v == 0.0:
         result[lane, r.R_MODE] = r.DOWN
@@ -85,12 +85,12 @@ def stand(
     v1 = v + time * (j0 + 0.5 * time * bend)
     middle = v + 0.5 * time * (j0 + 0.25 * time * bend)
     g_end = g0 + (g1 - g0) * time / whole
-    w[r.WORK * r.W + slot] += mu * time / 6.0 * way * (g0 * v + 2.0 * (g0 + g_end) * middle + g_end * v1)
-    w[r.U * r.W + slot] += time * (v + time * (j0 / 2.0 + time * bend / 6.0))
+    w[r.WORK, slot] += mu * time / 6.0 * way * (g0 * v + 2.0 * (g0 + g_end) * middle + g_end * v1)
+    w[r.U, slot] += time * (v + time * (j0 / 2.0 + time * bend / 6.0))
     if time < whole:
-        w[r.U1 * r.W + slot], result[lane, r.R_MODE] = 0.0, r.DOWN
+        w[r.U1, slot], result[lane, r.R_MODE] = 0.0, r.DOWN
         return f + time / h
-    w[r.U1 * r.W + slot] = v1
+    w[r.U1, slot] = v1
     return 1.0
 
 
@@ -114,9 +114,9 @@ def reactions(
 ) -> tuple[float, float, float]:  # fmt: skip
     """H/M and N/M (not under 0) of a stuck corner, and the inertia of slip without friction."""
     accel, x, z, _ = acceleration(w, slot, theta, omega, a, g, p, q, general, linear)
-    across = a - g * p + w[r.H * r.W + slot] * q + x * accel + z * omega * omega
-    up = g + z * accel - (x - w[r.RHO * r.W + slot]) * omega * omega
-    return across, max(up, 0.0), w[r.IM * r.W + slot] + z * z
+    across = a - g * p + w[r.H, slot] * q + x * accel + z * omega * omega
+    up = g + z * accel - (x - w[r.RHO, slot]) * omega * omega
+    return across, max(up, 0.0), w[r.IM, slot] + z * z
 
 
 @called
@@ -126,9 +126,9 @@ def slip_rates(
 ) -> tuple[float, float, float, float]:  # fmt: skip
     """theta'', u'', mu N/M and the power lost in couples over M of a slipping corner."""
     accel, x, z, power = acceleration(w, slot, theta, omega, a, g, p, q, general, linear)
-    jm = w[r.IM * r.W + slot] + x * x + z * z
-    base = a - g * p + w[r.H * r.W + slot] * q + z * omega * omega
-    lift = g - (x - w[r.RHO * r.W + slot]) * omega * omega
+    jm = w[r.IM, slot] + x * x + z * z
+    base = a - g * p + w[r.H, slot] * q + z * omega * omega
+    lift = g - (x - w[r.RHO, slot]) * omega * omega
     second = (jm * accel + x * base + mu * way * x * lift) / (jm - x * x - mu * way * x * z)
     friction = mu * (lift + z * second)
     if friction < 0.0:
@@ -143,7 +143,7 @@ def move(
     general: Any, linear: Any,
 ) -> tuple[float, float, float, float, float]:  # fmt: skip
     """theta, theta', u, u' and the work lost over M after ``share`` of step i from its fraction f."""
-    theta, omega, u, v = w[r.TH * r.W + slot], w[r.OM * r.W + slot], w[r.U * r.W + slot], w[r.U1 * r.W + slot]
+    theta, omega, u, v = w[r.TH, slot], w[r.OM, slot], w[r.U, slot], w[r.U1, slot]
     if way == 0.0:
         th1, om1, work = part(w, slot, theta, omega, record, i, f, share, h, general, linear)
         return th1, om1, u, v, work
@@ -177,11 +177,11 @@ def margin(
 ) -> float:  # fmt: skip
     """What is positive before an event of this kind and negative after it."""
     if kind == CROSSING:
-        return float(w[r.SIDE * r.W + slot] * theta)
+        return float(w[r.SIDE, slot] * theta)
     if kind == REVERSAL:
         return way * v
     if kind == TURNING:
-        return float(w[r.OM * r.W + slot] * omega)
+        return float(w[r.OM, slot] * omega)
     a, g, p, q = inputs(w, slot, record, i, f)
     across, up, _ = reactions(w, slot, theta, omega, a, g, p, q, general, linear)
     return mu * up - abs(across)
@@ -195,7 +195,7 @@ def locate(
     """Share of the step, just behind the event, by secants and bisection; ``after`` is the margin at ``rest``."""
     low, high = 0.0, rest
     before = margin(
-        w, slot, kind, w[r.TH * r.W + slot], w[r.OM * r.W + slot], w[r.U1 * r.W + slot], way, mu, record, i, f,
+        w, slot, kind, w[r.TH, slot], w[r.OM, slot], w[r.U1, slot], way, mu, record, i, f,
         general, linear,
     )  # fmt: skip
     for k in range(100):
@@ -218,16 +218,16 @@ def locate(
 @called
 def rock(
     given: Table, result: Table, w: Table, lane: int, slot: int, record: Table, i: int, f: float, h: float,
-    log: Table, count: Table, general: Any, linear: Any,
+    log: Table, count: Counts, general: Any, linear: Any,
 ) -> float:  # fmt: skip
     """Rocking, from the fraction f of step i until it ends or something changes; returns the fraction."""
     mu = given[lane, r.Q_FRICTION]
-    theta, omega = w[r.TH * r.W + slot], w[r.OM * r.W + slot]
+    theta, omega = w[r.TH, slot], w[r.OM, slot]
     if omega != 0.0:
-        w[r.DIRECTION * r.W + slot] = 1.0 if omega > 0.0 else -1.0
+        w[r.DIRECTION, slot] = 1.0 if omega > 0.0 else -1.0
     a, g, p, q = inputs(w, slot, record, i, f)
     across, up, free = reactions(w, slot, theta, omega, a, g, p, q, general, linear)
-    v = w[r.U1 * r.W + slot]
+    v = w[r.U1, slot]
     way = 0.0
     if v != 0.0:
         way = 1.0 if v > 0.0 else -1.0
@@ -241,16 +241,16 @@ def rock(
                 jm = free + x * x
                 result[lane, r.R_DISSIPATED] += 0.5 * given[lane, r.Q_MASS] * v * v * free / jm
                 omega += x * v / jm
-                w[r.OM * r.W + slot], w[r.U1 * r.W + slot] = omega, 0.0
+                w[r.OM, slot], w[r.U1, slot] = omega, 0.0
         else:
-            w[r.DEMAND * r.W + slot] = max(w[r.DEMAND * r.W + slot], mu)
+            w[r.DEMAND, slot] = max(w[r.DEMAND, slot], mu)
     jammed = way == 0.0 and abs(across) > mu * up
     rest, what = 1.0 - f, -1
     th1, om1, u1, v1, work = move(w, slot, record, i, f, rest, h, way, mu, general, linear)
     for kind in (CROSSING, REVERSAL, DEMAND, TURNING):
         if (kind == REVERSAL) != (way != 0.0) and kind in (REVERSAL, DEMAND):
             continue
-        if (kind == DEMAND and jammed) or (kind == TURNING and w[r.COULOMB * r.W + slot] == 0.0):
+        if (kind == DEMAND and jammed) or (kind == TURNING and w[r.COULOMB, slot] == 0.0):
             continue
         after = margin(w, slot, kind, th1, om1, v1, way, mu, record, i, f + rest, general, linear)
         if after < 0.0:
@@ -260,14 +260,14 @@ def rock(
     if omega * om1 < 0.0:
         raise_peak(result, w, lane, slot, turning_point(theta, omega, th1, om1, rest * h))
     f = 1.0 if what < 0 else f + rest
-    w[r.WORK * r.W + slot] += work
-    w[r.TH * r.W + slot], w[r.OM * r.W + slot] = th1, om1
-    w[r.U * r.W + slot], w[r.U1 * r.W + slot] = u1, 0.0 if what == REVERSAL else v1
+    w[r.WORK, slot] += work
+    w[r.TH, slot], w[r.OM, slot] = th1, om1
+    w[r.U, slot], w[r.U1, slot] = u1, 0.0 if what == REVERSAL else v1
     if what == CROSSING:
-        w[r.TH * r.W + slot] = 0.0
+        w[r.TH, slot] = 0.0
         land(given, result, w, lane, slot, record, i, f, h, log, count, linear)
     elif what == TURNING:
-        w[r.OM * r.W + slot] = 0.0
-        w[r.DIRECTION * r.W + slot] = -w[r.DIRECTION * r.W + slot]
+        w[r.OM, slot] = 0.0
+        w[r.DIRECTION, slot] = -w[r.DIRECTION, slot]
         result[lane, r.R_MODE] = r.HELD
     return f

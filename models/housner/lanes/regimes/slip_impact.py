@@ -13,10 +13,10 @@ from models.housner.lanes import rows as r
 from models.housner.lanes.impact import pivot, restitution
 from models.housner.lanes.onset import excess
 from models.housner.lanes.step import come_down, inputs, stand_on
+from models.lanes.arrays import Counts, Table
 from models.lanes.compiler import called, inlined
 from models.lanes.events import note
 
-Table = Any
 JAM = 0.05
 """Share of its value without friction at which the inertia of slip counts as lost."""
 
@@ -30,10 +30,10 @@ def energy(j: float, height: float, omega: float, v: float) -> float:
 @called
 def land(
     given: Table, result: Table, w: Table, lane: int, slot: int, record: Table, i: int, f: float, h: float,
-    log: Table, count: Table, linear: Any,
+    log: Table, count: Counts, linear: Any,
 ) -> None:  # fmt: skip
     """An impact at theta = 0: change of pivot, the new corner sticks or slips."""
-    side, omega, v = w[r.SIDE * r.W + slot], w[r.OM * r.W + slot], w[r.U1 * r.W + slot]
+    side, omega, v = w[r.SIDE, slot], w[r.OM, slot], w[r.U1, slot]
     height, mu = given[lane, r.Q_HEIGHT], given[lane, r.Q_FRICTION]
     inertia = given[lane, r.Q_INERTIA] / given[lane, r.Q_MASS]
     old, new = pivot(given, w, lane, slot, side), pivot(given, w, lane, slot, -side)
@@ -60,12 +60,12 @@ def land(
     result[lane, r.R_SWING] = 0.0
     stand_on(given, w, lane, slot, -side, linear)
     calm = abs(om1) < given[lane, r.Q_REST]
-    w[r.U1 * r.W + slot] = v1
+    w[r.U1, slot] = v1
     if calm and not tips(given, w, lane, slot, record, i, f, linear):
         om1 = 0.0
         result[lane, r.R_MODE] = r.SLIDING if v1 != 0.0 else r.DOWN
         come_down(result, lane, (i + f) * h, log, count)
-    w[r.OM * r.W + slot] = om1
+    w[r.OM, slot] = om1
     result[lane, r.R_DISSIPATED] += given[lane, r.Q_MASS] * (before - energy(j_new, height, om1, v1))
 
 
@@ -73,12 +73,12 @@ def land(
 def tips(given: Table, w: Table, lane: int, slot: int, record: Table, i: int, f: float, linear: Any) -> bool:
     """Whether the block in full contact would be lifted at once, under friction if it slides."""
     a, g, p, q = inputs(w, slot, record, i, f)
-    v, felt = w[r.U1 * r.W + slot], a - g * p + given[lane, r.Q_HEIGHT] * q
+    v, base = w[r.U1, slot], a - g * p + given[lane, r.Q_HEIGHT] * q
     hold = given[lane, r.Q_FRICTION] * g
     if v != 0.0:
-        a += -felt - math.copysign(hold, v)
-    elif abs(felt) > hold:
-        a += math.copysign(hold, felt) - felt
+        a += -base - math.copysign(hold, v)
+    elif abs(base) > hold:
+        a += math.copysign(hold, base) - base
     return bool(
         excess(given, w, lane, slot, 1.0, a, g, p, q, linear) > 0.0
         or excess(given, w, lane, slot, -1.0, a, g, p, q, linear) > 0.0

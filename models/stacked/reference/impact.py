@@ -3,7 +3,7 @@
 The velocities q' = (theta_1', r') before an impact, about the old pivots, are projected onto the
 motions that the pivots held afterwards allow: M q'_after = C q'_before, with M and C the kinetic
 products of the motions about (new, new) and (new, old) pivots (`models.stacked.equation.products`).
-What is held afterwards is chosen by `models.stacked.choice`. A projection never adds energy. Limits:
+What is held afterwards is chosen by `models.stacked.reference.choice`. A projection never adds energy. Limits:
 m2 -> 0 gives Housner's e; as one body before and after gives the composite block's e.
 
 A joint's restitution may be given instead: x, the rate of that joint (theta_1' or r'), is then
@@ -18,9 +18,9 @@ from __future__ import annotations
 
 import math
 
-from models.stacked.choice import SIDES, Corners, choose
 from models.stacked.configuration import BASE, TOP, State
 from models.stacked.equation import System, held, products, vectors
+from models.stacked.reference.choice import SIDES, Corners, choose
 from models.stacked.stack import Stack
 
 
@@ -68,7 +68,7 @@ def _imposed(stack: Stack, joint: int, state: State, linear: bool, wanted: float
     """The rate of ``joint`` is ``wanted``, less where energy would grow; the other joint answers.
 
     One that is up stays so; one in contact opens about the corner, or stays closed, as the condition
-    of `models.stacked.choice` says with the rate of ``joint`` held.
+    of `models.stacked.reference.choice` says with the rate of ``joint`` held.
     """
     energy = kinetic_energy(stack, state, linear)
     corners = impulses(stack, state, linear)

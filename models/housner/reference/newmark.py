@@ -14,7 +14,6 @@ Source: N. M. Newmark (J. Eng. Mech. Div. ASCE 85, 1959); Mordant, Denoel, Degee
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,54 +22,27 @@ from models.base import STATUS, Event, FloatArray
 from models.errors import InputError
 from models.housner.block import Block
 from models.housner.declaration import MOST_IMPACTS_PER_STEP, REST_VELOCITY
-from models.housner.impact import restitution
-from models.shaking import Shaking
+from models.housner.reference.impact import restitution
+from models.runs import Request, Run
 
 Index = NDArray[np.intp]
 ITERATIONS = 50
 
 
-@dataclass(frozen=True)
-class NewmarkResult:
-    """Outputs by name ``(n,)``; history ``(n, n_times)`` at the shaking's step; events lane by lane."""
-
-    outputs: dict[str, FloatArray]
-    time: FloatArray
-    rotation: FloatArray
-    rate: FloatArray
-    events: tuple[tuple[Event, ...], ...]
-
-
-def run(
-    block: Block,
-    shaking: Shaking,
-    scale: FloatArray,
-    *,
-    tail: float = 10.0,
-    linear: bool = False,
-    initial: Mapping[str, float] | None = None,
-    duration: float | None = None,
-    follow: bool = False,
-    substeps: int = 1,
-) -> NewmarkResult:
-    """n blocks under ``scale`` ``(n,)`` times the shaking, ``substeps`` equal steps a sample.
-
-    The other arguments are those of `models.housner.reference.run`.
-    """
+def run(block: Block, request: Request, substeps: int = 1) -> Run:
+    """n blocks as requested, ``substeps`` equal steps a sample; samples as those of `models.housner.reference.run`."""
     if not block.plain:
         raise InputError(
             "integrator 'newmark' takes plain blocks only: leave out mechanisms that act between "
             "impacts, or use 'lanes' or 'reference'"
         )
-    lanes = _Lanes(block, np.broadcast_to(np.asarray(scale, float), block.mass.shape), linear, follow)
-    lanes.begin(dict(initial or {}))
-    until = shaking.duration + tail if duration is None else duration
-    step = shaking.time_step
-    count = round(until / step)
-    history = np.zeros((2, block.size, count + 1))
-    history[:, :, 0] = lanes.theta, lanes.rate
-    silent = np.zeros(shaking.horizontal.size)
-    vertical = silent if shaking.vertical is None else shaking.vertical
+    shaking = request.shaking
+    lanes = _Lanes(block, request.scale, request.linear, request.history)
+    lanes.begin(request.initial)
+    step, count = shaking.time_step, request.times.size - 1
+    history = np.zeros((block.size, count + 1, 3))
+    history[:, 0, 0], history[:, 0, 1] = lanes.theta, lanes.rate
+    vertical = np.zeros_like(shaking.horizontal) if shaking.vertical is None else shaking.vertical
     last = shaking.horizontal.size - 1
     for i in range(count):
         shaken = i < last
@@ -85,13 +57,11 @@ def run(
                 (v0 + low * (v1 - v0), v0 + high * (v1 - v0)),
                 shaken,
             )
-        history[:, :, i + 1] = lanes.theta, lanes.rate
+        history[:, i + 1, 0], history[:, i + 1, 1] = lanes.theta, lanes.rate
         if lanes.over(shaken):
+            history[:, i + 2 :] = history[:, i + 1, None]
             break
-    history[:, :, i + 2 :] = np.stack([lanes.theta, lanes.rate])[:, :, None]
-    time = step * np.arange(count + 1, dtype=np.float64)
-    events = tuple(tuple(events) for events in lanes.events)
-    return NewmarkResult(lanes.outputs(), time, history[0], history[1], events)
+    return Run(lanes.outputs(), history, tuple(tuple(events) for events in lanes.events))
 
 
 class _Lanes:
@@ -109,7 +79,7 @@ class _Lanes:
         self.up, self.done, self.failed = np.zeros(n, bool), np.zeros(n, bool), np.zeros(n, bool)
         self.events: list[list[Event]] = [[] for _ in range(n)]
 
-    def begin(self, initial: Mapping[str, float]) -> None:
+    def begin(self, initial: Mapping[str, FloatArray]) -> None:
         self.theta[:] = initial.get("rotation_1", 0.0)
         self.rate[:] = initial.get("rotation_rate_1", 0.0)
         self.up = (self.theta != 0.0) | (self.rate != 0.0)
@@ -348,6 +318,6 @@ class _Lanes:
             "impacts": self.impacts,
             "residual_rotation": np.where(over, np.copysign(np.pi / 2.0, self.theta), self.theta),
             "dissipated_energy": self.lost,
-            "needed_friction": self.friction,
+            "friction_demand": self.friction,
             "status": np.array([float(STATUS.index(word)) for word in words.tolist()]),
         }

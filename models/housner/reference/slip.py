@@ -1,6 +1,6 @@
 """Reference of a block that slides: the contact's slip u is a degree of freedom beside theta.
 
-With E = a - G psi + h psi'' and the arms X, Z, J of `models.housner.equation`, at each instant four linear
+With E = a - G psi + h psi'' and the arms X, Z, J of `models.housner.reference.equation`, at each instant four linear
 equations for theta'', u'', H and N:
 
     J theta'' + M X u'' = moments                            M (u'' + X theta'' + Z theta'^2 + E) = H
@@ -22,9 +22,9 @@ import numpy as np
 
 from models.base import Event, FloatArray
 from models.housner.declaration import REST_VELOCITY
-from models.housner.equation import Equation
-from models.housner.ground import Piece
-from models.housner.rocking import Named, Rocking, first_positive
+from models.housner.reference.equation import Equation
+from models.housner.reference.ground import Piece
+from models.housner.reference.rocking import Named, Rocking, first_positive
 
 JAM = 0.05
 """Share of its value without friction at which the inertia of slip counts as lost."""
@@ -49,9 +49,9 @@ class Sliding(Rocking):
         a, gravity, pitching = ground
         sway, lift, inertia = eq.arms(theta, self.side, self.largest)
         fixed, _ = eq.acceleration(theta, rate, self.side, direction, self.largest, ground)
-        m, felt = eq.mass, a + eq.height * pitching
+        m, push = eq.mass, a + eq.height * pitching
         law = [0.0, 1.0, 0.0, 0.0] if way == 0 else [0.0, 0.0, 1.0, self.mu * way]
-        right = [inertia * fixed, -m * (felt + lift * rate**2), -m * (gravity + (eq.rho - sway) * rate**2), 0.0]
+        right = [inertia * fixed, -m * (push + lift * rate**2), -m * (gravity + (eq.rho - sway) * rate**2), 0.0]
         rows = [[inertia, m * sway, 0.0, 0.0], [m * sway, m, -1.0, 0.0], [m * lift, 0.0, 0.0, -1.0]]
         second, slip, across, up = np.linalg.solve([*rows, law], right).tolist()
         if way == 0:
@@ -128,12 +128,12 @@ class Sliding(Rocking):
     def _wait(self, piece: Piece, shaken: bool) -> None:
         eq = self.equation
 
-        def felt(time: float) -> tuple[float, float]:
+        def loads(time: float) -> tuple[float, float]:
             a, gravity, pitching = piece.at(time)
             return a + eq.height * pitching, self.mu * gravity
 
         def sliding(time: float, way: int) -> float:
-            push, hold = felt(time)
+            push, hold = loads(time)
             return -way * push - hold
 
         if self.way == 0:
@@ -153,7 +153,7 @@ class Sliding(Rocking):
             return
 
         def rates(time: float, y: FloatArray) -> tuple[float, ...]:
-            push, hold = felt(time)
+            push, hold = loads(time)
             return 0.0, 0.0, eq.mass * hold * abs(float(y[4])), float(y[4]), -push - self.way * hold
 
         named: Named = [("stop", lambda time, y: self.way * float(y[4]), -1)]

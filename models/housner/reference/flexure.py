@@ -27,9 +27,9 @@ import numpy as np
 from models.base import Event, FloatArray
 from models.housner.cantilever import STRUCTURAL_DAMPING
 from models.housner.declaration import REST_VELOCITY
-from models.housner.equation import Equation
-from models.housner.ground import Piece
-from models.housner.rocking import Named, Rocking
+from models.housner.reference.equation import Equation
+from models.housner.reference.ground import Piece
+from models.housner.reference.rocking import Named, Rocking
 
 
 class Bending(Rocking):

@@ -1,6 +1,6 @@
 """One run of the reference: phases between events, each integrated by scipy's DOP853 with dense output.
 
-The equation of `models.housner.equation` is integrated afresh on every stretch on which all laws are
+The equation of `models.housner.reference.equation` is integrated afresh on every stretch on which all laws are
 smooth: between samples of the record, between impacts, turning points and kinks of a law. Events are
 located on the dense output to rounding.
 """
@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -18,30 +17,16 @@ from scipy.optimize import brentq
 
 from models.base import STATUS, Event, FloatArray
 from models.housner.declaration import REST_VELOCITY
-from models.housner.equation import MOST_INSET, Equation
-from models.housner.ground import Piece
-from models.housner.impact import restitution
+from models.housner.reference.equation import MOST_INSET, Equation
+from models.housner.reference.ground import Piece
+from models.housner.reference.impact import restitution
+from models.runs import Run
 
 Named = list[tuple[str, Callable[[float, FloatArray], float], int]]
 REST_SHARE = 1e-6
 """A flexible joint rests when a crossing leaves less than this share of the largest crossing's energy."""
 STUCK = 2000
 """More stretches than this within one smooth piece of the ground's motion: not converged."""
-
-
-@dataclass(frozen=True)
-class ReferenceResult:
-    """Outputs by name (see ``OUTPUTS``), and the history at the shaking's time step: s, rad, rad s-1, m.
-
-    ``shift``: displacement of the mass centre beyond that of rocking on corners that stay where they are.
-    """
-
-    outputs: dict[str, float]
-    time: FloatArray
-    rotation: FloatArray
-    rate: FloatArray
-    shift: FloatArray
-    events: tuple[Event, ...]
 
 
 class Rocking:
@@ -350,17 +335,17 @@ class Rocking:
             "impacts": float(self.impacts),
             "residual_rotation": math.copysign(math.pi / 2.0, self.theta) if over else self.theta,
             "dissipated_energy": self.lost,
-            "needed_friction": self.friction,
+            "friction_demand": self.friction,
             "status": float(STATUS.index(status)),
         }
 
-    def result(self) -> ReferenceResult:
+    def result(self) -> Run:
+        """Outputs; theta, theta' and the mass centre's displacement beyond rocking on corners that stay; events."""
         outputs = self.frozen or self._outputs()
         end = math.copysign(math.pi / 2.0, self.theta) if outputs["overturned"] else self.theta
         self.history[:2, self.written :] = [[end], [0.0]]
         self.history[2, self.written :] = self._shift(self._state()[:, None])
-        rotation, rate, shift = self.history
-        return ReferenceResult(outputs, self.grid, rotation, rate, shift, tuple(self.events))
+        return Run.of_one(outputs, self.history.T, self.events)
 
 
 def first_positive(function: Callable[[float, int], float], side: int, start: float, end: float) -> float:

@@ -6,12 +6,12 @@ import math
 
 from models.base import Event
 from models.stacked import account as acc
-from models.stacked.choice import choose
 from models.stacked.configuration import BASE, JOINTS, State
 from models.stacked.declaration import REST_VELOCITY
 from models.stacked.equation import System, held, motion
-from models.stacked.impact import closed, impact, kinetic_energy
-from models.stacked.ledger import Ledger
+from models.stacked.reference.choice import choose
+from models.stacked.reference.impact import closed, impact, kinetic_energy
+from models.stacked.reference.ledger import Ledger
 from models.stacked.stack import Stack
 
 Pair = tuple[float, float]
@@ -50,7 +50,7 @@ class Joints:
     def _go(self, state: State, time: float) -> None:
         """Go over to ``state``; the first uplift of a joint is its onset."""
         before, self.state = self.state, state
-        self.ledger.visit(state.sides)
+        self.ledger.mark_configuration(state.sides)
         for joint, column in zip(JOINTS, (acc.ONSET_BASE, acc.ONSET_TOP), strict=True):
             if state.sides[joint] and not before.sides[joint] and math.isnan(self.ledger.account[column]):
                 self.ledger.account[column] = time

@@ -1,4 +1,4 @@
-"""The ground's motion as one block feels it, in pieces on which it is smooth."""
+"""The ground's motion as it acts on one block, in pieces on which it is smooth."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ import math
 
 from models.stacked.configuration import State
 from models.stacked.equation import vectors
-from models.stacked.impact import kinetic_energy
+from models.stacked.reference.impact import kinetic_energy
 from models.stacked.stack import Stack
 
 Ground = tuple[float, float]

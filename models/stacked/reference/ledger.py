@@ -26,10 +26,10 @@ class Ledger:
         self.account = acc.blank(1)[0]
         self.frozen: FloatArray | None = None
 
-    def visit(self, sides: tuple[int, int]) -> None:
+    def mark_configuration(self, sides: tuple[int, int]) -> None:
         self.account[acc.VISITED] = int(self.account[acc.VISITED]) | 1 << index(*sides)
 
-    def spend(self, sides: tuple[int, int], time: float) -> None:
+    def add_time(self, sides: tuple[int, int], time: float) -> None:
         self.account[acc.TIME_IN + index(*sides)] += time
 
     def peaks(self, states: Iterable[Sequence[float]]) -> None:

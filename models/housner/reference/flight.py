@@ -17,8 +17,8 @@ import numpy as np
 
 from models.base import FloatArray
 from models.housner.declaration import REST_VELOCITY
-from models.housner.ground import Piece
-from models.housner.rocking import Named, Rocking
+from models.housner.reference.ground import Piece
+from models.housner.reference.rocking import Named, Rocking
 
 
 class Bouncing(Rocking):

@@ -9,21 +9,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
 from models.base import Event, FloatArray
 from models.ground import Piece, pieces
-from models.shaking import Shaking
+from models.runs import Request, Run
 from models.stacked import account as acc
 from models.stacked.configuration import BASE, JOINTS, TOP, State
 from models.stacked.declaration import MOST_EVENTS_PER_STEP
 from models.stacked.equation import held
-from models.stacked.joints import Joints
-from models.stacked.ledger import Ledger
-from models.stacked.overturning import margins
+from models.stacked.observe import initial_state, settled_history
+from models.stacked.reference.joints import Joints
+from models.stacked.reference.ledger import Ledger
+from models.stacked.reference.overturning import margins
 from models.stacked.stack import Stack
 
 HALF_TURN = math.pi / 2.0
@@ -31,50 +31,30 @@ Watch = tuple[str, Callable[[float, FloatArray], float], int, bool]
 """Name, function, direction of crossing and whether it ends the stretch."""
 
 
-@dataclass(frozen=True)
-class ReferenceResult:
-    """A line of `models.stacked.account`; theta_1, r, theta_1', r' at the samples ``(4, n)``; events."""
+def run(stack: Stack, request: Request, rtol: float = 1e-10) -> Run:
+    """One wall (a `Stack` of one lane) as requested.
 
-    account: FloatArray
-    history: FloatArray
-    events: tuple[Event, ...]
-
-
-def run(
-    stack: Stack,
-    shaking: Shaking,
-    scale: float = 1.0,
-    *,
-    tail: float = 10.0,
-    linear: bool = False,
-    initial: Mapping[str, float] | None = None,
-    duration: float | None = None,
-    follow: bool = False,
-    rtol: float = 1e-10,
-) -> ReferenceResult:
-    """One wall (a `Stack` of one lane) under ``scale`` times the shaking.
-
-    ``tail``: free motion after the record, at most, in s; ``duration`` replaces record plus tail.
-    ``initial``: theta_1, r (rad), theta_1', r' (rad s-1) by the names q1, q2, w1, w2; default at rest.
-    ``follow``: go on to pi/2 after overturning is certain; the account counts to overturning all the
-    same. ``rtol`` is that of DOP853; the absolute tolerance is rtol times alpha, p alpha, M g h alpha^2.
+    Samples: theta_1, r (rad) and their rates (rad s-1). A history goes on to pi/2 after overturning is certain; the
+    account counts to overturning all the same. ``rtol`` is that of DOP853; the absolute tolerance is rtol times
+    alpha, p alpha, M g h alpha^2.
     """
     if stack.size != 1:
         raise ValueError(f"the reference runs one wall at a time, {stack.size} were given")
-    until = shaking.duration + tail if duration is None else duration
-    grid = shaking.time_step * np.arange(math.floor(until / shaking.time_step + 1e-9) + 1, dtype=np.float64)
-    wall = _Run(stack, linear, grid, rtol, follow)
+    wall = _Run(stack, request.linear, request.times, rtol, request.history)
+    start = {name: float(values[0]) for name, values in initial_state(request.initial, 1).items()}
     before: tuple[float, float] | None = None
-    for piece in pieces(stack, shaking, scale, until):
+    for piece in pieces(stack, request.shaking, float(request.scale[0]), request.until):
         if before is None:
-            wall.begin(dict(initial or {}), piece)
+            wall.begin(start, piece)
         elif before != piece.first and any(wall.joints.state.sides):
             wall.joints.settle(piece.first, piece.start)
-        wall.advance(piece, shaken=piece.start < shaking.duration)
+        wall.advance(piece, shaken=piece.start < request.shaking.duration)
         before = piece.at(piece.end)
         if wall.finished:
             break
-    return wall.result()
+    account = wall.closed()[None]
+    samples = settled_history(wall.ledger.history.T[None], account)
+    return Run(acc.outputs(stack, account), samples, (tuple(wall.ledger.events),))
 
 
 class _Run:
@@ -97,7 +77,7 @@ class _Run:
         q, rate = (q1, q2), (w1, w2)
         self.joints.state = State((_sign(q1 or w1), _sign(q2 or w2)), q, rate)
         self.ledger.peaks([(*q, *rate)])
-        self.ledger.visit(self.joints.state.sides)
+        self.ledger.mark_configuration(self.joints.state.sides)
         if any(self.joints.state.sides):
             self.joints.settle(piece.first, 0.0)
 
@@ -126,7 +106,7 @@ class _Run:
                     first = min(first, self.time + (piece.end - self.time) * now / (now - then))
         end = min(first, piece.end)
         self.ledger.write(end, None)
-        self.ledger.spend(still.sides, end - self.time)
+        self.ledger.add_time(still.sides, end - self.time)
         self.time = end
         if math.isinf(first):
             self.finished = not shaken
@@ -171,7 +151,7 @@ class _Run:
         self.ledger.account[acc.LOST_BASE] += last[4]
         self.ledger.demand(self.stack, state, solution, derivative, piece, self.linear)
         self.ledger.write(end, solution.sol)
-        self.ledger.spend(state.sides, end - self.time)
+        self.ledger.add_time(state.sides, end - self.time)
         self.time = end
         joints.state = State(state.sides, (last[0], last[1]), (last[2], last[3]))
         if solution.status == 1:
@@ -228,11 +208,12 @@ class _Run:
         self.ledger.overturn(body, self.time, state)
         self.finished = any(flat) or not self.follow
 
-    def result(self) -> ReferenceResult:
+    def closed(self) -> FloatArray:
+        """The account at the end of the run."""
         state = self.joints.state
         if self.ledger.frozen is None and self.time < self.grid[-1]:
-            self.ledger.spend(state.sides, float(self.grid[-1]) - self.time)
-        return ReferenceResult(self.ledger.closed(state), self.ledger.history, tuple(self.ledger.events))
+            self.ledger.add_time(state.sides, float(self.grid[-1]) - self.time)
+        return self.ledger.closed(state)
 
 
 def _sign(number: float) -> int:

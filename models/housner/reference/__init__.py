@@ -1,0 +1,1 @@
+"""The slow plain routes of one block: scipy's DOP853 with dense events, and the paper's Newmark rule."""

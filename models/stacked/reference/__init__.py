@@ -1,0 +1,1 @@
+"""The slow plain route of two stacked blocks: scipy's DOP853 with dense events."""
