@@ -19,7 +19,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.base import STATUS, Event, FloatArray
-from models.errors import InputError
 from models.housner.block import Block
 from models.housner.declaration import MOST_IMPACTS_PER_STEP, REST_VELOCITY
 from models.housner.reference.impact import restitution
@@ -31,11 +30,6 @@ ITERATIONS = 50
 
 def run(block: Block, request: Request, substeps: int = 1) -> Run:
     """n blocks as requested, ``substeps`` equal steps a sample; samples as those of `models.housner.reference.run`."""
-    if not block.plain:
-        raise InputError(
-            "integrator 'newmark' takes plain blocks only: leave out mechanisms that act between "
-            "impacts, or use 'lanes' or 'reference'"
-        )
     shaking = request.shaking
     lanes = _Lanes(block, request.scale, request.linear, request.history)
     lanes.begin(request.initial)
