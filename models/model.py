@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from typing_extensions import TypeVar  # typing has no default of a parameter before Python 3.13
 
-from models.base import MISSING, UNANSWERED, FloatArray, History, Mechanism, Parameter, Quantity, Values
+from models.answers import answers
+from models.base import FloatArray, History, Mechanism, Parameter, Quantity, Values
 from models.errors import InputError, nearest
 from models.identification import Identification
 from models.mechanisms import acting_on, applied
@@ -153,7 +154,7 @@ class Model(ABC, Generic[C]):
         coefficients = self._shaken(values, options, shaking, scale.size, integrator)
         request = Request(shaking, scale, self.resolve_options(options), tail=tail)
         found = self.run(integrator, coefficients, request).outputs
-        return self._answers(found, outputs)
+        return answers(self.outputs, found, outputs)
 
     def trajectories(
         self,
@@ -209,24 +210,13 @@ class Model(ABC, Generic[C]):
         )  # fmt: skip
         run = self.run(integrator, coefficients, request)
         channels = self.observe(coefficients, self.settle(run, step))
-        answers = self._answers(run.outputs, [quantity.name for quantity in self.outputs])
+        given = answers(self.outputs, run.outputs, [quantity.name for quantity in self.outputs])
         return History(
             step * np.arange(last + 1, dtype=np.float64),
             {name: one[0] for name, one in channels.items()},
             run.events[0],
-            {name: float(value[0]) for name, value in answers.items()},
+            {name: float(value[0]) for name, value in given.items()},
         )
-
-    def _answers(self, found: Mapping[str, NDArray[Any]], outputs: Sequence[str]) -> dict[str, NDArray[Any]]:
-        """The ``outputs`` as declared, without the numbers of lanes that gave no valid answer."""
-        lost = np.isin(found["status"], UNANSWERED)
-        kinds = {quantity.name: np.dtype(quantity.dtype) for quantity in self.outputs}
-        answers = {}
-        for name in outputs:
-            values = np.asarray(found[name]).astype(np.int8 if kinds[name].kind == "b" else kinds[name], copy=False)
-            missing = np.nan if values.dtype.kind == "f" else MISSING
-            answers[name] = values if name == "status" else np.where(lost, values.dtype.type(missing), values)
-        return answers
 
     def _shaken(
         self, values: Values, options: Mapping[str, str] | None, shaking: Shaking, size: int, integrator: str

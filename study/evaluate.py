@@ -47,9 +47,7 @@ def evaluate(setting: Setting, motions: Mapping[str, Motion], cells: Coordinates
             integrator=setting.integrator,
         )
         for name in setting.outputs:
-            column = np.asarray(computed[name])
-            if column.dtype == bool:
-                column = column.astype(np.int8)
+            column = computed[name]
             results.setdefault(name, np.empty(size, column.dtype))[index] = column
     return results
 

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models import choices
+from models.answers import answers
 from models.base import Event, FloatArray, History, Mechanism, Parameter, Quantity, Values
 from models.errors import InputError
 from models.identification import Identification
@@ -33,7 +34,7 @@ class Interface:
 
     name: str = "interface"
     title: str = "a wall and a block on top, a rubber layer under each"
-    version: str = "3"
+    version: str = "4"
     parameters: tuple[Parameter, ...] = declaration.PARAMETERS
     alternatives: tuple[tuple[tuple[str, ...], ...], ...] = declaration.ALTERNATIVES
     outputs: tuple[Quantity, ...] = declaration.OUTPUTS
@@ -128,9 +129,8 @@ class Interface:
                 reference.run(wall.take(slice(k, k + 1)), shaking, float(scale[k]), tail=tail).outputs
                 for k in range(scale.size)
             ]
-            kinds = {q.name: np.dtype(q.dtype) for q in self.outputs}
-            found = {name: np.array([one[name] for one in each]).astype(kinds[name]) for name in kinds}
-        return {name: found[name] for name in outputs}
+            found = {q.name: np.array([one[q.name] for one in each]) for q in self.outputs}
+        return answers(self.outputs, found, outputs)
 
     def trajectories(
         self,

@@ -26,7 +26,7 @@ class InterfaceLinear(Interface):
 
     name: str = "interface_linear"
     title: str = "the paper's linear wall and block on rubber layers (Eq. 6, corrected)"
-    version: str = "2"
+    version: str = "3"
     outputs: tuple[Quantity, ...] = declaration.OUTPUTS
     identification: Identification | None = IDENTIFICATION
 

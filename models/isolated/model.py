@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models import choices
+from models.answers import answers
 from models.base import Event, FloatArray, History, Mechanism, Parameter, Quantity, Values
 from models.errors import InputError
 from models.identification import Identification
@@ -33,7 +34,7 @@ class Isolated:
 
     name: str = "isolated"
     title: str = "a body or a chain of storeys on rubber bearings in shear"
-    version: str = "1"
+    version: str = "2"
     parameters: tuple[Parameter, ...] = declaration.PARAMETERS
     alternatives: tuple[tuple[tuple[str, ...], ...], ...] = declaration.ALTERNATIVES
     outputs: tuple[Quantity, ...] = declaration.OUTPUTS
@@ -105,8 +106,7 @@ class Isolated:
                 for k in range(scale.size)
             ]
             found = {q.name: np.array([one[q.name] for one in each]) for q in self.outputs}
-        kinds = {q.name: np.dtype(q.dtype) for q in self.outputs}
-        return {name: found[name].astype(kinds[name]) for name in outputs}
+        return answers(self.outputs, found, outputs)
 
     def trajectories(
         self,

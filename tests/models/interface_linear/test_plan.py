@@ -11,8 +11,10 @@ from typer.testing import CliRunner
 from grids.plan import parse_plan
 from models.errors import InputError
 from rocking.commands import app
+from study.check import check
 from study.open import open_study
 from study.run import run
+from study.status import OUTSIDE_MODEL
 from tests.study.cubes import assert_identical
 
 PARAMETERS = """
@@ -72,6 +74,23 @@ def test_cubes_are_the_same_bits_for_any_block_size(tmp_path: Path) -> None:
     assert np.all(cube["minimum_contact"].isin([0.5, 1.0]))
     # the frequencies are those of this model, with L in place of the height at rest
     assert cube["frequency_1"].values.ravel()[0] == pytest.approx(1.3507, abs=1e-3)
+
+
+def test_cells_whose_joint_opens_completely_hold_no_numbers(tmp_path: Path) -> None:
+    """They are outside these equations: counted apart, and neither standing nor overturned."""
+    pulse = 'pulse = { shape = "sine", amplitude = "0.2 g", duration = "0.8 s" }'
+    strong = text().replace(pulse, 'files = ["ridgecrest_2019_clc"]\nvertical = true')
+    strong = strong.replace("0.05, 0.3, 6", "0.05, 0.77, 5").replace('"status"]', '"overturned"]')
+    report = run(parse_plan(strong, tmp_path), results=tmp_path, scheduler="synchronous")
+    cube = open_study(report.folder)
+    outside = (cube["status"] == OUTSIDE_MODEL).values
+    assert 0 < outside.sum() < outside.size
+    for name in ("peak_rotation", "uplift_duration_base", "minimum_contact", "overturned"):
+        np.testing.assert_array_equal(np.isnan(cube[name].values), outside, err_msg=name)
+    assert np.all(cube["minimum_contact"].values[~outside] > 0.0)
+    assert report.tally["outside_model"] == outside.sum()
+    assert f"outside the model {outside.sum()}" in str(report)
+    assert "equal bit for bit" in str(check(report.folder, cells=15, seed=1))
 
 
 def test_options_of_the_full_model_are_no_options_here(tmp_path: Path) -> None:
