@@ -56,6 +56,13 @@ def _check_mechanism(mechanism: Mechanism, names: set[str]) -> None:
             f"'{shape}' only shapes the effect of mechanism '{mechanism.name}', which is off; "
             f"give {_listed([f'{mechanism.name}.{effect}' for effect in effects], 'or')} too."
         )
+    for parameter in mechanism.parameters:
+        name = f"{mechanism.name}.{parameter.name}"
+        if parameter.required and not {name, f"{name}_base", f"{name}_top"} & names:
+            raise InputError(
+                f"'{name}' ({parameter.meaning}, {parameter.unit}) is missing: it decides what the mechanism does and "
+                "has no natural default; give it too."
+            )
 
 
 def replaced(model: Model, base: Mapping[str, ValueT], overrides: Collection[str]) -> dict[str, ValueT]:

@@ -50,13 +50,15 @@ class MechanismParameter(Parameter):
     ``fit_inverse``: the null is infinite (or the response saturates), so a fit works with 1/value.
     ``shape``: it shapes the effect (a gap, a time constant) and has none of its own; the mechanism
     is off when its first parameter is at its null. ``stiff``: the equations cost ever more towards
-    the null, so a fit stays within ``low``..``high`` and does not approach it.
+    the null, so a fit stays within ``low``..``high`` and does not approach it. ``required``: it decides
+    the effect and has no natural default, so plans and specimens that use the mechanism must give it.
     """
 
     null: float = 0.0
     fit_inverse: bool = False
     shape: bool = False
     stiff: bool = False
+    required: bool = False
 
 
 @dataclass(frozen=True)

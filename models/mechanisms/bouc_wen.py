@@ -21,7 +21,15 @@ MECHANISM = Mechanism(
     parameters=(
         MechanismParameter("post_yield_ratio", "a", "1", "stiffness after yielding over the first", 0.0, 1.0, null=1.0),
         MechanismParameter(
-            "yield_compression", "u_y", "m", "compression at which it yields", 1e-5, 0.05, null=1e-3, shape=True
+            "yield_compression",
+            "u_y",
+            "m",
+            "compression at which it yields",
+            1e-5,
+            0.05,
+            null=1e-3,
+            shape=True,
+            required=True,
         ),
         MechanismParameter(
             "exponent", "n", "1", "sharpness of yielding, a whole number", 1.0, 4.0, null=1.0, shape=True

@@ -9,6 +9,7 @@ import pytest
 import models
 from grids.entering import entering
 from grids.plan import parse_plan
+from models.errors import InputError
 
 WALL = """
 [study]
@@ -60,3 +61,11 @@ def test_a_value_of_the_specimen_is_said_to_be_its(own: bool, tmp_path: Path) ->
     values = found(text, tmp_path)
     assert values["width"] == (0.4, "specimen") and values["tilt.tilt"] == (0.01, "specimen")
     assert values.get("mass") == ((600.0, "plan") if own else None)
+
+
+def test_what_decides_an_effect_and_has_no_natural_default_is_asked_for() -> None:
+    bouc_wen = '"bouc_wen.post_yield_ratio" = 0.4\n'
+    with pytest.raises(InputError, match=r"'bouc_wen.yield_compression' \(.*, m\) is missing"):
+        found(WALL + bouc_wen + MOTION)
+    given = found(WALL + bouc_wen + '"bouc_wen.yield_compression" = "2 mm"\n' + MOTION)
+    assert given["bouc_wen.yield_compression"] == (0.002, "plan") and given["bouc_wen.exponent"] == (1.0, "default")
