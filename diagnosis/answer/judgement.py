@@ -70,6 +70,6 @@ def undecided(found: Search, p_missing: float | None) -> Undecided | None:
     suspect = min(found.singles, key=adjusted)
     gain, rests_on = found.gain(suspect), ""
     if gain >= MISSING:
-        loudest = float(gain_by_window(found.base, suspect).max(initial=0.0))
-        rests_on = "one window" if gain - loudest < MISSING else "one recording"
+        largest = float(gain_by_window(found.base, suspect).max(initial=0.0))
+        rests_on = "one window" if gain - largest < MISSING else "one recording"
     return Undecided(suspect.names[0], suspect.classes[0], gain, rests_on)

@@ -31,7 +31,7 @@ def statement(found: Diagnosis, model: Model) -> str:
         )
         return " ".join(parts)
     if found.verdict == "nothing_missing":
-        parts.append(_nothing(found))
+        parts += [_nothing(found), *_untested(declared)]
         return " ".join([*parts, *_skipped(found)])
     parts.append(f"The model leaves something out ({_beyond_chance(found.p_value)}).")
     if found.located:
@@ -55,6 +55,7 @@ def statement(found: Diagnosis, model: Model) -> str:
         names = ", ".join(r.name.replace("_", " ") for r in found.rivals)
         parts.append(f"{names[0].upper()}{names[1:]} would explain nearly as much.")
     parts.append(_fit(found.train, found.holdout))
+    parts += _untested(declared)
     if found.next_experiment and found.next_experiment.get("static_test"):
         parts.append(f"To settle it: {found.next_experiment['static_test']}.")
     if not found.finished:
@@ -100,6 +101,10 @@ def p_text(p_value: float | None) -> str:
 def _beyond_chance(p_value: float | None) -> str:
     far = p_value is not None and p_value <= LEAST_P
     return f"far beyond chance, {p_text(p_value)}" if far else p_text(p_value)
+
+
+def _untested(declared: Identification) -> list[str]:
+    return [] if declared.forces else ["Laws outside the library are not tested for with this model."]
 
 
 def _skipped(found: Diagnosis) -> list[str]:

@@ -1,7 +1,7 @@
 """Residuals in units of what is expected: sensor noise, and noise of the measured base motion.
 
 The base noise disturbs the model, so what it leaves in a window is correlated. With responses G to
-small base accelerations (hats of width D over the window) the covariance of a window is
+small base accelerations (triangular pulses of half width D over the window) the covariance of a window is
 
     C = sigma^2 I + G S G',        S = (sigma_a^2 dt/D + floor^2) I,
 
@@ -18,12 +18,12 @@ import numpy as np
 from diagnosis.fit.prediction import Point, Predictor
 from models.base import FloatArray
 
-HAT = 0.02
-"""s, half width of a hat."""
+HALF_WIDTH = 0.02
+"""s, of a triangular pulse."""
 PROBE = 0.01
-"""Height of a probing hat over the peak base acceleration."""
+"""Height of a probing pulse over the peak base acceleration."""
 DISTURBANCE = 0.002
-"""Peak shares of the base acceleration that stand for details no model has, as a white disturbance at 5 ms."""
+"""Share of the peak base acceleration that stands for details no model has, as a white disturbance at 5 ms."""
 DISTURBANCE_STEP = 0.005
 
 
@@ -61,17 +61,17 @@ def sensor_noise_only(predictor: Predictor) -> Whitening:
 
 @dataclass(frozen=True)
 class Responses:
-    """Responses (W, C, N, K) to hats of base acceleration (per m s-2) centred at ``offset`` (K,) s from the start."""
+    """Responses (W, C, N, K) to pulses of base acceleration (per m s-2) centred at ``offset`` (K,) s from the start."""
 
     offset: FloatArray
     values: FloatArray
 
 
 def responses(predictor: Predictor, point: Point) -> Responses:
-    """What small base accelerations would do to every window, by one run a hat."""
+    """What small base accelerations would do to every window, by one run a pulse."""
     m = predictor.measured
     duration = max(w.samples * m.recordings[w.recording].time_step for w in m.windows)
-    offset = np.arange(0.0, duration, HAT)
+    offset = np.arange(0.0, duration, HALF_WIDTH)
     height = [PROBE * max(float(np.max(np.abs(s.horizontal))), 1e-3) for s in m.shakings]
     plain = predictor.predict([point])[0]
     found = np.zeros((*plain.shape, offset.size))
@@ -84,7 +84,7 @@ def responses(predictor: Predictor, point: Point) -> Responses:
                 if window.recording == r:
                     inside = slice(window.first, window.first + window.samples)
                     time = np.arange(window.samples) * shaking.time_step
-                    more[inside] += np.maximum(0.0, 1.0 - np.abs(time - centre) / HAT)
+                    more[inside] += np.maximum(0.0, 1.0 - np.abs(time - centre) / HALF_WIDTH)
             probing.append(replace(shaking, horizontal=shaking.horizontal + height[r] * more))
         found[..., k] = (predictor.predict([point], probing)[0] - plain) * per_height
     return Responses(offset, found)
@@ -97,7 +97,7 @@ def with_base_noise(predictor: Predictor, response: Responses) -> Whitening:
     variance = []
     for r, recording in enumerate(m.recordings):
         floor = DISTURBANCE * float(np.max(np.abs(m.shakings[r].horizontal)))
-        variance.append((m.base_noise[r] ** 2 * recording.time_step + floor**2 * DISTURBANCE_STEP) / HAT)
+        variance.append((m.base_noise[r] ** 2 * recording.time_step + floor**2 * DISTURBANCE_STEP) / HALF_WIDTH)
     deviation = np.sqrt(np.array(variance))[m.recording_of]
     spread = response.values * plain.scale[..., None] * deviation[:, None, None, None]
     flat = spread.reshape(spread.shape[0], -1, spread.shape[-1])

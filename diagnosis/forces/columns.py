@@ -1,9 +1,9 @@
 """What an unknown force would leave in every window, without a new model.
 
-The responses G of the windows to small hats of base acceleration (`diagnosis.fit.whitening`) are what any
+The responses G of the windows to short pulses of base acceleration (`diagnosis.fit.whitening`) are what any
 force on the leading coordinate leaves: it acts like a base acceleration, to a slowly changing factor. So a law
 that is in no library is tested by the column G f, with f taken along the fitted motion for the kinds that the
-model declares (`models.identification.Force`); a jump of the rate at an event is a narrow hat of unit area.
+model declares (`models.identification.Force`); a jump of the rate at an event is one pulse of unit area.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from diagnosis.fit.linearisation import Linearisation, linearise_about
 from diagnosis.fit.solver import Fitted
-from diagnosis.fit.whitening import HAT, Responses, responses
+from diagnosis.fit.whitening import HALF_WIDTH, Responses, responses
 from models.base import FloatArray
 from models.identification import Force, Motion
 
@@ -25,7 +25,7 @@ class Forces:
     """The fitted motion of every window, and how to turn a force along it into a column.
 
     ``motion`` and ``time`` (W, N) along the windows; ``peak`` (W, 1), largest coordinate of each; ``weight``
-    (W, K, N) of a sample in a hat; ``jumps``: (window, sample, rate before) of the events that separate phases.
+    (W, K, N) of a sample in a pulse; ``jumps``: (window, sample, rate before) of the events that separate phases.
     """
 
     fitted: Fitted
@@ -46,14 +46,14 @@ class Forces:
         """Whitened residual (W, M), off the states, that a force of this kind times ``factor`` (W, N) leaves."""
         modulation = np.ones_like(self.time) if factor is None else factor
         if kind.along is None:
-            hats = np.zeros(self.weight.shape[:2])
+            pulses = np.zeros(self.weight.shape[:2])
             for w, sample, rate in self.jumps:
                 k = int(sample)  # still on the side it comes from
                 share = self.weight[w, :, k]
-                hats[w] += rate * modulation[w, k] * share / max(share.sum(), 1e-12) / HAT
+                pulses[w] += rate * modulation[w, k] * share / max(share.sum(), 1e-12) / HALF_WIDTH
         else:
-            hats = np.einsum("wkn,wn->wk", self.weight, kind.along(self.motion) * modulation, optimize=True)
-        predicted = np.einsum("wcnk,wk->wcn", self.response.values, hats, optimize=True)
+            pulses = np.einsum("wkn,wn->wk", self.weight, kind.along(self.motion) * modulation, optimize=True)
+        predicted = np.einsum("wcnk,wk->wcn", self.response.values, pulses, optimize=True)
         return self.screen.reduced(self.fitted.misfit.whitening(predicted))[0]
 
 
@@ -68,8 +68,8 @@ def forces(fitted: Fitted) -> Forces:
     since = np.arange(coordinate.shape[1])[None] * step
     peak = np.asarray(np.max(np.abs(coordinate) * mask, axis=1, keepdims=True))
     motion = Motion(coordinate, np.gradient(coordinate, axis=1) / step, m.base, float(np.max(peak)))
-    hats = np.maximum(0.0, 1.0 - np.abs(since[:, None, :] - response.offset[None, :, None]) / HAT)
-    hats = hats * mask[:, None, :]
+    pulses = np.maximum(0.0, 1.0 - np.abs(since[:, None, :] - response.offset[None, :, None]) / HALF_WIDTH)
+    pulses = pulses * mask[:, None, :]
     separation = m.identification.separation
     return Forces(
         fitted=fitted,
@@ -78,7 +78,7 @@ def forces(fitted: Fitted) -> Forces:
         motion=motion,
         time=m.first[:, None] * step + since,
         peak=peak,
-        weight=hats / np.maximum(hats.sum(axis=2, keepdims=True), 1.0),
+        weight=pulses / np.maximum(pulses.sum(axis=2, keepdims=True), 1.0),
         jumps=_sign_changes(separation.signal(motion), motion.rate, mask) if separation else (),
     )
 

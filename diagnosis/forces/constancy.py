@@ -98,21 +98,21 @@ def tests(forces: Forces) -> list[Tested]:
                 continue
             score = screen.scores_with_residual(column) - cross * along
             sign = float(np.sign(score) * np.sign(along))
-            statistic = without_loudest(*screen.by_window(column - cross * plain))
+            statistic = without_largest(*screen.by_window(column - cross * plain))
             found.append(Tested(kind.name, depends_on, statistic / excess, sign, -float(np.sign(score))))
         interval = _in_an_interval(forces, plain) / excess
         found.append(Tested(kind.name, FOR_A_WHILE, interval * FLAG / SCAN_FLAG))
     return sorted(found, key=lambda t: -t.statistic)
 
 
-def without_loudest(score: FloatArray, information: FloatArray) -> float:
+def without_largest(score: FloatArray, information: FloatArray) -> float:
     """Smallest score statistic when any one window (W,) is left out: one alone must not decide."""
     left = np.maximum(information.sum() - information, 1e-12)
     return float(np.min((score.sum() - score) ** 2 / left))
 
 
 def _in_an_interval(forces: Forces, column: FloatArray) -> float:
-    """Largest statistic of a force in successive windows alone, the loudest left out, against acting always."""
+    """Largest statistic of a force in successive windows alone, the most influential left out."""
     score, information = forces.screen.by_window(column)
     total_score, total = score.sum(), information.sum()
     records = forces.fitted.measured.recording_of
@@ -121,17 +121,17 @@ def _in_an_interval(forces: Forces, column: FloatArray) -> float:
         own = np.flatnonzero(records == r)
         for a in range(own.size):
             for b in range(a + SHORTEST_INTERVAL, own.size + 1):
-                inside, part = _but_loudest(score[own[a:b]], information[own[a:b]])
+                inside, part = _but_largest(score[own[a:b]], information[own[a:b]])
                 left = part * (1.0 - part / total)
                 if left > 1e-3 * total:
                     best = max(best, (inside - part / total * total_score) ** 2 / left)
     return float(best)
 
 
-def _but_loudest(score: FloatArray, information: FloatArray) -> tuple[float, float]:
+def _but_largest(score: FloatArray, information: FloatArray) -> tuple[float, float]:
     """Sums without the window that adds most to the score's size."""
-    loudest = int(np.argmax(score * np.sign(score.sum())))
-    return float(score.sum() - score[loudest]), float(information.sum() - information[loudest])
+    largest = int(np.argmax(score * np.sign(score.sum())))
+    return float(score.sum() - score[largest]), float(information.sum() - information[largest])
 
 
 def flags(forces: Forces, tested: list[Tested], threshold: float = FLAG) -> tuple[Constancy, ...]:

@@ -1,7 +1,7 @@
 """What a search has found, and what counts in it: gains, thresholds, adequacy, rivals.
 
 An effect counts when its gain in 2 log likelihood passes the threshold and still does without
-the window that speaks loudest for it (and, with more than two recordings, without any one of them),
+the window that weighs most (and, with more than two recordings, without any one of them),
 or when it alone makes that window fit (`settles`).
 """
 
@@ -71,12 +71,12 @@ def adjusted(explanation: Explanation) -> float:
 
 
 def survives(before: Explanation, after: Explanation, threshold: float = MISSING) -> bool:
-    """Whether the gain passes without its loudest window and, of more than two, any one recording."""
+    """Whether the gain passes without its most influential window and, of more than two, any one recording."""
     gains = gain_by_window(before, after)
     total = before.loss - adjusted(after) + (adjusted(before) - before.loss)
-    loudest = float(gains.max(initial=0.0))
-    if total - loudest < threshold:
-        return loudest >= ALONE * threshold and total - loudest > -threshold and settles(before, after)
+    largest = float(gains.max(initial=0.0))
+    if total - largest < threshold:
+        return largest >= ALONE * threshold and total - largest > -threshold and settles(before, after)
     measured = after.measured
     if len(measured.recordings) > 2:
         each = [float(gains[measured.recording_of == r].sum()) for r in range(len(measured.recordings))]

@@ -55,6 +55,18 @@ def test_gain_and_offset_act_on_rotations_only(tmp_path: Path, motion: Motion) -
     np.testing.assert_array_equal(read["contact_1"].values, true["contact_1"].values)
 
 
+def test_a_level_is_over_the_reference_peak_of_the_specimen(tmp_path: Path, motion: Motion) -> None:
+    true = rocking.simulate(block(tmp_path), motion, duration=4.0)["rotation_1"].values
+    level = "[instruments]\nreference_peak = 0.02\n[mechanisms.saturation]\nlevel_over_peak = 0.5\n"
+    read = rocking.simulate(block(tmp_path, level), motion, duration=4.0)["rotation_1"].values
+    np.testing.assert_allclose(read, np.clip(true, -0.01, 0.01), atol=1e-15)
+    specimen = rocking.read_specimen(block(tmp_path, level))
+    write_specimen(specimen, tmp_path / "again.toml")
+    assert rocking.read_specimen(tmp_path / "again.toml") == specimen
+    with pytest.raises(InputError, match=r"reference_peak = -1 rad: give a rotation above 0"):
+        rocking.read_specimen(block(tmp_path, level.replace("0.02", "-1")))
+
+
 def test_base_gain_moves_the_base_more_than_is_written(tmp_path: Path, motion: Motion) -> None:
     louder = rocking.simulate(block(tmp_path), motion, duration=4.0, scale=1.1)
     read = rocking.simulate(block(tmp_path, "[mechanisms.base_gain]\ngain = 0.1\n"), motion, duration=4.0)
