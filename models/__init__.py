@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 from models.errors import InputError, nearest
 
@@ -27,13 +27,13 @@ def get(name: str) -> Model:
         case "interface":
             from models.interface.model import MODEL as interface
 
-            return cast("Model", interface)
+            return interface
         case "interface_linear":
             from models.interface_linear.model import MODEL as interface_linear
 
-            return cast("Model", interface_linear)
+            return interface_linear
         case "isolated":
             from models.isolated.model import MODEL as isolated
 
-            return cast("Model", isolated)
+            return isolated
     raise InputError(f"model '{name}' is not known; {nearest(name, MODELS)}")

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+import models
 from benchmarks import speed
 from benchmarks.peak import multiply_add_peak
 from benchmarks.two_blocks import opensees_strip
@@ -36,11 +37,8 @@ OUT = Path("results/bench/two_blocks.json")
 def timed_lanes(case: Case, shaking: Shaking, tail: float, n: int) -> speed.Took:
     """n walls under the shaking and ``tail`` seconds more."""
     walls, pga = case.walls(n, shaking.vertical is not None)
-    lanes = import_module(f"models.{case.model}.lanes.run")
-    scale = pga / shaking.pga
-    if case.model == "stacked":
-        return speed.clocked(lambda: int(lanes.run(walls, Request(shaking, scale, tail=tail)).steps))
-    return speed.clocked(lambda: int(lanes.run(walls, shaking, scale, tail=tail).steps))
+    request = Request(shaking, pga / shaking.pga, tail=tail)
+    return speed.clocked(lambda: models.get(case.model).run_lanes(walls, request).steps)
 
 
 def strongest(shaking: Shaking) -> Shaking:

@@ -95,16 +95,7 @@ class Case:
         rng = np.random.default_rng(0)
         values = {**self.values(rng, n), **self.numbers}
         pga = rng.uniform(0.05, 0.77, n) * 9.80665
-        if self.model == "stacked":
-            return models.get("stacked").build(values, vertical=vertical, size=n), pga
-        words: dict[str, str] = models.get(self.model).resolve_options(None)
-        if self.model == "isolated":
-            from models.isolated.assembly import build as chain
-
-            return chain(values, words, n), pga
-        from models.interface.assembly import build as wall
-
-        return wall(values, words, vertical, n, self.model), pga
+        return models.get(self.model).build(values, vertical=vertical, size=n), pga
 
 
 def stacks(rng: Any, n: int) -> dict[str, Any]:

@@ -1,30 +1,24 @@
-"""A wall and a block on top between rubber layers as a `Model`: lanes and reference behind one interface."""
+"""A wall and a block on top between rubber layers as a `Model`."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from importlib import import_module
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from models import choices
-from models.answers import answers
-from models.base import Event, FloatArray, History, Mechanism, Parameter, Quantity, Values
+from models.base import Event, FloatArray, Values
 from models.errors import InputError
-from models.identification import Identification
 from models.interface import declaration, modes
-from models.interface.assembly import build
+from models.interface.assembly import assemble, build
 from models.interface.identification import IDENTIFICATION
 from models.interface.layered import LayeredWall
-from models.mechanisms import acting_on
-from models.shaking import Shaking
+from models.interface.observe import observe
+from models.model import Model
+from models.runs import Request, Run
 
 
-@dataclass(frozen=True)
-class Interface:
+class Interface(Model[LayeredWall]):
     """Two rigid blocks, a no-tension visco-elastic layer under each (Mordant, Denoel, Degee 2015, section 3).
 
     M(q) q'' + n(q, q', a, G) = Q(q, q') in q = (theta1, theta2, z1, z2), full nonlinear, with the exact
@@ -32,40 +26,32 @@ class Interface:
     printed form. No sliding: ``needed_friction`` tells when that would fail.
     """
 
-    name: str = "interface"
-    title: str = "a wall and a block on top, a rubber layer under each"
-    version: str = "4"
-    parameters: tuple[Parameter, ...] = declaration.PARAMETERS
-    alternatives: tuple[tuple[tuple[str, ...], ...], ...] = declaration.ALTERNATIVES
-    outputs: tuple[Quantity, ...] = declaration.OUTPUTS
-    derived: tuple[Quantity, ...] = declaration.DERIVED
-    observables: tuple[Quantity, ...] = declaration.OBSERVABLES
-    states: tuple[str, ...] = declaration.STATES
-    integrators: tuple[str, ...] = ("lanes", "reference")
-    identification: Identification | None = IDENTIFICATION
-    takes_vertical: bool = True
-    vertical_by_default: bool = True
+    name = "interface"
+    title = "a wall and a block on top, a rubber layer under each"
+    version = "4"
+    parameters = declaration.PARAMETERS
+    alternatives = declaration.ALTERNATIVES
+    options = declaration.OPTIONS
+    outputs = declaration.OUTPUTS
+    derived = declaration.DERIVED
+    observables = declaration.OBSERVABLES
+    states = declaration.STATES
+    identification = IDENTIFICATION
+    vertical_by_default = True
 
-    @property
-    def options(self) -> Mapping[str, tuple[str, ...]]:
-        return declaration.OPTIONS
+    def assemble(self, values: Values, options: Mapping[str, str], *, vertical: bool, size: int) -> LayeredWall:
+        return assemble(values, options, vertical, size)
 
-    @property
-    def mechanisms(self) -> Mapping[str, Mechanism]:
-        return acting_on(self.name)
-
-    def resolve_options(self, options: Mapping[str, str] | None) -> dict[str, str]:
-        """Every option with its word, the default where none is given."""
-        return choices.resolve_options(self, options)
-
-    def _part(self, name: str) -> Any:
-        """A module of this model's folder: ``lanes.run``, ``reference``, ``observe``."""
-        return import_module(f"models.{self.name}.{name}")
+    def build(
+        self, values: Values, options: Mapping[str, str] | None = None, *, vertical: bool = False, size: int = 1
+    ) -> LayeredWall:
+        """The walls with mechanisms, and with the rubber laws that ``options`` name."""
+        return build(values, self.resolve_options(options), vertical, size, self.name)
 
     def check(self, values: Values, options: Mapping[str, str] | None = None) -> list[str]:
         """Layers that lack a number, and walls that cannot stand on them under their own weight."""
         try:
-            wall = build(values, self.resolve_options(options), False, model=self.name)
+            wall = self.build(values, options)
         except InputError as error:
             return [str(error)]
         lowest = modes.at_rest(wall).squares[:, 0]
@@ -91,122 +77,56 @@ class Interface:
 
     def derive(self, values: Values, options: Mapping[str, str] | None = None) -> dict[str, FloatArray]:
         """Static state, natural frequencies, mode shapes and modal damping at rest, arrays ``(n,)``."""
-        wall = build(values, self.resolve_options(options), False, model=self.name)
+        wall = self.build(values, options)
         return modes.derived(wall, self.natural_modes(wall))
 
     def natural_modes(self, wall: LayeredWall) -> modes.Modes:
         """Undamped modes in full contact."""
         return modes.at_rest(wall)
 
-    def _shaken(self, values: Values, options: Mapping[str, str] | None, shaking: Shaking, size: int) -> LayeredWall:
-        vertical = shaking.vertical is not None and shaking.vertical_acts
-        wall = build(values, self.resolve_options(options), vertical, size, self.name)
-        if wall.size != size:
-            raise ValueError(f"values broadcast to {wall.size} lanes, {size} are asked for")
-        return wall
+    def run_lanes(self, coefficients: LayeredWall, request: Request) -> Run:
+        from models.interface.lanes.run import outputs, run
 
-    def evaluate(
-        self,
-        values: Values,
-        shaking: Shaking,
-        scale: FloatArray,
-        *,
-        outputs: Sequence[str],
-        tail: float,
-        options: Mapping[str, str] | None = None,
-        integrator: str = "lanes",
-    ) -> dict[str, NDArray[Any]]:
-        """Outputs ``(n,)`` of n lanes under ``scale`` (n,) times the shaking; see `Model.evaluate`."""
-        scale = np.atleast_1d(np.asarray(scale, float))
-        wall = self._shaken(values, options, shaking, scale.size)
-        choices.check_integrator(self, integrator)
-        if integrator == "lanes":
-            lanes = self._part("lanes.run")
-            found = lanes.outputs(wall, lanes.run(wall, shaking, scale, tail=tail).result)
-        else:
-            reference = self._part("reference")
-            each = [
-                reference.run(wall.take(slice(k, k + 1)), shaking, float(scale[k]), tail=tail).outputs
-                for k in range(scale.size)
-            ]
-            found = {q.name: np.array([one[q.name] for one in each]) for q in self.outputs}
-        return answers(self.outputs, found, outputs)
+        return by_lanes(run, outputs, coefficients, request)
 
-    def trajectories(
-        self,
-        values: Values,
-        shaking: Shaking,
-        *,
-        first: NDArray[np.int64],
-        samples: int,
-        initial: Mapping[str, FloatArray],
-        options: Mapping[str, str] | None = None,
-        scale: FloatArray | float = 1.0,
-    ) -> dict[str, FloatArray]:
-        """Observables ``(n, samples)`` of n lanes, each from its own sample ``first`` and state.
+    def run_reference(self, coefficients: LayeredWall, request: Request) -> Run:
+        from models.interface.reference import run
 
-        ``initial`` holds arrays ``(n,)`` by the names of `states`; what it leaves out is as at rest.
-        """
-        n = first.size
-        wall = self._shaken(values, options, shaking, n)
-        last = np.minimum(first + samples - 1, shaking.horizontal.size - 1)
-        ran = self._part("lanes.run").run(
-            wall, shaking, np.broadcast_to(np.asarray(scale, float), (n,)), initial=initial, first=first, last=last,
-            samples=samples, may_rest=False,
-        )  # fmt: skip
-        return self._observe(wall, ran.samples)
+        return by_reference(run, coefficients, request)
 
-    def _observe(self, wall: LayeredWall, state: FloatArray) -> dict[str, FloatArray]:
-        found: dict[str, FloatArray] = self._part("observe").observe(wall, state)
-        return found
+    def observe(self, coefficients: LayeredWall, samples: FloatArray) -> dict[str, FloatArray]:
+        return observe(coefficients, samples)
 
-    def simulate(
-        self,
-        values: Values,
-        shaking: Shaking,
-        *,
-        scale: float = 1.0,
-        initial: Mapping[str, float] | None = None,
-        duration: float | None = None,
-        tail: float = 0.0,
-        options: Mapping[str, str] | None = None,
-        integrator: str = "lanes",
-    ) -> History:
-        """One run with its history at the samples of the shaking and of its quiet tail.
-
-        ``duration`` (s) cuts the run or lengthens it beyond the shaking; the channels of a run that
-        overturns stay where a body reached pi/2.
-        """
-        wall = self._shaken(values, options, shaking, 1)
-        choices.check_integrator(self, integrator)
-        end = shaking.duration + tail if duration is None else duration
-        count = round(end / shaking.time_step) + 1
-        time: FloatArray = np.arange(count, dtype=np.float64) * shaking.time_step
-        choices.check_states(self, initial or {})
-        if integrator == "lanes":
-            lanes = self._part("lanes.run")
-            ran = lanes.run(
-                wall, shaking, np.array([scale]), tail=max(0.0, end - shaking.duration),
-                initial={k: np.array([v]) for k, v in (initial or {}).items()},
-                last=np.array([count - 1]), samples=count, log=20_000, may_rest=False,
-            )  # fmt: skip
-            state = ran.samples
-            events = tuple(Event(*event) for event in ran.events[0])
-            outputs = {k: float(v[0]) for k, v in lanes.outputs(wall, ran.result).items()}
-        else:
-            told = self._part("reference").run(wall, shaking, scale, initial=initial, duration=end)
-            state = told.state.T[None, :count]
-            events, outputs = told.events, dict(told.outputs)
-        over = outputs["overturning_time"]
-        if over == over:
-            fallen = int(np.ceil(over / shaking.time_step - 1e-9))
-            state[:, fallen:, :4] = state[:, max(fallen - 1, 0), None, :4]
+    def settle(self, run: Run, time_step: float) -> FloatArray:
+        """States that stay where a body reached pi/2."""
+        samples = run.samples.copy()
+        for lane in np.flatnonzero(run.outputs["overturned"]):
+            fallen = int(np.ceil(run.outputs["overturning_time"][lane] / time_step - 1e-9))
+            samples[lane, fallen:, :4] = samples[lane, max(fallen - 1, 0), :4]
             for body in (1, 2):
-                if outputs[f"overturned_{body}"]:
-                    state[:, fallen:, body - 1] = outputs[f"residual_rotation_{body}"]
-            state[:, fallen:, 4:] = 0.0
-        channels = {name: one[0] for name, one in self._observe(wall, state).items()}
-        return History(time, channels, _with_onset(events), outputs)
+                if run.outputs[f"overturned_{body}"][lane]:
+                    samples[lane, fallen:, body - 1] = run.outputs[f"residual_rotation_{body}"][lane]
+            samples[lane, fallen:, 4:] = 0.0
+        return samples
+
+
+def by_lanes(run: Callable[..., Any], outputs: Callable[..., Any], wall: LayeredWall, request: Request) -> Run:
+    """What the kernel that ``run`` calls makes of a request."""
+    ran = run(
+        wall, request.shaking, request.scale, tail=request.tail, initial=request.initial, first=request.first,
+        last=request.last, samples=request.samples, log=request.log, may_rest=not request.history,
+    )  # fmt: skip
+    events = tuple(_with_onset(tuple(Event(*event) for event in lane)) for lane in ran.events)
+    return Run(outputs(wall, ran.result), ran.samples, events, ran.steps)
+
+
+def by_reference(run: Callable[..., Any], wall: LayeredWall, request: Request) -> Run:
+    """What the reference ``run`` makes of a request of one lane."""
+    ran = run(
+        wall, request.shaking, float(request.scale[0]), tail=request.tail, initial=request.start,
+        duration=request.until if request.history else None,
+    )  # fmt: skip
+    return Run.of_one(ran.outputs, ran.state.T, _with_onset(ran.events))
 
 
 def _with_onset(events: tuple[Event, ...]) -> tuple[Event, ...]:

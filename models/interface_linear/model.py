@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
-from models.base import Quantity
-from models.identification import Identification
+from models.base import FloatArray
 from models.interface import modes
 from models.interface.layered import LayeredWall
-from models.interface.model import Interface
+from models.interface.model import Interface, by_lanes, by_reference
 from models.interface_linear import declaration, equation
 from models.interface_linear.identification import IDENTIFICATION
+from models.interface_linear.observe import observe
+from models.runs import Request, Run
 
 
-@dataclass(frozen=True)
 class InterfaceLinear(Interface):
     """Two rigid blocks on rubber, linear between switches (Mordant, Denoel, Degee 2015, Eq. 6, corrected).
 
@@ -24,15 +23,12 @@ class InterfaceLinear(Interface):
     stiffens where the exact contact of `interface` softens, so these walls hardly overturn.
     """
 
-    name: str = "interface_linear"
-    title: str = "the paper's linear wall and block on rubber layers (Eq. 6, corrected)"
-    version: str = "3"
-    outputs: tuple[Quantity, ...] = declaration.OUTPUTS
-    identification: Identification | None = IDENTIFICATION
-
-    @property
-    def options(self) -> Mapping[str, tuple[str, ...]]:
-        return declaration.OPTIONS
+    name = "interface_linear"
+    title = "the paper's linear wall and block on rubber layers (Eq. 6, corrected)"
+    version = "3"
+    options = declaration.OPTIONS
+    outputs = declaration.OUTPUTS
+    identification = IDENTIFICATION
 
     def resolve_options(self, options: Mapping[str, str] | None) -> dict[str, str]:
         """Every option of `interface` with its word: `joints` as chosen, the others as the paper has them."""
@@ -40,6 +36,19 @@ class InterfaceLinear(Interface):
 
     def natural_modes(self, wall: LayeredWall) -> modes.Modes:
         return equation.at_rest(wall)
+
+    def run_lanes(self, coefficients: LayeredWall, request: Request) -> Run:
+        from models.interface_linear.lanes.run import outputs, run
+
+        return by_lanes(run, outputs, coefficients, request)
+
+    def run_reference(self, coefficients: LayeredWall, request: Request) -> Run:
+        from models.interface_linear.reference import run
+
+        return by_reference(run, coefficients, request)
+
+    def observe(self, coefficients: LayeredWall, samples: FloatArray) -> dict[str, FloatArray]:
+        return observe(coefficients, samples)
 
 
 MODEL = InterfaceLinear()

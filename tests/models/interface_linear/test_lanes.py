@@ -249,7 +249,6 @@ def test_trajectories_begin_anywhere() -> None:
     names = {"rotation_1": "rotation_1", "rotation_2": "rotation_2", "displacement_z_1": "sinking_1"}
     initial = {state: np.array([whole.channels[channel][0]]) for state, channel in names.items()}
     initial["displacement_z_1"] *= -1.0
-    told = MODEL.trajectories(
-        SHORT, shaking, first=np.zeros(1, np.int64), samples=50, initial=initial, scale=np.array([0.3])
-    )
+    first = np.zeros(1, np.int64)
+    told = MODEL.trajectories(SHORT, shaking.scaled(0.3), first=first, samples=50, initial=initial)
     np.testing.assert_allclose(told["rotation_2"][0], whole.channels["rotation_2"][:50], rtol=0, atol=1e-13)

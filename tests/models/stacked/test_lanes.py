@@ -122,8 +122,7 @@ def test_windows_continue_a_history() -> None:
     rotation = whole.channels["rotation_1"]
     first = np.flatnonzero(np.abs(rotation) > 0.3 * np.abs(rotation).max())[::40][:5]
     states = {name: whole.channels[name][first] for name in MODEL.states}
-    louder = Shaking(shaking.time_step, 2.5 * shaking.horizontal)
-    windows = MODEL.trajectories(B, louder, first=first, samples=60, initial=states)
+    windows = MODEL.trajectories(B, shaking.scaled(2.5), first=first, samples=60, initial=states)
     for k, start in enumerate(first):
         span = min(60, rotation.size - start)
         expected = whole.channels["rotation_2"][start : start + span]
