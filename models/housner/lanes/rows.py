@@ -3,6 +3,12 @@
 ``work`` (N_WORK, W) has a row for a quantity and a column for each lane under way; its sizes are constants,
 so the compiler proves that rows do not overlap. ``given`` and ``result`` are tables (n, columns) over all
 lanes.
+
+Arguments of all pieces of the kernel: ``lane``, a row of ``given`` and ``result``; ``slot``, the column of ``work`` in
+which it is under way; ``record`` (5, steps + 2), the channels a, a_z (m s-2), psi, psi'' (per unit of pitch), shaken;
+``i``, a step of ``h`` s, and ``f``, a fraction of it; ``log``, ``count`` as in `models.lanes.arrays.Tables`;
+``general``, ``linear``, None or True, for the compiled variant. Angles in rad, rates in rad s-1, accelerations a, G in
+m s-2, times in s; couples, moments and work over M, so in m2 s-2.
 """
 
 from __future__ import annotations

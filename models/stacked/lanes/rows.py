@@ -4,6 +4,12 @@
 so the compiler proves that rows do not overlap. ``given`` and ``result`` are tables (n, columns) over all
 lanes; ``result`` starts with the columns of `models.stacked.account`.
 Masses and moments of a lane are over its total mass M.
+
+Arguments of all pieces of the kernel: ``lane``, a row of ``given`` and ``result``; ``slot``, the column of ``work`` in
+which it is under way; ``record`` (3, steps + 2), the channels a, a_z (m s-2), shaken; ``i``, a step of ``h`` s, and
+``f``, a fraction of it; ``log``, ``count`` as in `models.lanes.arrays.Tables`; ``linear``, None or True, for the
+compiled variant; ``system`` (4, 5), the two equations of motion about each pair of pivots. Angles theta_1 (q1), r (q2)
+in rad, rates in rad s-1, accelerations a, G in m s-2, times in s; s1, s2: sides of `models.stacked.configuration`.
 """
 
 from __future__ import annotations
