@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 
+from models.base import STATUS
 from models.interface.lanes import run as full_lanes
 from models.interface_linear import equation, reference
 from models.interface_linear.lanes import run as lanes
@@ -176,8 +177,8 @@ def test_switches_without_end_are_flagged() -> None:
     """Never held, a joint in slow uplift alternates faster and faster: given up, not waited for."""
     shaking = Shaking(0.01, np.concatenate([np.linspace(0.0, 0.7, 101), np.full(20, 0.7)]))
     never, held = (lanes.run(wall(SHORT), shaking, np.ones(1), brief=b) for b in (0.0, 0.2))
-    assert lanes.outputs(wall(SHORT), never.result)["status"][0] == 4
-    assert lanes.outputs(wall(SHORT), held.result)["status"][0] == 2
+    assert lanes.outputs(wall(SHORT), never.result)["status"][0] == STATUS.index("not_converged")
+    assert lanes.outputs(wall(SHORT), held.result)["status"][0] == STATUS.index("rocking")
 
 
 @pytest.mark.parametrize("joints", ["base", "top"])
@@ -217,18 +218,19 @@ def test_what_can_become_of_a_wall() -> None:
     assert falls["overturned"] and falls["peak_rotation"] == np.pi / 2 and falls["overturning_time"] < 0.1
     # the wall thrown up: both joints open, which half contact does not describe
     apart, _ = become(velocity_z_1=1.0)
-    assert apart["status"] == 5 and apart["minimum_contact_base"] == 0.0
+    assert apart["status"] == STATUS.index("outside_model") and apart["minimum_contact_base"] == 0.0
 
 
 def test_a_frozen_half_contact_brings_back_what_the_exact_contact_lets_fall() -> None:
     """Stiffness k b^3/12 - W h > 0 at any rotation: the published model is one of small rotations."""
     start = {"rotation_1": 0.25, "rotation_2": 0.25}
-    linear, full = (
-        model.simulate(SHORT, Shaking.silence(8.0, 0.01), initial=start).outputs for model in (MODEL, FULL_MODEL)
-    )
-    assert linear["peak_rotation_ratio_1"] > 1.2
-    assert not linear["overturned"] and abs(linear["residual_rotation_1"]) < 0.5 * 0.25
-    assert full["overturned"]
+    linear, full = (model.simulate(SHORT, Shaking.silence(8.0, 0.01), initial=start) for model in (MODEL, FULL_MODEL))
+    # on the way the joint opens completely, which these equations do not cover: a history, and no outputs
+    rotation = linear.channels["rotation_1"]
+    assert linear.outputs["status"] == STATUS.index("outside_model") and np.isnan(linear.outputs["peak_rotation_1"])
+    assert np.max(np.abs(rotation)) > 1.2 * wall(SHORT).slenderness[0]
+    assert np.max(np.abs(rotation)) < np.pi / 2 and abs(rotation[-1]) < 0.5 * 0.25
+    assert full.outputs["overturned"]
 
 
 def test_a_lane_does_not_depend_on_the_others() -> None:
