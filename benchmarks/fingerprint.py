@@ -213,7 +213,8 @@ def differences(before: Found, after: Found) -> str:
             continue
         if route == "lanes":
             routes[route].append(f"first cycle {histories:.1e}")
-        routes[route].append(f"outcomes {np.sum(changed)} cells, others {others:.1e}, now nan {np.sum(emptied)} cells")
+        outcomes, empty = np.sum(changed & ~emptied), np.sum(emptied)
+        routes[route].append(f"outcomes {outcomes} cells, others {others:.1e}, now nan {empty} cells")
         routes[route] += [f"missing {', '.join(missing)}"] if missing else []
     return " | ".join(f"{route}: {', '.join(said)}" for route, said in routes.items())
 

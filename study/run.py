@@ -178,7 +178,7 @@ class _Counter:
         self.compute_seconds = self.store_seconds = 0.0
         self.begun = time.perf_counter()
         self.report = report
-        self._tell()
+        self._show()
 
     def add(self, outcome: Outcome) -> None:
         self.done += outcome.cells
@@ -187,9 +187,9 @@ class _Counter:
         self.failures += outcome.failure is not None
         self.store_seconds += outcome.storing
         self.compute_seconds += outcome.seconds - outcome.storing
-        self._tell()
+        self._show()
 
-    def _tell(self) -> None:
+    def _show(self) -> None:
         if self.report is not None:
             seconds = time.perf_counter() - self.begun
             self.report(

@@ -18,6 +18,7 @@ SLOW = (
     "diagnosis/fit",
     "diagnosis/forces",
     "diagnosis/search",
+    "grids/motions/test_artificial.py",
     "models/housner/test_agreement.py",
     "models/housner/test_convergence.py",
     "models/housner/test_thresholds.py",

@@ -42,7 +42,7 @@ def run(
         MofNCompleteColumn(),
         TextColumn("{task.fields[rate]}  {task.fields[left]} left  {task.fields[failures]} failed blocks"),
     )
-    show = _Shower(Bar(*columns, console=Console(stderr=True)))
+    show = _ProgressBar(Bar(*columns, console=Console(stderr=True)))
     try:
         report = run_study(plan, results=results, scheduler=scheduler, workers=workers, progress=show)
     except KeyboardInterrupt:
@@ -58,7 +58,7 @@ def run(
         raise typer.Exit(FAILURES)
 
 
-class _Shower:
+class _ProgressBar:
     """Shows progress on a bar that appears with the first report, after the plan was accepted."""
 
     def __init__(self, bar: Bar) -> None:
