@@ -15,6 +15,7 @@ HERE = Path(__file__).resolve().parent
 SLOW = (
     "benchmarks",
     "diagnosis/answer",
+    "diagnosis/data/test_noise.py",
     "diagnosis/fit",
     "diagnosis/forces",
     "diagnosis/search",
