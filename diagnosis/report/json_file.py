@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from typing import Any
 
-from diagnosis.answer.result import Diagnosis, Fit, Undecided
-from diagnosis.fit.intervals import Estimate
+from diagnosis.answer.result import Diagnosis, Fit
 from study.provenance import as_json
 
 
@@ -20,41 +20,11 @@ def as_mapping(diagnosis: Diagnosis) -> dict[str, Any]:
     """The same as plain mappings and lists; whether and what was stopped stands in ``provenance``."""
     return {
         "verdict": diagnosis.verdict,
-        "effects": [
-            {
-                "name": effect.name,
-                "class": effect.effect_class,
-                "parameters": {name: _estimate(value) for name, value in effect.parameters.items()},
-                "evidence": effect.evidence,
-                "p_value": effect.p_value,
-            }
-            for effect in diagnosis.effects
-        ],
-        "rivals": [
-            {"name": rival.name, "class": rival.effect_class, "evidence_gap": rival.evidence_gap}
-            for rival in diagnosis.rivals
-        ],
-        "located": [
-            {
-                "recording": place.recording,
-                "channel": place.channel,
-                "start": place.start,
-                "end": place.end,
-                "where": list(place.where),
-                "share": place.share,
-            }
-            for place in diagnosis.located
-        ],
-        "constancy": [
-            {
-                "parameter": found.parameter,
-                "depends_on": found.depends_on,
-                "stronger": found.stronger or None,
-                "evidence": found.evidence,
-            }
-            for found in diagnosis.constancy
-        ],
-        "undecided": None if diagnosis.undecided is None else _undecided(diagnosis.undecided),
+        "effects": _entries(diagnosis.effects),
+        "rivals": _entries(diagnosis.rivals),
+        "located": _entries(diagnosis.located),
+        "constancy": _entries(diagnosis.constancy),
+        "undecided": None if diagnosis.undecided is None else _entry(asdict(diagnosis.undecided)),
         "suspicions": [
             {"recording": name, "suspicion": what} for name, all_of in diagnosis.suspicions.items() for what in all_of
         ],
@@ -70,23 +40,15 @@ def as_mapping(diagnosis: Diagnosis) -> dict[str, Any]:
     }
 
 
-def _estimate(value: Estimate) -> dict[str, Any]:
-    return {
-        "estimate": value.estimate,
-        "low95": value.low95,
-        "high95": value.high95,
-        "unit": value.unit,
-        "at_bound": value.at_bound or None,
-    }
+def _entries(parts: Sequence[Any]) -> list[Any]:
+    return [_entry(asdict(part)) for part in parts]
 
 
-def _undecided(suspect: Undecided) -> dict[str, Any]:
-    return {
-        "name": suspect.name,
-        "class": suspect.effect_class,
-        "gain": suspect.gain,
-        "rests_on": suspect.rests_on or None,
-    }
+def _entry(value: Any) -> Any:
+    """A part of the answer: what it leaves empty is null, its class has the file's name."""
+    if isinstance(value, dict):
+        return {"class" if key == "effect_class" else key: _entry(item) for key, item in value.items()}
+    return list(value) if isinstance(value, tuple) else None if value == "" else value
 
 
 def _fit(fit: Fit) -> dict[str, Any]:

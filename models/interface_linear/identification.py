@@ -1,23 +1,9 @@
-"""What a diagnosis needs to know of walls on linear layers: vertical states are not measured."""
+"""What a diagnosis needs to know of walls on linear layers: as on other rubber, with no history to carry."""
 
 from __future__ import annotations
 
-from models.identification import Identification, Lead, State, WindowLengths
+from dataclasses import replace
 
-IDENTIFICATION = Identification(
-    leads=(Lead("rotation_1", 1, "base"), Lead("rotation_2", 2, "top")),
-    states=(
-        State("rotation_1", "rotation_1"),
-        State("rotation_2", "rotation_2"),
-        State("displacement_z_1", at_rest=lambda d: -d["static_sinking_base"]),
-        State("displacement_z_2", at_rest=lambda d: -d["static_sinking_top"]),
-        State("rotation_rate_1", "rotation_1", rate=True),
-        State("rotation_rate_2", "rotation_2", rate=True),
-        State("velocity_z_1"),
-        State("velocity_z_2"),
-    ),
-    windows=WindowLengths(
-        shortest=0.8, aim=1.5, longest=3.0, quiet=1.0, smoothing=0.1, unit=lambda d: 1.0 / d["frequency_1"]
-    ),
-    chaotic=False,
-)
+from models.interface import identification
+
+IDENTIFICATION = replace(identification.IDENTIFICATION, not_carried=())
