@@ -230,7 +230,8 @@ def _from_specimen(
 
 def _outputs(table: OutputsTable | None, model: Model) -> tuple[str, ...]:
     known = [output.name for output in model.outputs]
-    names = known if table is None else table.names
+    without_history = [output.name for output in model.outputs if not output.peak_of]
+    names = without_history if table is None else table.names
     for index, name in enumerate(names):
         if name not in known:
             raise InputError(f"[outputs] names: '{name}' is no output of model '{model.name}'; {nearest(name, known)}")

@@ -63,7 +63,11 @@ class MechanismParameter(Parameter):
 
 @dataclass(frozen=True)
 class Quantity:
-    """An output of a run, a derived constant, or an observable channel of a history."""
+    """An output of a run, a derived constant, or an observable channel of a history.
+
+    ``peak_of``: observables whose largest absolute value the output is (see `models.peaks`); an output without
+    them is summed up by the integrators.
+    """
 
     name: str
     symbol: str
@@ -71,6 +75,7 @@ class Quantity:
     meaning: str
     rule: str = ""
     dtype: str = "float64"
+    peak_of: tuple[str, ...] = ()
 
 
 JOINTS = (("base", "at the base"), ("top", "at the top joint"))

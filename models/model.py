@@ -15,6 +15,7 @@ from models.base import FloatArray, History, Mechanism, Parameter, Quantity, Val
 from models.errors import InputError, nearest
 from models.identification import Identification
 from models.mechanisms import acting_on, applied
+from models.peaks import peaks
 from models.runs import Request, Run
 from models.shaking import Shaking
 
@@ -153,7 +154,15 @@ class Model(ABC, Generic[C]):
         scale = np.atleast_1d(np.asarray(scale, dtype=np.float64))
         coefficients = self._shaken(values, options, shaking, scale.size, integrator)
         request = Request(shaking, scale, self.resolve_options(options), tail=tail)
-        found = self.run(integrator, coefficients, request).outputs
+        found = dict(self.run(integrator, coefficients, request).outputs)
+        if wanted := [quantity for quantity in self.outputs if quantity.peak_of and quantity.name in outputs]:
+
+            def observed(lanes: slice, part: Request) -> dict[str, FloatArray]:
+                some = coefficients.take(lanes)
+                return self.observe(some, self.run(integrator, some, part).samples)
+
+            stands = np.full(scale.size, np.nan)
+            found |= peaks(observed, request, wanted, found.get("overturning_time", stands))
         return answers(self.outputs, found, outputs)
 
     def trajectories(
@@ -210,7 +219,10 @@ class Model(ABC, Generic[C]):
         )  # fmt: skip
         run = self.run(integrator, coefficients, request)
         channels = self.observe(coefficients, self.settle(run, step))
-        given = answers(self.outputs, run.outputs, [quantity.name for quantity in self.outputs])
+        wanted = [quantity for quantity in self.outputs if quantity.peak_of]
+        found = dict(run.outputs)
+        found |= peaks(lambda *_: channels, request, wanted, found.get("overturning_time", np.full(1, np.nan)))
+        given = answers(self.outputs, found, [quantity.name for quantity in self.outputs])
         return History(
             step * np.arange(last + 1, dtype=np.float64),
             {name: one[0] for name, one in channels.items()},

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from models.base import FloatArray, Parameter, Quantity, Values
+from models.peaks import AT_SAMPLES
 
 PARAMETERS = (
     Parameter("wall_length", "2b_1", "m", "length of the wall", 0.0, low_open=True),
@@ -90,6 +91,14 @@ def by_body(
         Quantity(f"{name}_1", f"{symbol}_1", unit, f"{meaning}, of the wall", rule, dtype=kind),
         Quantity(f"{name}_2", f"{symbol}_2", unit, f"{meaning}, of the upper block", rule, dtype=kind),
     ]
+
+
+def peaks_by_body(name: str, symbol: str, unit: str, meaning: str, channel: str) -> list[Quantity]:
+    """The peaks of ``channel_1`` and ``channel_2``, and the larger of both."""
+    each = [f"{channel}_{body}" for body in (1, 2)]
+    channels = [tuple(each), *((one,) for one in each)]
+    given = by_body(name, symbol, unit, meaning, AT_SAMPLES, "the larger of both")
+    return [replace(quantity, peak_of=of) for quantity, of in zip(given, channels, strict=True)]
 
 
 def by_joint(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from models.base import Parameter, Quantity
+from models.peaks import AT_SAMPLES
 
 PARAMETERS = (
     Parameter("width", "2b", "m", "width of the base", 0.0, low_open=True),
@@ -80,6 +81,14 @@ OUTPUTS = (
         "1",
         "largest absolute rotation over the slenderness angle",
         "(pi/2)/alpha when overturned",
+    ),
+    Quantity(
+        "peak_velocity",
+        "max |theta'|",
+        "rad s-1",
+        "largest absolute angular velocity",
+        AT_SAMPLES,
+        peak_of=("rotation_rate_1",),
     ),
     Quantity(
         "uplift_duration",

@@ -6,7 +6,7 @@ from models.base import Parameter, Quantity
 from models.rubber import LAWS
 from models.walls import ALTERNATIVES as OF_WALLS
 from models.walls import PARAMETERS as OF_WALL
-from models.walls import by_body, by_joint
+from models.walls import by_body, by_joint, peaks_by_body
 
 
 def _layer(name: str, symbol: str, unit: str, meaning: str) -> tuple[Parameter, ...]:
@@ -86,6 +86,7 @@ OUTPUTS = (
         "peak_rotation_ratio", "max |theta| / alpha", "1", "largest absolute rotation over the slenderness angle",
         "alpha of both as one body for the wall, of the upper block alone for the upper block", WORST,
     ),
+    *peaks_by_body("peak_velocity", "max |theta'|", "rad s-1", "largest absolute angular velocity", "rotation_rate"),
     *by_joint("uplift_duration", "t_up", "s", "time for which the joint is up", UP, WORST),
     *by_joint("onset_time", "t_on", "s", "time of the first uplift", f"nan when it never lifts; {UP}", FIRST),
     *by_joint("minimum_contact", "min l/2b", "1", "smallest share of the joint in contact", UP, "the smaller of both"),

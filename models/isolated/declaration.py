@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from models.base import Parameter, Quantity
+from models.peaks import AT_SAMPLES
 from models.rubber import LAWS
 
 MOST_LEVELS = 12
@@ -64,6 +65,10 @@ OUTPUTS = (
     Quantity(
         "peak_drift", "max |x_j - x_j-1|", "m", "largest absolute displacement of a level against the one below",
         "storeys only, without the bearings; 0 for one level",
+    ),
+    Quantity(
+        "peak_velocity", "max |x_1'|", "m s-1", "largest absolute velocity of the bearings", AT_SAMPLES,
+        peak_of=("bearing_velocity",),
     ),
     Quantity("residual_displacement", "x_1,end", "m", "displacement of the bearings at the end of the run"),
     Quantity(

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numpy as np
-
 from models.base import Event, FloatArray, Values
 from models.errors import InputError
 from models.isolated import declaration, modes
@@ -64,8 +62,6 @@ class Isolated(Model[Chain]):
     def run_lanes(self, coefficients: Chain, request: Request) -> Run:
         from models.isolated.lanes.run import run
 
-        if request.history and np.any(coefficients.levels != coefficients.levels[0]):
-            raise ValueError("histories need chains of one length in a call")
         ran = run(
             coefficients, request.shaking, request.scale, tail=request.tail, initial=request.initial,
             first=request.first, last=request.last, samples=request.samples, may_rest=not request.history,

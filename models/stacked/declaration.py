@@ -7,7 +7,7 @@ import numpy as np
 from models import walls
 from models.base import Parameter, Quantity
 from models.stacked.configuration import NAMES
-from models.walls import by_body, by_joint
+from models.walls import by_body, by_joint, peaks_by_body
 
 PARAMETERS = (
     *walls.PARAMETERS,
@@ -47,6 +47,7 @@ OUTPUTS = (
         "peak_rotation_ratio", "max |theta| / alpha", "1", "largest absolute rotation over the slenderness angle",
         "alpha of both as one body for the wall, of the upper block alone for the upper block", WORST,
     ),
+    *peaks_by_body("peak_velocity", "max |theta'|", "rad s-1", "largest absolute angular velocity", "rotation_rate"),
     *by_joint(
         "uplift_duration", "t_up", "s", "time for which the joint is up", f"{AT_REST}; counted to overturning", WORST
     ),

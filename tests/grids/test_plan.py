@@ -54,6 +54,11 @@ def test_a_whole_plan() -> None:
     assert found.grid.apart == {"formulation"}
 
 
+def test_outputs_that_need_histories_are_computed_only_where_they_are_named() -> None:
+    assert "peak_velocity" not in read(plan()).outputs
+    assert read(plan(more="[outputs]\nnames = ['peak_velocity']")).outputs == ("peak_velocity",)
+
+
 def test_a_name_of_parameter_and_mechanism_is_told_apart_by_its_table() -> None:
     absolute = read(plan("restitution = { linspace = [0.5, 0.9, 5] }"))
     factor = read(plan("restitution.factor_on_housner = { linspace = [0.5, 0.9, 5] }"))
