@@ -20,7 +20,7 @@ def count_operations(function: Any, absent: tuple[str, ...]) -> int:
     python = getattr(function, "py_func", function)
     tree = ast.parse(textwrap.dedent(inspect.getsource(python))).body[0]
     assert isinstance(tree, ast.FunctionDef)
-    return _block(tree.body, python.__globals__, absent)
+    return _block(tree.body, {**python.__globals__, **inspect.getclosurevars(python).nonlocals}, absent)
 
 
 def _block(body: list[ast.stmt], names: dict[str, Any], absent: tuple[str, ...]) -> int:
@@ -59,7 +59,7 @@ def _expression(node: ast.AST, names: dict[str, Any], absent: tuple[str, ...]) -
             total += 1
         if isinstance(child, ast.Call) and isinstance(child.func, ast.Name):
             called = names.get(child.func.id)
-            if hasattr(called, "py_func"):
+            if hasattr(called, "py_func") or getattr(called, "__module__", "").startswith("models."):
                 total += count_operations(called, absent)
             elif child.func.id == "sqrt":
                 total += 1

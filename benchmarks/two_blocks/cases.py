@@ -17,6 +17,7 @@ NUMBERS = {
     "hardening": {"hardening.beta2": 3.0},
     "maxwell": {"maxwell.arm_stiffness_ratio": 0.5, "maxwell.relaxation_time": 0.05},
     "bouc_wen": {"bouc_wen.post_yield_ratio": 0.3, "bouc_wen.yield_compression": 1e-3, "bouc_wen.exponent": 2.0},
+    "locking": {"locking.lock_strain": 0.7},
     "mullins": {"mullins.softening": 0.4, "mullins.strain": 0.3},
     "permanent_set": {"permanent_set.rate": 0.5, "permanent_set.strain_limit": 0.8},
 }
@@ -132,15 +133,15 @@ def buildings(rng: Any, n: int) -> dict[str, Any]:
 
 def operations(law: str) -> int:
     """Of one lane-step of the interface model."""
-    from models.interface.lanes import fibres, rows
+    from models.interface.fibres import COUNT
+    from models.interface.lanes import fibres
     from models.interface.lanes.step import step_all
 
     if law == "linear":
         return count_operations(step_all, ("mixed", "laws"))
-    absent = ("mixed", *(name for name in LAWS if name != law))
-    once = sum(count_operations(part, absent) for part in (step_all, fibres.predicted_strips, fibres.lengths))
-    each_joint = rows.FIBRES // 4 * count_operations(fibres.fibres_of, absent)
-    return once + 2 * each_joint
+    once = sum(count_operations(part, ("mixed",)) for part in (step_all, fibres.predicted_strips, fibres.lengths))
+    four = fibres._four((LAWS[law],), 0, 0)
+    return once + 2 * (COUNT // 4) * count_operations(four, ())
 
 
 def layers_plan(model: str, moduli: int, softest: float = 1.0, numbers: dict[str, float] | None = None) -> str:

@@ -50,10 +50,15 @@ class Equation:
     def __init__(self, wall: LayeredWall) -> None:
         self.wall = wall.one()
         self.free = FREE[wall.joints]
-        laden = [joint for joint in wall.rubber_joints if wall.laws_at(joint)]
-        self.fibres = {joint: Fibres(wall, joint) for joint in laden}
-        rest = static_state(wall)[0]
-        self.sunk = [float(-rest[2 if joint == "base" else 3]) for joint in laden]
+        self.fibres = {joint: Fibres(wall, joint) for joint in wall.rubber_joints if wall.laws_at(joint)}
+        self.parts: dict[str, slice] = {}
+        self.hidden = 0
+        """Numbers in the laws' hidden state, and each joint's part of them."""
+        for joint, fibres in self.fibres.items():
+            self.parts[joint] = slice(self.hidden, self.hidden + fibres.size)
+            self.hidden += fibres.size
+        rest = static_state(wall)
+        self.rest = {"base": -rest[:, 2], "top": -rest[:, 3]}
 
     def kinematics(self, q: Sequence[float], v: Sequence[float]) -> Kinematics:
         t1, t2, z1, z2 = q
@@ -101,39 +106,40 @@ class Equation:
                 math.cos(turn) * (w2 - w1), wall.clip,
             )  # fmt: skip
         rates = np.zeros_like(hidden)
-        if self.fibres:
-            end = self.fibres["base"].size if "base" in self.fibres else 0
-            if "base" in self.fibres:
-                more, couple, rates[:end] = self.fibres["base"].difference(z1, t1, z1_rate, w1, hidden[:end])
-                base = base._replace(force=base.force + more, moment=base.moment + couple)
-            if "top" in self.fibres:
-                more, couple, rates[end:] = self.fibres["top"].difference(z2, turn, z2_rate, w2 - w1, hidden[end:])
-                top = top._replace(force=top.force + more, moment=top.moment + couple)
+        for joint, part in self.parts.items():
+            which, motion = (0, (z1, t1, z1_rate, w1)) if joint == "base" else (1, (z2, turn, z2_rate, w2 - w1))
+            fibres = self.fibres[joint]
+            more = fibres.difference(motion, fibres.parted(hidden[part]))
+            rates[part] = fibres.joined(more.rates)
+            linear = top if which else base
+            linear = linear._replace(force=linear.force + more.force.item(), moment=linear.moment + more.moment.item())
+            base, top = (base, linear) if which else (linear, top)
         return base, top, rates
 
     def stored(self, q: Sequence[float], hidden: FloatArray) -> Pair:
         """Energy (J) in the springs of each layer's law; 0 where bonded."""
-        wall, found, position = self.wall, [0.0, 0.0], 0
+        wall, found = self.wall, [0.0, 0.0]
         for k, (joint, z, angle) in enumerate((("base", q[2], q[0]), ("top", q[3], q[1] - q[0]))):
             if wall.joints not in ("both", joint):
                 continue
             b = wall.base_half_width if joint == "base" else wall.top_half_width
             stiffness = wall.base_stiffness if joint == "base" else wall.top_stiffness
-            found[k] = stored(b, stiffness, z, math.sin(angle))
+            found[k] = stored(b, stiffness, np.asarray(z), np.sin(angle)).item()
             if joint in self.fibres:
-                size = self.fibres[joint].size
-                found[k] += self.fibres[joint].energy(z, angle, hidden[position : position + size])
-                position += size
+                fibres = self.fibres[joint]
+                more = fibres.energy(np.array([z]), np.array([angle]), fibres.parted(hidden[self.parts[joint]]))
+                found[k] += more.item()
         return found[0], found[1]
 
     def relaxed(self, q: Sequence[float] = (0.0,) * 4) -> FloatArray:
-        """The laws' hidden state after a long rest under gravity, let go at ``q``."""
+        """The laws' hidden state after a long rest under gravity, let go at ``q`` (what it becomes there at once)."""
         places = {"base": (q[2], q[0]), "top": (q[3], q[1] - q[0])}
-        parts = [
-            fibres.relaxed(sunk, *places[joint])
-            for (joint, fibres), sunk in zip(self.fibres.items(), self.sunk, strict=True)
-        ]
-        return np.concatenate(parts) if parts else np.zeros(0)
+        found = np.zeros(self.hidden)
+        for joint, fibres in self.fibres.items():
+            z, angle = (np.array([value]) for value in places[joint])
+            kept = fibres.layer.reached(fibres.compression(z, angle), fibres.relaxed(self.rest[joint]))
+            found[self.parts[joint]] = fibres.joined(kept)
+        return found
 
     def mass(self, at: Kinematics) -> FloatArray:
         """M (4, 4)."""

@@ -10,83 +10,85 @@ law B psi - min(s, 0)^2/(2 K) is stored, K the slope of s on unloading. Its chan
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from models.base import FloatArray
 from models.interface.layered import LayeredWall
-from models.rubber.base import Laws, Numbers, RubberLaw
+from models.rubber.layer import Hidden, Layer
 
-NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
+COUNT = 16
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(COUNT)
+
+
+class Difference(NamedTuple):
+    """What the fibres add to the linear strip: force (N), moment (N m), arrays (n,); rates of the hidden states."""
+
+    force: FloatArray
+    moment: FloatArray
+    rates: list[FloatArray]
 
 
 class Fibres:
-    """The fibres of one joint of one wall (of one lane)."""
+    """The fibres of one joint of n walls. Positions and angles are (n,), hidden states one (n, 16) for each law."""
 
     def __init__(self, wall: LayeredWall, joint: str) -> None:
-        one, base = wall.one(), joint == "base"
-        self.b = one.base_half_width if base else one.top_half_width
-        self.k = one.base_stiffness if base else one.top_stiffness
-        self.c = one.base_damping if base else one.top_damping
+        base = joint == "base"
+        self.b = (wall.base_half_width if base else wall.top_half_width)[:, None]
+        self.c = (wall.base_damping if base else wall.top_damping)[:, None]
         self.clip = wall.clip
-        self.laws: Laws = [(law, {n: np.asarray(v[0]) for n, v in p.items()}) for law, p in wall.laws_at(joint)]
+        layer = wall.layer(joint)
+        self.laws = [(law, {name: values[:, None] for name, values in p.items()}) for law, p in layer.laws]
+        self.layer = Layer(layer.stiffness[:, None], self.laws)
         self.x = self.b * NODES
 
-    @property
-    def size(self) -> int:
-        """Numbers in the hidden state: 16 for each law that has one."""
-        return 16 * sum(law.hidden for law, _ in self.laws)
+    def compression(self, z: FloatArray, angle: FloatArray) -> FloatArray:
+        """u (n, 16) in m; 0 where open."""
+        return np.maximum(self.x * np.sin(angle)[:, None] - z[:, None], 0.0)
 
-    def relaxed(self, compression: float, z: float = 0.0, angle: float = 0.0) -> FloatArray:
-        """The hidden state after a long rest at ``compression`` (m) everywhere, let go at ``z``, ``angle``.
+    def relaxed(self, compression: FloatArray) -> list[FloatArray]:
+        """The hidden states after a long rest at ``compression`` (n,) everywhere."""
+        return self.layer.relaxed(compression[:, None] + 0.0 * self.x)
 
-        Of the place where it is let go only the largest compression is known.
-        """
-        u = np.full(16, compression)
-        begun = np.maximum(self.x * math.sin(angle) - z, u)
-        kept = [law.relaxed(begun if law.name == "mullins" else u, p) for law, p in self.laws if law.hidden]
-        return np.concatenate(kept) if kept else np.zeros(0)
-
-    def _with_states(self, u: FloatArray, state: FloatArray) -> Iterator[tuple[RubberLaw, Numbers, FloatArray]]:
-        """Every law, its numbers and its hidden states along the fibres."""
-        position = 0
-        for law, p in self.laws:
-            yield law, p, state[position : position + 16] if law.hidden else u
-            position += 16 * law.hidden
-
-    def energy(self, z: float, angle: float, state: FloatArray) -> float:
-        """Stored (J) beyond the springs of the linear strip."""
-        u = np.maximum(self.x * math.sin(angle) - z, 0.0)
-        more, stress, slope = np.zeros(16), self.k * u, self.k + np.zeros(16)
-        for law, p, h in self._with_states(u, state):
-            more += law.energy(u, h, p)
-            stress += law.extra(u, h, p)
-            slope += law.tangent(u, h, p)
+    def energy(self, z: FloatArray, angle: FloatArray, hidden: Hidden) -> FloatArray:
+        """Stored (J) beyond the springs of the linear strip, (n,)."""
+        u = self.compression(z, angle)
+        more = self.layer.energy(u, hidden) - 0.5 * self.layer.stiffness * u**2
         if self.clip:
-            more -= np.minimum(stress, 0.0) ** 2 / (2.0 * slope)
-        total: float = self.b * (WEIGHTS @ more)
-        return total
+            more -= np.minimum(self.layer.stress(u, hidden), 0.0) ** 2 / (2.0 * self.layer.slope(u, hidden))
+        return np.asarray(self.b[:, 0] * (more @ WEIGHTS))
 
-    def difference(
-        self, z: float, angle: float, z_rate: float, angle_rate: float, state: FloatArray
-    ) -> tuple[float, float, FloatArray]:
-        """Force (N) and moment (N m) beyond the linear strip, and the rate of the hidden state."""
-        s, s_rate = math.sin(angle), math.cos(angle) * angle_rate
-        w = z - self.x * s
-        pressed = w < 0.0
-        u = np.where(pressed, -w, 0.0)
-        u_rate = np.where(pressed, self.x * s_rate - z_rate, 0.0)
-        linear = self.k * u + self.c * u_rate
-        total, rates = linear.copy(), []
-        for law, p, h in self._with_states(u, state):
-            total += law.extra(u, h, p)
-            if law.hidden:
-                rates.append(law.rate(u, u_rate, h, p))
+    def difference(self, motion: Sequence[Any], hidden: Hidden) -> Difference:
+        """In a state of motion: z, angle, z', angle' of the joint, each (n,)."""
+        z, angle, z_rate, angle_rate = (np.atleast_1d(value) for value in motion)
+        turning = self.x * (np.cos(angle) * angle_rate)[:, None]
+        u = self.compression(z, angle)
+        pressed = u > 0.0
+        u_rate = np.where(pressed, turning - z_rate[:, None], 0.0)
+        linear = self.layer.stiffness * u + self.c * u_rate
+        total = self.layer.stress(u, hidden) + self.c * u_rate
         if self.clip:
             total, linear = np.maximum(total, 0.0), np.maximum(linear, 0.0)
         stress = np.where(pressed, total - linear, 0.0)
-        force = self.b * float(WEIGHTS @ stress)
-        moment = self.b * float(WEIGHTS @ (stress * self.x))
-        return force, moment, np.concatenate(rates) if rates else np.zeros(0)
+        b = self.b[:, 0]
+        rates = self.layer.rates(u, u_rate, hidden)
+        return Difference(b * (stress @ WEIGHTS), b * ((stress * self.x) @ WEIGHTS), rates)
+
+    # --- one wall, its hidden states in one vector, for an integrator
+
+    @property
+    def size(self) -> int:
+        """Numbers in the vector: 16 for each law that has a hidden state."""
+        return COUNT * sum(law.hidden for law, _ in self.laws)
+
+    def joined(self, hidden: Hidden) -> FloatArray:
+        """The hidden states of one wall as a vector."""
+        kept = [h[0] for (law, _), h in zip(self.laws, hidden, strict=True) if law.hidden]
+        return np.concatenate(kept) if kept else np.zeros(0)
+
+    def parted(self, vector: FloatArray) -> list[FloatArray]:
+        """The hidden states (1, 16) by law from their vector."""
+        parts = iter(vector.reshape(-1, 1, COUNT))
+        return [next(parts) if law.hidden else np.zeros((1, COUNT)) for law, _ in self.laws]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
@@ -10,7 +10,8 @@ import numpy as np
 
 from models.base import FloatArray, Values
 from models.rubber import LAWS
-from models.rubber.base import RubberLaw
+from models.rubber.base import Numbers, RubberLaw
+from models.rubber.layer import Layer
 
 FREE = {
     "both": np.eye(4),
@@ -108,8 +109,12 @@ class LayeredWall:
         kept = {k: v for k, v in self.laws.items() if not k.endswith(f"_{joint}") or k.startswith(f"{name}.")}
         return self._with({"laws": kept})
 
-    def laws_at(self, joint: str) -> list[tuple[RubberLaw, dict[str, FloatArray]]]:
-        """The laws at ``joint`` with their numbers, in the order of the family."""
+    def laws_at(self, joint: str) -> Sequence[tuple[RubberLaw, Numbers]]:
+        """The laws at ``joint`` with their numbers, in the order of the family; none where it is bonded."""
+        return self.layer(joint).laws
+
+    def layer(self, joint: str) -> Layer:
+        """The rubber at ``joint``: k and the laws beside it."""
         shared = {
             "stiffness": self.base_stiffness if joint == "base" else self.top_stiffness,
             "thickness": self.base_thickness if joint == "base" else self.top_thickness,
@@ -119,7 +124,7 @@ class LayeredWall:
             own = {p: self.laws[key] for p in law.parameters if (key := f"{name}.{p}_{joint}") in self.laws}
             if own:
                 found.append((law, {**shared, **own}))
-        return found
+        return Layer(shared["stiffness"], found)
 
     @property
     def mass(self) -> FloatArray:

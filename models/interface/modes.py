@@ -14,7 +14,6 @@ import numpy as np
 
 from models.base import FloatArray
 from models.interface.layered import FREE, LayeredWall
-from models.rubber.base import edge_at_uplift, static_compression
 
 
 def static_state(wall: LayeredWall) -> FloatArray:
@@ -25,18 +24,18 @@ def static_state(wall: LayeredWall) -> FloatArray:
         ("top", 3, wall.mass_2, wall.top_half_width, wall.top_stiffness, wall.top_thickness),
     ):
         if joint in wall.rubber_joints:
-            load, laws = mass * wall.gravity / (2.0 * half), wall.laws_at(joint)
+            load, layer = mass * wall.gravity / (2.0 * half), wall.layer(joint)
             most = np.maximum(thickness, 4.0 * load / stiffness)
-            state[:, column] = -static_compression(load, laws, stiffness, most) if laws else -load / stiffness
+            state[:, column] = -layer.static_compression(load, most) if layer.laws else -load / stiffness
     return state
 
 
 def tangents(wall: LayeredWall, rest: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Slope (N m-2) of the base and the top layer on unloading from ``rest`` (n, 4); k where no other law acts."""
     found = []
-    for joint, z, stiffness in (("base", rest[:, 2], wall.base_stiffness), ("top", rest[:, 3], wall.top_stiffness)):
-        laws = wall.laws_at(joint) if joint in wall.rubber_joints else []
-        found.append(np.asarray(stiffness + sum(law.tangent(-z, law.relaxed(-z, p), p) for law, p in laws)))
+    for joint, z in (("base", rest[:, 2]), ("top", rest[:, 3])):
+        layer = wall.layer(joint)
+        found.append(layer.slope(-z, layer.relaxed(-z)))
     return found[0], found[1]
 
 
@@ -45,8 +44,8 @@ def uplift_rotation(wall: LayeredWall, rest: FloatArray) -> FloatArray:
     if "base" not in wall.rubber_joints:
         return np.full(wall.size, np.nan)
     load = wall.mass * wall.gravity / (2.0 * wall.base_half_width)
-    laws = wall.laws_at("base")
-    edge = edge_at_uplift(load, laws, wall.base_stiffness, -rest[:, 2]) if laws else -2.0 * rest[:, 2]
+    layer = wall.layer("base")
+    edge = layer.edge_at_uplift(load, -rest[:, 2]) if layer.laws else -2.0 * rest[:, 2]
     return np.asarray(edge / (2.0 * wall.base_half_width))
 
 

@@ -1,4 +1,4 @@
-"""The exact no-tension strip under a rigid body: closed form, one state at a time.
+"""The exact no-tension strip under a rigid body: closed form.
 
 Half width b; spring k (N m-2) and dashpot c (N s m-2) per unit length. The body's underside lies at
 w(x) = z - x S over the unstressed layer, S the sine of its rotation; contact where w < 0. The stress
@@ -9,6 +9,10 @@ and is clipped at zero under law B.
 from __future__ import annotations
 
 from typing import NamedTuple
+
+import numpy as np
+
+from models.base import FloatArray
 
 OPEN = (0.0, 0.0)
 
@@ -57,8 +61,11 @@ def strip(
     return Strip(-(y0 * d1 - y1 * d2), -(y0 * d2 - y1 * d3), d1 / (2.0 * b))
 
 
-def stored(b: float, k: float, z: float, s: float) -> float:
-    """Elastic energy of the linear law, k/2 times the integral of w^2 over the contact, in J."""
-    low, high = touching(b, z, s)
-    d1, d2, d3 = high - low, (high**2 - low**2) / 2.0, (high**3 - low**3) / 3.0
-    return 0.5 * k * (z * z * d1 - 2.0 * z * s * d2 + s * s * d3)
+def stored(b: FloatArray, k: FloatArray, z: FloatArray, s: FloatArray) -> FloatArray:
+    """Elastic energy of the linear law, k/2 times the integral of w^2 over the contact, in J; arrays broadcast."""
+    lean = np.abs(s)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        low = np.where(z + lean * b <= 0.0, -b, np.minimum(b, np.maximum(-b, z / lean)))
+    d1, d2, d3 = b - low, (b * b - low * low) / 2.0, (b * b * b - low * low * low) / 3.0
+    energy = 0.5 * k * (z * z * d1 - 2.0 * z * lean * d2 + lean * lean * d3)
+    return np.asarray(np.where(d1 > 0.0, energy, 0.0 * energy), dtype=np.float64)

@@ -9,10 +9,11 @@ import numpy as np
 from models.base import FloatArray, Values
 from models.errors import InputError
 from models.isolated.chain import Chain
-from models.isolated.declaration import MOST_LEVELS
+from models.isolated.declaration import IN_SHEAR, MOST_LEVELS
 from models.mechanisms import applied
+from models.rubber import LAWS
 
-OF_THE_STRAIN = ("hardening", "mullins", "payne")
+OF_THE_STRAIN = (*(name for name in IN_SHEAR if LAWS[name].of_strain), "payne")
 
 
 def complaints(values: Values) -> list[str]:
@@ -39,10 +40,6 @@ def complaints(values: Values) -> list[str]:
     strained = [name for name in OF_THE_STRAIN if name in mechanisms]
     if strained and "rubber_thickness" not in values:
         found.append(f"{strained[0]} is a law of the strain and needs rubber_thickness (m): give it")
-    exponent = np.asarray(values.get("bouc_wen.exponent", 1.0), dtype=np.float64)
-    whole = np.isin(exponent, (1.0, 2.0, 3.0, 4.0))
-    if not np.all(whole):
-        found.append(f"bouc_wen.exponent is {float(exponent[~whole].flat[0]):g}; give 1, 2, 3 or 4")
     return found
 
 
@@ -71,6 +68,9 @@ def build(values: Values, options: Mapping[str, str], size: int | None = None) -
         thickness=value("rubber_thickness"),
     )
     chain = applied("isolated", chain, values)
+    for rubber_law, p in chain.rubber_laws:
+        if refused := rubber_law.refusal(p, np.zeros(chain.size)):
+            raise InputError(refused)
     law = options["rubber_law"]
     if law == "as_given":
         return chain

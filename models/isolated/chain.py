@@ -13,6 +13,7 @@ from models.base import FloatArray, Values
 from models.isolated.declaration import IN_SHEAR
 from models.rubber import LAWS
 from models.rubber.base import Numbers, RubberLaw
+from models.rubber.layer import Layer
 
 
 @dataclass(frozen=True)
@@ -67,6 +68,11 @@ class Chain:
         """The rubber laws beside the linear one with their numbers, in the order of the family."""
         found = [(LAWS[name], self.numbers(name)) for name in IN_SHEAR]
         return [(law, numbers) for law, numbers in found if numbers is not None]
+
+    @property
+    def layer(self) -> Layer:
+        """The rubber of all bearings together: k and the laws beside it."""
+        return Layer(self.stiffness, self.rubber_laws)
 
     @property
     def mass(self) -> FloatArray:

@@ -10,7 +10,7 @@ from models.rubber import LAWS
 
 MOST_LEVELS = 12
 """Longest chain."""
-IN_SHEAR = tuple(name for name in LAWS if name != "permanent_set")
+IN_SHEAR = tuple(name for name, law in LAWS.items() if "isolated" in law.mechanism.acts)
 """Rubber laws that act in shear; a set has a direction, which both ways of shear have not."""
 MODES = 4
 """Modes that a cube tells of."""

@@ -129,7 +129,7 @@ class _Run:
         def derivative(time: float, y: FloatArray) -> FloatArray:
             a = a0 + (a1 - a0) * (time - start) / (end - start)
             hidden = [np.atleast_1d(h) for h in y[2 * n + 1 :]]
-            rates = [float(v[0]) for v in bearing.rates(chain, y[:1], y[n : n + 1], hidden)]
+            rates = [float(v[0]) for v in chain.layer.rates(y[:1], y[n : n + 1], hidden)]
             power = -a * float(self.mass @ y[n : 2 * n])
             return np.concatenate([y[n : 2 * n], self.second(y, a), [power], rates])
 

@@ -13,6 +13,9 @@ from pathlib import Path
 from typing import TypeVar, cast
 
 import numba
+from numba.extending import overload, register_jitable
+
+from models.lanes import elementary
 
 F = TypeVar("F", bound=Callable[..., object])
 _ROOT = Path(__file__).resolve().parent.parent.parent
@@ -24,7 +27,8 @@ def sources(module: str, root: Path = _ROOT) -> list[Path]:
     waiting = [module]
     while waiting:
         name = waiting.pop()
-        path = root.joinpath(*name.split(".")).with_suffix(".py")
+        path = root.joinpath(*name.split("."))
+        path = path / "__init__.py" if path.is_dir() and name != "models" else path.with_suffix(".py")
         if name in found or not path.is_file():
             continue
         found[name] = path
@@ -102,3 +106,14 @@ def inlined(function: F) -> F:
 def called(function: F) -> F:
     """Compile a piece that is called on rare events."""
     return cast(F, numba.njit(**{**_SETTINGS, "cache": False})(function))
+
+
+def in_kernels(function: F, choose: Callable[..., object]) -> F:
+    """Let compiled code that calls ``function`` inline what ``choose`` returns for the types of its arguments."""
+    choose.__annotations__.clear()  # numba compares them with those of what is returned
+    overload(function, jit_options={**_SETTINGS, "cache": False, "forceinline": True})(choose)
+    return function
+
+
+for _piece in (elementary.sine_cosine, elementary.exponential_decay):
+    register_jitable(**{**_SETTINGS, "cache": False}, forceinline=True)(_piece)

@@ -1,15 +1,12 @@
 """Sine, cosine and exponential without branches, so that a loop over lanes becomes vector code.
 
 Polynomials through Chebyshev nodes on [0, 1.75^2] in the squared argument; absolute errors
-6e-16 (sine over argument), 3e-17 (cosine).
+6e-16 (sine over argument), 3e-17 (cosine). Plain Python here; `models.lanes.compiler` compiles what calls them.
 """
 
 from __future__ import annotations
 
-from models.lanes.compiler import inlined
 
-
-@inlined
 def sine_cosine(x: float) -> tuple[float, float]:
     """sin(x), cos(x) for |x| <= 1.75 rad."""
     y = x * x
@@ -33,7 +30,6 @@ def sine_cosine(x: float) -> tuple[float, float]:
     return x * sine, cosine
 
 
-@inlined
 def exponential_decay(u: float) -> float:
     """exp(-u) for u >= 0 (0 beyond 40, where it is under 5e-18), to 2e-14 relative.
 

@@ -8,18 +8,13 @@ from models.base import Mechanism, Values
 from models.errors import InputError
 from models.mechanisms import (
     added_stiffness,
-    bouc_wen,
     bounce,
     coulomb_damping,
     crushing,
     degradation,
     eccentricity,
     flexible_joint,
-    hardening,
-    maxwell,
-    mullins,
     payne,
-    permanent_set,
     pivot_inset,
     quadratic_damping,
     restitution,
@@ -32,6 +27,7 @@ from models.mechanisms import (
     viscous_damping,
     wall_flexibility,
 )
+from models.rubber import LAWS
 
 MECHANISMS: tuple[Mechanism, ...] = (
     vertical_acceleration.MECHANISM,
@@ -52,11 +48,7 @@ MECHANISMS: tuple[Mechanism, ...] = (
     quadratic_damping.MECHANISM,
     degradation.MECHANISM,
     degradation.OF_RUBBER,
-    hardening.MECHANISM,
-    maxwell.MECHANISM,
-    bouc_wen.MECHANISM,
-    mullins.MECHANISM,
-    permanent_set.MECHANISM,
+    *(law.mechanism for law in LAWS.values()),
     payne.MECHANISM,
     wall_flexibility.MECHANISM,
 )

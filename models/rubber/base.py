@@ -1,75 +1,107 @@
-"""What a rubber law is: its addition to the linear stress, and a hidden state of its own."""
+"""What a rubber law is: one file that declares it, states it for arrays, and advances one fibre by a step.
+
+u is the compression (m), h the law's hidden state, p its `Numbers`. All forms hold for both signs of u, so that
+the same law serves a layer in compression and a bearing in shear.
+"""
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
+from typing import Any, Literal, Protocol, Self
 
 import numpy as np
 
-from models.base import FloatArray
+from models.base import FloatArray, Mechanism, MechanismParameter, Values
 
 Numbers = Mapping[str, FloatArray]
 """A law's parameters by name, and ``stiffness`` k (N m-2), ``thickness`` e (m); arrays that broadcast."""
+Role = Literal["shifts", "adds", "softens"]
+
+
+class Layered(Protocol):
+    """Coefficients of a model whose rubber can have laws."""
+
+    def with_law(self, name: str, values: Values) -> Self: ...
+
+
+def _act(coefficients: Layered, values: Values, name: str) -> Layered:
+    return coefficients.with_law(name, values)
+
+
+def rubber_mechanism(
+    name: str, parameters: tuple[MechanismParameter, ...], *, equation: str, signature: str, sentence: str,
+    source: str, models: Sequence[str] = ("interface", "isolated"),
+) -> Mechanism:  # fmt: skip
+    """The mechanism of a rubber law: a class of its own, addressed at both joints of a wall together or at one."""
+    acts: dict[str, Callable[..., Any]] = {model: partial(_act, name=name) for model in models}
+    return Mechanism(name, name, parameters, equation, signature, sentence, acts, source, at_joints=("interface",))
+
+
+def nothing(u: FloatArray, *_: Any) -> FloatArray:
+    """Zeros as many as ``u``: of a law without memory, without a stress or an energy of its own."""
+    return np.zeros_like(u)
+
+
+def unmoved(u: FloatArray, h: FloatArray, p: Numbers) -> FloatArray:
+    """The hidden state as it was."""
+    return h
+
+
+def accepted(p: Numbers, u: FloatArray) -> str:
+    """No complaint."""
+    return ""
 
 
 @dataclass(frozen=True)
 class RubberLaw:
-    """Functions of arrays that broadcast: u compression (m), h hidden state, p `Numbers`.
+    """A law as functions of arrays that broadcast, and its step for the compiled kernels.
 
-    ``extra(u, h, p)``: stress beyond k u + c u' (N m-1). ``rate(u, u', h, p)``: h' (per s).
-    ``relaxed(u, p)``: h after an infinitely long rest at u. ``hidden``: whether there is an h.
-    ``tangent(u, h, p)``: slope of ``extra`` over u on unloading (N m-2), what has flowed held.
-    ``energy(u, h, p)``: stored beyond k u^2/2 (J m-2); no change of it exceeds the work of ``extra``.
-    ``turned(u, rest, p)``: h after moving slowly from a long rest at ``rest`` to u.
-    ``parameters``: names of the mechanism's parameters, which has the law's name.
+    ``role``: what ``effect(u, h, p)`` is. ``shifts``: compression that carries nothing any more (m), taken off
+    u for all that follows; ``adds``: stress beyond k u (N m-1); ``softens``: share that is lost of the sum of all that.
+    ``slope(u, h, p)``: of an added stress over u on unloading (N m-2), what has flowed held.
+    ``energy(u, h, p)``: stored with an added stress (J m-2); no change of it exceeds the work.
+    ``rate(u, u', h, p)``: h' (per s). ``relaxed(u, p)``: h after an infinitely long rest at u.
+    ``turned(u, rest, p)``: h after moving slowly from a long rest at ``rest`` to u. ``reached(u, h, p)``: what h
+    becomes at once at u. ``hidden``: whether there is an h.
+    ``numbers(p, step)``: what ``update`` wants for steps of ``step`` (s), by the names of its arguments.
+    ``update(u, change, h, *numbers)``: h, effect and slope of one fibre at the end of a step over which u has
+    grown by ``change`` (``_`` where the law does not look at it) to u; plain floats, without branches.
+    ``of_strain``: whether the rubber's thickness enters. ``refusal(p, u)``: why the law cannot hold rest at u, or "".
     """
 
-    name: str
-    parameters: tuple[str, ...]
-    extra: Callable[[FloatArray, FloatArray, Numbers], FloatArray]
-    rate: Callable[[FloatArray, FloatArray, FloatArray, Numbers], FloatArray]
-    relaxed: Callable[[FloatArray, Numbers], FloatArray]
-    tangent: Callable[[FloatArray, FloatArray, Numbers], FloatArray]
-    energy: Callable[[FloatArray, FloatArray, Numbers], FloatArray]
-    turned: Callable[[FloatArray, FloatArray, Numbers], FloatArray]
+    mechanism: Mechanism
+    role: Role
+    effect: Callable[[FloatArray, FloatArray, Numbers], FloatArray]
+    numbers: Callable[[Numbers, FloatArray], Numbers]
+    update: Callable[..., tuple[float, float, float]]
+    slope: Callable[[FloatArray, FloatArray, Numbers], FloatArray] = nothing
+    energy: Callable[[FloatArray, FloatArray, Numbers], FloatArray] = nothing
+    rate: Callable[[FloatArray, FloatArray, FloatArray, Numbers], FloatArray] = nothing
+    relaxed: Callable[[FloatArray, Numbers], FloatArray] = nothing
+    turned: Callable[[FloatArray, FloatArray, Numbers], FloatArray] = nothing
+    reached: Callable[[FloatArray, FloatArray, Numbers], FloatArray] = unmoved
     hidden: bool = True
+    of_strain: bool = False
+    refusal: Callable[[Numbers, FloatArray], str] = accepted
 
+    @property
+    def name(self) -> str:
+        return self.mechanism.name
 
-Laws = Sequence[tuple[RubberLaw, Numbers]]
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """Names of the mechanism's parameters."""
+        return tuple(p.name for p in self.mechanism.parameters)
 
+    @property
+    def nulls(self) -> dict[str, FloatArray]:
+        """The parameters at which the law does nothing, those that only shape it at any value."""
+        return {p.name: np.array([p.null]) for p in self.mechanism.parameters}
 
-def static_compression(load: FloatArray, laws: Laws, stiffness: FloatArray, most: FloatArray) -> FloatArray:
-    """u (m) at which the relaxed laws carry ``load`` (N m-1), by bisection up to ``most``; nan if they do not."""
-
-    def carried(u: FloatArray) -> FloatArray:
-        return np.asarray(stiffness * u + sum(law.extra(u, law.relaxed(u, p), p) for law, p in laws))
-
-    return _reaching(load, carried, most)
-
-
-def edge_at_uplift(load: FloatArray, laws: Laws, stiffness: FloatArray, rest: FloatArray) -> FloatArray:
-    """Compression (m) of the far edge of a strip turned slowly, from ``rest``, until its freer end is at zero.
-
-    It runs linearly from 0 to the edge then, and its stress, clipped at zero, carries ``load`` (N m-1) on
-    the mean. Every fibre is taken straight from ``rest``; a permanent set has not begun to flow.
-    """
-    nodes, weights = np.polynomial.legendre.leggauss(16)
-
-    def mean(edge: FloatArray) -> FloatArray:
-        u = 0.5 * (1.0 + nodes[:, None]) * edge
-        more = sum(law.extra(u, law.turned(u, rest + 0.0 * u, p), p) for law, p in laws)
-        return np.asarray(0.5 * weights @ np.maximum(stiffness * u + more, 0.0))
-
-    return _reaching(load, mean, 8.0 * rest)
-
-
-def _reaching(load: FloatArray, carried: Callable[[FloatArray], FloatArray], most: FloatArray) -> FloatArray:
-    """u up to ``most`` at which a growing ``carried(u)`` reaches ``load``; nan where it does not."""
-    low, high = np.zeros_like(load), np.asarray(most, dtype=np.float64).copy()
-    held = carried(high) >= load
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        short = carried(middle) < load
-        low, high = np.where(short, middle, low), np.where(short, high, middle)
-    return np.where(held, 0.5 * (low + high), np.nan)
+    @property
+    def wanted(self) -> tuple[str, ...]:
+        """Names of the numbers that ``update`` takes, in its order: the rows of the kernels' tables."""
+        return tuple(inspect.signature(self.update).parameters)[3:]

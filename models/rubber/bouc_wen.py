@@ -8,15 +8,21 @@ from __future__ import annotations
 
 import numpy as np
 
-from models.base import FloatArray
-from models.rubber.base import Numbers, RubberLaw
+from models.base import FloatArray, MechanismParameter
+from models.lanes.elementary import exponential_decay
+from models.rubber.base import Numbers, RubberLaw, rubber_mechanism
 
 STEPS = 200
 """Steps of the fourth-order rule for the virgin curve of an exponent that has no closed form."""
+EXPONENTS = (1.0, 2.0, 3.0, 4.0)
 
 
-def extra(u: FloatArray, h: FloatArray, p: Numbers) -> FloatArray:
+def effect(u: FloatArray, h: FloatArray, p: Numbers) -> FloatArray:
     return np.asarray((1.0 - p["post_yield_ratio"]) * p["stiffness"] * (h - u))
+
+
+def energy(u: FloatArray, h: FloatArray, p: Numbers) -> FloatArray:
+    return np.asarray(0.5 * (1.0 - p["post_yield_ratio"]) * p["stiffness"] * (h**2 - u**2))
 
 
 def rate(u: FloatArray, u_rate: FloatArray, h: FloatArray, p: Numbers) -> FloatArray:
@@ -25,14 +31,14 @@ def rate(u: FloatArray, u_rate: FloatArray, h: FloatArray, p: Numbers) -> FloatA
 
 
 def relaxed(u: FloatArray, p: Numbers) -> FloatArray:
-    """The virgin curve from zeta(0) = 0; n = 1: u_y (1 - exp(-u/u_y)), n = 2: u_y tanh(u/u_y)."""
+    """The virgin curve from zeta(0) = 0; n = 1: u_y (1 - exp(-u/u_y)), n = 2: u_y tanh(u/u_y); odd in u."""
     limit = p["yield_compression"]
-    x, n = np.broadcast_arrays(np.asarray(u / limit), p["exponent"])
+    x, n = np.broadcast_arrays(np.asarray(np.abs(u) / limit), p["exponent"])
     found = np.where(n == 1.0, -np.expm1(-x), np.tanh(x))
     other = ~np.isin(n, (1.0, 2.0))
     if np.any(other):
         found[other] = _integrated(x[other], n[other])
-    return np.asarray(limit * found)
+    return np.asarray(np.copysign(limit * found, u))
 
 
 def _integrated(x: FloatArray, n: FloatArray) -> FloatArray:
@@ -47,21 +53,63 @@ def _integrated(x: FloatArray, n: FloatArray) -> FloatArray:
     return found
 
 
-def tangent(u: FloatArray, h: FloatArray, p: Numbers) -> FloatArray:
-    """zeta follows u on unloading: the slope of all is k."""
-    return np.zeros_like(u)
-
-
-def energy(u: FloatArray, h: FloatArray, p: Numbers) -> FloatArray:
-    return np.asarray(0.5 * (1.0 - p["post_yield_ratio"]) * p["stiffness"] * (h**2 - u**2))
-
-
 def turned(u: FloatArray, rest: FloatArray, p: Numbers) -> FloatArray:
     """Down from ``rest`` along u to zeta = 0, and a virgin curve of the other sign from there."""
     kept = relaxed(rest, p) - (rest - u)
-    down = np.where(kept < 0.0, -relaxed(np.maximum(-kept, 0.0), p), kept)
+    down = np.where(kept < 0.0, relaxed(np.minimum(kept, 0.0), p), kept)
     return np.where(u > rest, relaxed(u, p), down)
 
 
-PARAMETERS = ("post_yield_ratio", "yield_compression", "exponent")
-LAW = RubberLaw("bouc_wen", PARAMETERS, extra, rate, relaxed, tangent, energy, turned)
+def refusal(p: Numbers, u: FloatArray) -> str:
+    odd = p["exponent"][~np.isin(p["exponent"], EXPONENTS)]
+    return f"bouc_wen.exponent is {odd.flat[0]:g}; give 1, 2, 3 or 4" if odd.size else ""
+
+
+def numbers(p: Numbers, step: FloatArray) -> Numbers:
+    """(1 - a) k (N m-2), 1/u_y (m-1), n."""
+    return {
+        "stiffness": (1.0 - p["post_yield_ratio"]) * p["stiffness"],
+        "yielding": 1.0 / p["yield_compression"],
+        "order": p["exponent"],
+    }
+
+
+def update(
+    u: float, change: float, h: float, stiffness: float, yielding: float, order: float
+) -> tuple[float, float, float]:
+    """zeta by the exponential Rosenbrock-Euler rule; its slope over u is that of the step."""
+    loaded = min(max((h if change >= 0.0 else -h) * yielding, 0.0), 1.0)
+    # |zeta/u_y|^(n-1), n = 1, 2, 3, 4; 0 while unloading, where zeta follows u
+    first = 1.0 if loaded > 0.0 else 0.0
+    second, third = loaded if order > 1.5 else 1.0, loaded if order > 2.5 else 1.0
+    lower = first * second * third * (loaded if order > 3.5 else 1.0)
+    eased = order * yielding * lower * abs(change) + 1e-8
+    part = (1.0 - lower * loaded) * (1.0 - exponential_decay(eased)) / eased
+    zeta = h + change * part
+    return zeta, stiffness * (zeta - u), stiffness * (part - 1.0)
+
+
+LAW = RubberLaw(
+    rubber_mechanism(
+        "bouc_wen",
+        (
+            MechanismParameter(
+                "post_yield_ratio", "a", "1", "stiffness after yielding over the first", 0.0, 1.0, null=1.0
+            ),
+            MechanismParameter(
+                "yield_compression", "u_y", "m", "compression at which it yields", 1e-5, 0.05, null=1e-3, shape=True,
+                required=True,
+            ),
+            MechanismParameter(
+                "exponent", "n", "1", "sharpness of yielding, a whole number", 1.0, 4.0, null=1.0, shape=True
+            ),
+        ),
+        equation="s = a k u + (1-a) k zeta + c u', zeta' = u' - beta |u'| |zeta|^(n-1) zeta - gamma u' |zeta|^n, "
+        "beta = gamma = 1/(2 u_y^n)",
+        signature="with the amplitude; loops at any frequency",
+        sentence="the rubber yields at {yield_compression:.2e} m to {post_yield_ratio:.2f} of its stiffness "
+        "(its parameters are not unique: look at the loop)",
+        source="Wen (J. Eng. Mech. Div. 102, 1976): models/rubber/bouc_wen.py",
+    ),
+    "adds", effect, numbers, update, energy=energy, rate=rate, relaxed=relaxed, turned=turned, refusal=refusal,
+)  # fmt: skip

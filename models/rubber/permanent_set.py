@@ -1,15 +1,18 @@
-"""A layer that stays compressed: s = k (u - u_p) + c u', u_p' = rate e max(0, (u - u_p)/e - strain_limit)."""
+"""A layer that stays compressed: s = k (u - u_p) + c u', u_p' = rate e max(0, (u - u_p)/e - strain_limit).
+
+Beside other laws u - u_p is what they all see as the compression.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
-from models.base import FloatArray
-from models.rubber.base import Numbers, RubberLaw
+from models.base import FloatArray, MechanismParameter
+from models.rubber.base import Numbers, RubberLaw, rubber_mechanism
 
 
-def extra(u: FloatArray, h: FloatArray, p: Numbers) -> FloatArray:
-    return np.asarray(-p["stiffness"] * h)
+def effect(u: FloatArray, h: FloatArray, p: Numbers) -> FloatArray:
+    return h
 
 
 def rate(u: FloatArray, u_rate: FloatArray, h: FloatArray, p: Numbers) -> FloatArray:
@@ -17,21 +20,43 @@ def rate(u: FloatArray, u_rate: FloatArray, h: FloatArray, p: Numbers) -> FloatA
     return np.asarray(p["rate"] * e * np.maximum(0.0, (u - h) / e - p["strain_limit"]))
 
 
-def relaxed(u: FloatArray, p: Numbers) -> FloatArray:
-    return np.zeros_like(u)
+def refusal(p: Numbers, u: FloatArray) -> str:
+    limit, strain = np.broadcast_arrays(p["strain_limit"], u / p["thickness"])
+    if not np.any(limit <= strain):
+        return ""
+    worst = int(np.argmax(strain - limit))
+    return (
+        f"permanent_set.strain_limit is {limit.flat[worst]:.3g}, not above the strain at rest, "
+        f"{strain.flat[worst]:.3g}: the layer would creep without end; give a larger limit"
+    )
 
 
-def tangent(u: FloatArray, h: FloatArray, p: Numbers) -> FloatArray:
-    return np.zeros_like(u)
+def numbers(p: Numbers, step: FloatArray) -> Numbers:
+    """Share of what exceeds the limit (m) that flows in a step, at the step's mean compression."""
+    return {"share": -np.expm1(-p["rate"] * step), "limit": p["strain_limit"] * p["thickness"]}
 
 
-def energy(u: FloatArray, h: FloatArray, p: Numbers) -> FloatArray:
-    """k (u - u_p)^2/2 in all."""
-    return np.asarray(p["stiffness"] * h * (0.5 * h - u))
+def update(u: float, change: float, h: float, share: float, limit: float) -> tuple[float, float, float]:
+    kept = h + share * max(u - 0.5 * change - h - limit, 0.0)
+    return kept, kept, 0.0
 
 
-def turned(u: FloatArray, rest: FloatArray, p: Numbers) -> FloatArray:
-    return np.zeros_like(u)
-
-
-LAW = RubberLaw("permanent_set", ("rate", "strain_limit"), extra, rate, relaxed, tangent, energy, turned)
+LAW = RubberLaw(
+    rubber_mechanism(
+        "permanent_set",
+        (
+            MechanismParameter(
+                "rate", "r_p", "s-1", "rate of permanent compression beyond the strain limit", 0.0, 20.0
+            ),
+            MechanismParameter(
+                "strain_limit", "eps_p", "1", "strain without permanent compression", 0.0, 2.0, null=0.5, shape=True
+            ),
+        ),
+        equation="s = k (u - u_p) + c u', u_p' = rate e max(0, (u - u_p)/e - strain_limit)",
+        signature="late; rotations that do not come back",
+        sentence="the rubber takes a set at {rate:.2f} per second beyond a strain of {strain_limit:.2f}",
+        source="models/rubber/permanent_set.py",
+        models=("interface",),
+    ),
+    "shifts", effect, numbers, update, rate=rate, of_strain=True, refusal=refusal,
+)  # fmt: skip

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from models.interface.declaration import CALM
-from models.interface.lanes.fibres import fibres_all
+from models.interface.lanes.fibres import N_WORK_LAWS, fibres_all
 from models.interface.lanes.rows import (
     CLOCK,
     FLAG,
@@ -26,7 +26,6 @@ from models.interface.lanes.rows import (
     LOG_REST,
     LOG_UPLIFT_B,
     N_WORK,
-    N_WORK_LAWS,
     Q_PERIOD,
     Q_STEPS,
     RA,
@@ -66,14 +65,15 @@ def note_joints(log: Table, count: Table, was: Table, w: Table, lane: int, slot:
 @compiled
 def advance(
     record: Table, time_step: float, shaken: int, first: Table, last: Table, given: Table, result: Table,
-    sampled: bool, trace: Table, log: Table, count: Table, may_rest: bool, mixed: Any, laws: Any,
+    sampled: bool, trace: Table, log: Table, count: Table, may_rest: bool, mixed: Any, laws: Any, rubber: Any,
 ) -> int:  # fmt: skip
     """Run every lane from sample ``first`` to ``last``; returns the number of lane-steps computed.
 
     ``record`` (2, n): a and a_z every ``time_step`` (s), linear between; the shaking ends at sample
     ``shaken``. Each lane takes its own number of steps per sample. ``trace`` (n, m, 8) takes q and q'
     at every sample if ``sampled``. ``log`` (n, k, 2) takes uplifts, closings, rest and overturning.
-    ``may_rest``: a lane ends when it has come to rest. ``mixed``, ``laws``: see `step`.
+    ``may_rest``: a lane ends when it has come to rest. ``mixed``, ``laws``: see `step`;
+    ``rubber``: the `Rubber` of `models.interface.lanes.fibres` if there are laws.
     """
     n = given.shape[0]
     w = np.zeros((N_WORK if laws is None else N_WORK_LAWS) * W)
@@ -98,7 +98,7 @@ def advance(
                     waiting += 1
                     at[slot], bound[slot], window[slot] = first[lane], first[lane], -1
                     per[slot] = int(given[lane, Q_STEPS])
-                    start(given, result, w, lane, slot, record, at[slot], time_step, logged, mixed, laws)
+                    start(given, result, w, lane, slot, record, at[slot], time_step, logged, mixed, laws, rubber)
                 if at[slot] < bound[slot]:
                     break
                 i = at[slot]
@@ -115,7 +115,7 @@ def advance(
                         ended = ended or may_rest
                     window[slot] = i + 1 + int(given[lane, Q_PERIOD] / time_step)
                 if ended:
-                    finish(result, w, lane, slot, False, laws)
+                    finish(result, w, lane, slot, False, laws, rubber)
                     lane = -1
                     empty(w, slot)
                     continue
@@ -147,7 +147,7 @@ def advance(
                 for slot in range(W):
                     was[0, slot], was[1, slot] = w[LIFT_B * W + slot], w[LIFT_T * W + slot]
             if laws is not None:
-                fibres_all(w, laws)
+                fibres_all(w, rubber)
             flagged = step_all(w, mixed, laws)
             steps += active
             if flagged > 0:
@@ -161,7 +161,7 @@ def advance(
                         if logged:
                             over = LOG_OVER_1 if abs(w[T1 * W + slot]) >= HALF_TURN else LOG_OVER_2
                             note(log, count, lane, w[CLOCK * W + slot] * w[STEP * W + slot], float(over))
-                        finish(result, w, lane, slot, True, laws)
+                        finish(result, w, lane, slot, True, laws, rubber)
                         of[slot] = -1
                         empty(w, slot)
                         settle = True

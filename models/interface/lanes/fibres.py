@@ -1,28 +1,45 @@
 """Rubber laws along both strips: 16 Gauss fibres of the difference to the linear law, for all lanes.
 
-For every fibre, the loop over the W lanes has no branches. Hidden states advance over the step in
-which the compression is taken as linear in time: exactly for the Maxwell arm (exponential), by the
-exponential Rosenbrock-Euler rule for Bouc-Wen, at the mean compression for the permanent set.
-What each law adds to the force, and its slope, is summed into the rows that the step rule reads.
+At the predictor of the coming step every fibre's compression goes on linearly in time over the step. What the laws
+add to the force, and its slope, is summed into the rows that the step rule reads. For four fibres at a time, the loop
+over the W lanes has no branches; joint and fibres are constants of each loop, so that it becomes vector code.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
 
-import numpy as np
-
+from models.interface.fibres import COUNT, NODES, WEIGHTS
 from models.interface.lanes import rows as r
-from models.interface.lanes.rows import FIBRES, N_HIDDEN, W
-from models.lanes.compiler import inlined
-from models.lanes.elementary import exponential_decay, sine_cosine
+from models.interface.lanes.rows import Table, W
+from models.lanes.compiler import called, inlined
+from models.lanes.elementary import sine_cosine
+from models.rubber import lanes as rubber
+from models.rubber.base import RubberLaw
 
-Table = Any
-NODES, WEIGHTS = np.polynomial.legendre.leggauss(FIBRES)
 FIRST, SECOND = WEIGHTS * NODES, WEIGHTS * NODES**2
 UNBOUNDED = 1e300
-COMPRESSION, ARM, ZETA, LARGEST, SET = range(5)
-"""Hidden rows of a fibre: u at the last step, Maxwell's spring, zeta, largest u, permanent compression."""
+
+# --- work beyond the rows of `rows`, base and top: u of every fibre at the last step, hidden states, numbers
+P_LAWS = tuple((r.N_WORK + joint * rubber.N_NUMBERS) * W for joint in range(2))
+LAST = tuple((r.N_WORK + 2 * rubber.N_NUMBERS + joint * (1 + rubber.N_HIDDEN) * COUNT) * W for joint in range(2))
+N_WORK_LAWS = r.N_WORK + 2 * rubber.N_NUMBERS + 2 * (1 + rubber.N_HIDDEN) * COUNT
+PLACES = [rubber.Places(LAST[joint] + COUNT * W, COUNT * W, P_LAWS[joint], W) for joint in range(2)]
+
+
+class Rubber(NamedTuple):
+    """The laws of n walls, as the kernel is given them: base and top on the second axis."""
+
+    numbers: Table
+    """(n, 2, `N_NUMBERS` of `models.rubber.lanes`)."""
+    hidden: Table
+    """(n, 2, `N_HIDDEN`, 16) at the start."""
+    ended: Table
+    """The same at the end, for the kernel to fill."""
+    base: Any
+    """The variant of `models.rubber.lanes` at the base."""
+    top: Any
 
 
 @inlined
@@ -47,101 +64,78 @@ def predicted_strips(w: Table, i: int) -> None:
         w[(r.FN_B + row) * W + i] = 0.0
 
 
-@inlined
-def constants(w: Table, joint: int, i: int, laws: Any) -> Any:
-    """What the fibres of one joint share: the strip's motion, its layer, the numbers of the laws in use."""
-    hardening, maxwell, bouc_wen, mullins, permanent_set = laws
-    own = r.W_LAWS + joint * r.N_LAW
-    b, k = w[(r.B1 + joint) * W + i], w[(r.KB + joint) * W + i]
-    strip = (
-        b * w[(r.FS_B + joint) * W + i], w[(r.FZ_B + joint) * W + i],
-        b * w[(r.FR_B + joint) * W + i], w[(r.FY_B + joint) * W + i],
-        k, w[(r.CB + joint) * W + i], 0.0 if w[r.CLIP * W + i] > 0.0 else -UNBOUNDED,
-    )  # fmt: skip
-    cubic, arm, decay, gain, hysteretic, yielding, order = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0
-    softening, per_strain, flow, limit = 0.0, 0.0, 0.0, 0.0
-    if hardening is not None:
-        cubic = k * w[(own + r.P_HARDENING) * W + i]
-    if maxwell is not None:
-        arm, decay = w[(own + r.P_ARM) * W + i], w[(own + r.P_ARM_DECAY) * W + i]
-        gain = w[(own + r.P_ARM_GAIN) * W + i]
-    if bouc_wen is not None:
-        hysteretic, yielding = w[(own + r.P_HYSTERETIC) * W + i], w[(own + r.P_YIELD) * W + i]
-        order = w[(own + r.P_ORDER) * W + i]
-    if mullins is not None:
-        softening, per_strain = k * w[(own + r.P_SOFTENING) * W + i], w[(own + r.P_PER_STRAIN) * W + i]
-    if permanent_set is not None:
-        flow, limit = w[(own + r.P_SET) * W + i], w[(own + r.P_LIMIT) * W + i]
-    return strip, (cubic, arm, decay, gain, hysteretic, yielding, order, softening, per_strain, flow, limit)
+def _four(laws: Sequence[RubberLaw], joint: int, first: int) -> Callable[..., None]:
+    """Compiled ``(w, i)``: four fibres of a joint of one lane; what they add to its force, moment and slopes."""
+    numbers, respond = rubber.responding(laws, PLACES[joint])
+    looks_back, last = rubber.looks_back(laws), LAST[joint]
+    f0, f1, f2, f3 = range(first, first + 4)
+
+    @inlined
+    def fibre(w: Table, f: int, i: int, strip: Any, n: Any) -> tuple[float, float]:
+        """Stress of one fibre of one lane beyond the linear one, both clipped under law B, and its slope."""
+        turn, z, turn_rate, z_rate, k, c, floor = strip
+        down = NODES[f] * turn - z
+        u, change, j = max(down, 0.0), 0.0, f * W + i
+        if looks_back:
+            change = u - w[last + j]
+            w[last + j] = u
+        more, slope = respond(w, j, u, change, k, n)
+        linear = k * u + c * (NODES[f] * turn_rate - z_rate)
+        total = linear + more
+        touching = down > 0.0
+        stress = max(total, floor) - max(linear, floor) if touching else 0.0
+        return stress, slope if touching & (total > floor) else 0.0
+
+    @inlined
+    def four(w: Table, i: int) -> None:
+        b = w[(r.B1 + joint) * W + i]
+        strip = (
+            b * w[(r.FS_B + joint) * W + i], w[(r.FZ_B + joint) * W + i],
+            b * w[(r.FR_B + joint) * W + i], w[(r.FY_B + joint) * W + i],
+            w[(r.KB + joint) * W + i], w[(r.CB + joint) * W + i], 0.0 if w[r.CLIP * W + i] > 0.0 else -UNBOUNDED,
+        )  # fmt: skip
+        n = numbers(w, i)
+        s0, d0 = fibre(w, f0, i, strip, n)
+        s1, d1 = fibre(w, f1, i, strip, n)
+        s2, d2 = fibre(w, f2, i, strip, n)
+        s3, d3 = fibre(w, f3, i, strip, n)
+        w[(r.FN_B + joint) * W + i] += WEIGHTS[f0] * s0 + WEIGHTS[f1] * s1 + WEIGHTS[f2] * s2 + WEIGHTS[f3] * s3
+        w[(r.FM_B + joint) * W + i] += FIRST[f0] * s0 + FIRST[f1] * s1 + FIRST[f2] * s2 + FIRST[f3] * s3
+        w[(r.F1_B + joint) * W + i] += WEIGHTS[f0] * d0 + WEIGHTS[f1] * d1 + WEIGHTS[f2] * d2 + WEIGHTS[f3] * d3
+        w[(r.F2_B + joint) * W + i] += FIRST[f0] * d0 + FIRST[f1] * d1 + FIRST[f2] * d2 + FIRST[f3] * d3
+        w[(r.F3_B + joint) * W + i] += SECOND[f0] * d0 + SECOND[f1] * d1 + SECOND[f2] * d2 + SECOND[f3] * d3
+
+    return four
 
 
-@inlined
-def fibre(w: Table, joint: int, f: int, i: int, node: float, shared: Any, laws: Any) -> tuple[float, float]:
-    """One fibre of one lane: advances its hidden state; the stress it adds, and its slope."""
-    hardening, maxwell, bouc_wen, mullins, permanent_set = laws
-    (turn, z, turn_rate, z_rate, k, c, floor), numbers = shared
-    cubic, arm_stiffness, decay, gain, hysteretic, yielding, order, softening, per_strain, flow, limit = numbers
-    own = (r.W_FIBRES + (joint * FIBRES + f) * N_HIDDEN) * W + i
-    down = node * turn - z
-    u = max(down, 0.0)
-    more, slope = 0.0, 0.0
-    change = 0.0
-    if (maxwell is not None) or (bouc_wen is not None) or (permanent_set is not None):
-        change = u - w[own + COMPRESSION * W]
-        w[own + COMPRESSION * W] = u
-    if hardening is not None:
-        steeper = cubic * (u * u)
-        more += steeper * u
-        slope += 3.0 * steeper
-    if maxwell is not None:
-        arm = decay * w[own + ARM * W] + gain * change
-        w[own + ARM * W] = arm
-        more += arm_stiffness * arm
-        slope += arm_stiffness * gain
-    if bouc_wen is not None:
-        zeta = w[own + ZETA * W]
-        loaded = min(max((zeta if change >= 0.0 else -zeta) * yielding, 0.0), 1.0)
-        # |zeta/u_y|^(n-1), n = 1, 2, 3, 4; 0 while unloading, where zeta follows u
-        first = 1.0 if loaded > 0.0 else 0.0
-        second, third = loaded if order > 1.5 else 1.0, loaded if order > 2.5 else 1.0
-        lower = first * second * third * (loaded if order > 3.5 else 1.0)
-        eased = order * yielding * lower * abs(change) + 1e-8
-        part = (1.0 - lower * loaded) * (1.0 - exponential_decay(eased)) / eased
-        zeta += change * part
-        w[own + ZETA * W] = zeta
-        more += hysteretic * (zeta - u)
-        slope += hysteretic * (part - 1.0)
-    if mullins is not None:
-        largest = max(w[own + LARGEST * W], u)
-        w[own + LARGEST * W] = largest
-        lost = softening - softening * exponential_decay(largest * per_strain)
-        more -= lost * u
-        slope -= lost
-    if permanent_set is not None:
-        kept = w[own + SET * W]
-        kept += flow * max(u - 0.5 * change - kept - limit, 0.0)
-        w[own + SET * W] = kept
-        more -= k * kept
-    linear = k * u + c * (node * turn_rate - z_rate)
-    total = linear + more
-    touching = down > 0.0
-    stress = max(total, floor) - max(linear, floor) if touching else 0.0
-    return stress, slope if touching & (total > floor) else 0.0
+def _joint(laws: Sequence[RubberLaw], joint: int) -> Callable[..., None]:
+    """Compiled ``(w)``: the fibres of one joint of all lanes."""
+    if not laws:
+
+        @inlined
+        def nothing(w: Table) -> None:
+            return
+
+        return nothing
+    one, two, three, four = (_four(laws, joint, first) for first in range(0, COUNT, 4))
+
+    @inlined
+    def all_fibres(w: Table) -> None:
+        # a length read at run time: else the compiler unrolls the loops instead of making vector code
+        lanes = w.size // N_WORK_LAWS
+        for i in range(lanes):
+            one(w, i)
+        for i in range(lanes):
+            two(w, i)
+        for i in range(lanes):
+            three(w, i)
+        for i in range(lanes):
+            four(w, i)
+
+    return all_fibres
 
 
-@inlined
-def fibres_of(w: Table, joint: int, f: int, i: int, laws: Any) -> None:
-    """Fibres f to f + 3 of a joint of one lane: what they add to its force, moment and slopes."""
-    shared = constants(w, joint, i, laws)
-    s0, d0 = fibre(w, joint, f, i, NODES[f], shared, laws)
-    s1, d1 = fibre(w, joint, f + 1, i, NODES[f + 1], shared, laws)
-    s2, d2 = fibre(w, joint, f + 2, i, NODES[f + 2], shared, laws)
-    s3, d3 = fibre(w, joint, f + 3, i, NODES[f + 3], shared, laws)
-    w[(r.FN_B + joint) * W + i] += WEIGHTS[f] * s0 + WEIGHTS[f + 1] * s1 + WEIGHTS[f + 2] * s2 + WEIGHTS[f + 3] * s3
-    w[(r.FM_B + joint) * W + i] += FIRST[f] * s0 + FIRST[f + 1] * s1 + FIRST[f + 2] * s2 + FIRST[f + 3] * s3
-    w[(r.F1_B + joint) * W + i] += WEIGHTS[f] * d0 + WEIGHTS[f + 1] * d1 + WEIGHTS[f + 2] * d2 + WEIGHTS[f + 3] * d3
-    w[(r.F2_B + joint) * W + i] += FIRST[f] * d0 + FIRST[f + 1] * d1 + FIRST[f + 2] * d2 + FIRST[f + 3] * d3
-    w[(r.F3_B + joint) * W + i] += SECOND[f] * d0 + SECOND[f + 1] * d1 + SECOND[f + 2] * d2 + SECOND[f + 3] * d3
+base_fibres, top_fibres = (rubber.chosen([_joint(laws, joint) for laws in rubber.VARIANTS]) for joint in range(2))
 
 
 @inlined
@@ -156,42 +150,43 @@ def lengths(w: Table, i: int) -> None:
         w[(r.F3_B + joint) * W + i] *= b * b * b
 
 
-@inlined
-def fibres_all(w: Table, laws: Any) -> None:
+@called
+def fibres_all(w: Table, laws: Rubber) -> None:
     """The fibres of all lanes at the predictor of the coming step."""
-    # a length read at run time: else the compiler unrolls the loops instead of making vector code
-    lanes = w.size // r.N_WORK_LAWS
+    lanes = w.size // N_WORK_LAWS
     for i in range(lanes):
         predicted_strips(w, i)
-    for f in range(0, FIBRES, 4):
-        for i in range(lanes):
-            fibres_of(w, 0, f, i, laws)
-    for f in range(0, FIBRES, 4):
-        for i in range(lanes):
-            fibres_of(w, 1, f, i, laws)
+    base_fibres(w, laws.base)
+    top_fibres(w, laws.top)
     for i in range(lanes):
         lengths(w, i)
 
 
-@inlined
-def fibres_at_start(w: Table, given: Table, lane: int, slot: int, laws: Any) -> None:
-    """Relaxed hidden states of a lane, and its fibres' forces in the state from which it starts."""
-    for joint in range(2):
-        for row in range(r.N_LAW):
-            w[(r.W_LAWS + joint * r.N_LAW + row) * W + slot] = given[lane, r.Q_LAWS + joint * r.N_LAW + row]
+@called
+def fibres_at_start(w: Table, laws: Rubber, lane: int, slot: int) -> None:
+    """A lane's fibres in the state from which it starts: their forces there first, then its history begins."""
     w[r.STEP * W + slot], kept = 0.0, w[r.STEP * W + slot]
     predicted_strips(w, slot)
-    # the state may be another than at rest: its forces first, then its history begins relaxed
-    for again in range(2):
-        for joint in range(2):
-            turn, z = w[(r.B1 + joint) * W + slot] * w[(r.FS_B + joint) * W + slot], w[(r.FZ_B + joint) * W + slot]
-            for f in range(FIBRES):
-                own = (r.W_FIBRES + (joint * FIBRES + f) * N_HIDDEN) * W + slot
-                w[own + COMPRESSION * W], w[own + ARM * W], w[own + SET * W] = max(NODES[f] * turn - z, 0.0), 0.0, 0.0
-                w[own + ZETA * W] = given[lane, r.Q_RELAXED + 2 * joint + 1]
-                w[own + LARGEST * W] = given[lane, r.Q_RELAXED + 2 * joint]
-            if again == 0:
-                for f in range(0, FIBRES, 4):
-                    fibres_of(w, joint, f, slot, laws)
-    lengths(w, slot)
+    for joint in range(2):
+        for row in range(rubber.N_NUMBERS):
+            w[P_LAWS[joint] + row * W + slot] = laws.numbers[lane, joint, row]
+        turn = w[(r.B1 + joint) * W + slot] * w[(r.FS_B + joint) * W + slot]
+        for f in range(COUNT):
+            w[LAST[joint] + f * W + slot] = max(NODES[f] * turn - w[(r.FZ_B + joint) * W + slot], 0.0)
+            for row in range(rubber.N_HIDDEN):
+                w[LAST[joint] + ((row + 1) * COUNT + f) * W + slot] = laws.hidden[lane, joint, row, f]
+    # in a table of its own, so that no history moves
+    alone = w.copy()
+    fibres_all(alone, laws)
+    for row in range(r.FN_B, r.FN_B + 10):
+        w[row * W + slot] = alone[row * W + slot]
     w[r.STEP * W + slot] = kept
+
+
+@called
+def fibres_at_end(w: Table, laws: Rubber, lane: int, slot: int) -> None:
+    """The hidden states of a lane that ends, on record."""
+    for joint in range(2):
+        for row in range(rubber.N_HIDDEN):
+            for f in range(COUNT):
+                laws.ended[lane, joint, row, f] = w[LAST[joint] + ((row + 1) * COUNT + f) * W + slot]

@@ -1,60 +1,44 @@
-"""The numbers of the rubber laws as the fibres of the lane kernel take them."""
+"""The rubber laws of walls as the lane kernel takes them, and the energy in their springs."""
 
 from __future__ import annotations
-
-from typing import Any
 
 import numpy as np
 
 from models.base import FloatArray
 from models.interface import modes
-from models.interface.lanes import rows as r
+from models.interface.fibres import COUNT, Fibres
+from models.interface.lanes.fibres import Rubber
 from models.interface.layered import LayeredWall
-from models.rubber import LAWS, bouc_wen
+from models.interface.strip import stored
+from models.rubber import lanes as rubber
+
+JOINTS = ("base", "top")
 
 
-def laws_in_use(wall: LayeredWall) -> Any:
-    """None without laws; else one entry for each law of the family, True if it acts at a joint, else None."""
+def given_laws(wall: LayeredWall, step: FloatArray) -> Rubber | None:
+    """Relaxed layers of n walls for steps of ``step`` (n,) seconds; None without laws."""
     if not wall.laws:
         return None
-    return tuple(True if any(key.startswith(f"{name}.") for key in wall.laws) else None for name in LAWS)
-
-
-def fill_laws(table: FloatArray, wall: LayeredWall, step: FloatArray) -> None:
-    """Write the laws' columns of ``given`` for steps of ``step`` (n,) seconds; nulls where a law is absent."""
-    if not wall.laws:
-        return
     rest = modes.static_state(wall)
-    for index, joint in enumerate(("base", "top")):
-        columns = r.Q_LAWS + index * r.N_LAW
-        u = -rest[:, 2 + index]
-        table[:, r.Q_RELAXED + 2 * index] = table[:, r.Q_RELAXED + 2 * index + 1] = u
-        # harmless where a law does not act: zeta follows u, no arm, no loss
-        table[:, columns + r.P_ORDER] = 1.0
+    numbers = np.stack([rubber.number_table(wall.laws_at(joint), step) for joint in JOINTS], axis=1)
+    hidden = np.zeros((wall.size, 2, rubber.N_HIDDEN, COUNT))
+    for k, joint in enumerate(JOINTS):
+        if laws := wall.laws_at(joint):
+            hidden[:, k] = rubber.hidden_table(laws, Fibres(wall, joint).relaxed(-rest[:, 2 + k]))
+    base, top = (rubber.variant_for(wall.laws_at(joint)) for joint in JOINTS)
+    return Rubber(numbers, hidden, hidden.copy(), base, top)
+
+
+def stored_in_layers(wall: LayeredWall, q: FloatArray, hidden: FloatArray | None) -> FloatArray:
+    """Energy (J) in the springs of the base and the top layer (n, 2) at q (n, 4) and the kernel's hidden states."""
+    found = np.zeros((wall.size, 2))
+    for k, joint in enumerate(JOINTS):
         if joint not in wall.rubber_joints:
             continue
-        for law, p in wall.laws_at(joint):
-            k, e = p["stiffness"], p["thickness"]
-            found: dict[int, Any] = {}
-            if law.name == "hardening":
-                found = {r.P_HARDENING: p["beta2"] / e**2}
-            elif law.name == "maxwell":
-                tau = p["relaxation_time"]
-                found = {
-                    r.P_ARM: p["arm_stiffness_ratio"] * k,
-                    r.P_ARM_DECAY: np.exp(-step / tau),
-                    r.P_ARM_GAIN: -np.expm1(-step / tau) * tau / step,
-                }
-            elif law.name == "bouc_wen":
-                found = {
-                    r.P_HYSTERETIC: (1.0 - p["post_yield_ratio"]) * k,
-                    r.P_YIELD: 1.0 / p["yield_compression"],
-                    r.P_ORDER: p["exponent"],
-                }
-                table[:, r.Q_RELAXED + 2 * index + 1] = bouc_wen.relaxed(u, p)
-            elif law.name == "mullins":
-                found = {r.P_SOFTENING: p["softening"], r.P_PER_STRAIN: 1.0 / (p["strain"] * e)}
-            else:
-                found = {r.P_SET: -np.expm1(-p["rate"] * step), r.P_LIMIT: p["strain_limit"] * e}
-            for row, values in found.items():
-                table[:, columns + row] = values
+        half = wall.base_half_width if joint == "base" else wall.top_half_width
+        angle = q[:, 0] if joint == "base" else q[:, 1] - q[:, 0]
+        z, layer = q[:, 2 + k], wall.layer(joint)
+        found[:, k] = stored(half, layer.stiffness, z, np.sin(angle))
+        if layer.laws and hidden is not None:
+            found[:, k] += Fibres(wall, joint).energy(z, angle, rubber.hidden_states(layer.laws, hidden[:, k]))
+    return found

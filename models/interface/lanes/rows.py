@@ -1,5 +1,9 @@
 """Names of the rows of the lane kernel's tables: ``work`` (row times W lanes), ``given``, ``result``."""
 
+from typing import Any
+
+Table = Any
+"""A table of the kernel."""
 W = 16
 """Lanes under way at once: two vectors of eight doubles, four of four."""
 
@@ -34,29 +38,16 @@ N_CONSTANTS = len(CONSTANTS)
 Q_STATE = N_CONSTANTS
 Q_PERIOD = N_CONSTANTS + 8
 Q_STEPS = N_CONSTANTS + 9
-# compression and zeta at rest, base and top; the laws' numbers, base and top
-Q_RELAXED = N_CONSTANTS + 10
-Q_LAWS = Q_RELAXED + 4
-(
-    P_HARDENING, P_ARM, P_ARM_DECAY, P_ARM_GAIN, P_HYSTERETIC, P_YIELD, P_ORDER, P_SOFTENING, P_PER_STRAIN, P_SET,
-    P_LIMIT,
-) = range(11)  # fmt: skip
-N_LAW = 11
-N_GIVEN = Q_LAWS + 2 * N_LAW
-
-# --- work with laws on fibres: their numbers, base and top, and the hidden rows of every fibre, base and top
-FIBRES, N_HIDDEN = 16, 5
-W_LAWS = N_WORK
-W_FIBRES = N_WORK + 2 * N_LAW
-N_WORK_LAWS = W_FIBRES + 2 * FIBRES * N_HIDDEN
+N_GIVEN = N_CONSTANTS + 10
 
 # --- result: what a lane has gathered
 (
     R_PEAK_1, R_PEAK_2, R_UP_B, R_UP_T, R_ONSET_B, R_ONSET_T, R_SHARE_B, R_SHARE_T, R_CLOSED_B, R_CLOSED_T,
-    R_LOST_B, R_LOST_T, R_FRICTION_B, R_FRICTION_T, R_END_1, R_END_2, R_OVER_1, R_OVER_2, R_FAILED,
-    R_STORED_B, R_STORED_T, R_EDGE_B, R_EDGE_T,
+    R_LOST_B, R_LOST_T, R_FRICTION_B, R_FRICTION_T, R_END_1, R_END_2, R_END_Z1, R_END_Z2, R_OVER_1, R_OVER_2,
+    R_FAILED, R_EDGE_B, R_EDGE_T,
 ) = range(23)  # fmt: skip
 N_RESULT = 23
+"""R_LOST: work of the strips on the bodies, the energy of the layers not yet taken into account."""
 
 # kinds of events in a log, in the order of `models.interface.lanes.run.EVENTS`
 LOG_UPLIFT_B, LOG_UPLIFT_T, LOG_CLOSING_B, LOG_CLOSING_T, LOG_REST, LOG_OVER_1, LOG_OVER_2 = range(7)

@@ -14,7 +14,7 @@ from models.interface import modes
 from models.interface.declaration import STATES
 from models.interface.lanes import rows as r
 from models.interface.lanes.advance import advance
-from models.interface.lanes.laws import fill_laws, laws_in_use
+from models.interface.lanes.laws import given_laws, stored_in_layers
 from models.interface.layered import LayeredWall
 from models.shaking import Shaking
 
@@ -104,7 +104,7 @@ def run(
     begun = {k: np.broadcast_to(np.asarray(v, float), (n,)) for k, v in (initial or {}).items()}
     given = given_table(wall, scale, begun)
     given[:, r.Q_STEPS] = substeps(wall, shaking.time_step) * refinement
-    fill_laws(given, wall, shaking.time_step / given[:, r.Q_STEPS])
+    laws = given_laws(wall, shaking.time_step / given[:, r.Q_STEPS])
     result, trace = np.zeros((n, r.N_RESULT)), np.zeros((n, samples, 8))
     written, count = np.zeros((n, log, 2)), np.zeros(n, np.int64)
     steps = advance(
@@ -112,8 +112,12 @@ def run(
         np.zeros(n, np.int64) if first is None else first,
         np.full(n, record.shape[1] - 2) if last is None else last,
         given, result, samples > 0, trace, written, count, may_rest, None if wall.joints == "both" else True,
-        laws_in_use(wall),
+        None if laws is None else True, laws,
     )  # fmt: skip
+    before = stored_in_layers(wall, given[:, r.Q_STATE : r.Q_STATE + 4], None if laws is None else laws.hidden)
+    with np.errstate(invalid="ignore", over="ignore"):
+        after = stored_in_layers(wall, result[:, r.R_END_1 : r.R_END_Z2 + 1], None if laws is None else laws.ended)
+        result[:, r.R_LOST_B : r.R_LOST_T + 1] += before - after
     return Lanes(result, trace, decoded(written, count), steps)
 
 

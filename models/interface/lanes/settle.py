@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from models.interface.lanes import rows as r
-from models.interface.lanes.fibres import fibres_at_start
+from models.interface.lanes.fibres import fibres_at_end, fibres_at_start
 from models.interface.lanes.rows import (
     A1,
     ACROSS_B,
@@ -61,7 +61,6 @@ from models.interface.lanes.rows import (
     W,
 )  # fmt: skip
 from models.interface.lanes.step import AM, BETA, GAMMA, step_one
-from models.interface.lanes.stored import stored
 from models.lanes.compiler import called, inlined
 
 Table = Any
@@ -105,7 +104,7 @@ def consistent(w: Table, slot: int, a: float, v: float, mixed: Any, laws: Any) -
 @called
 def start(
     given: Table, result: Table, w: Table, lane: int, slot: int, record: Table, sample: int, time_step: float,
-    logged: bool, mixed: Any, laws: Any,
+    logged: bool, mixed: Any, laws: Any, rubber: Any,
 ) -> None:  # fmt: skip
     """Put a lane in a slot, in its initial state, at ``sample`` of the record."""
     for row in range(N_WORK):
@@ -122,7 +121,7 @@ def start(
     set_step(w, slot, time_step / n)
     w[CLOCK * W + slot] = sample * n
     if laws is not None:
-        fibres_at_start(w, given, lane, slot, laws)
+        fibres_at_start(w, rubber, lane, slot)
     consistent(w, slot, record[0, sample], record[1, sample], mixed, laws)
     w[PEAK_1 * W + slot], w[PEAK_2 * W + slot] = abs(w[T1 * W + slot]), abs(w[T2 * W + slot])
     w[ONSET_B * W + slot] = sample * n if w[LIFT_B * W + slot] > 0.0 else NEVER
@@ -131,7 +130,6 @@ def start(
     for k in range(result.shape[1]):
         result[lane, k] = 0.0
     result[lane, r.R_OVER_1], result[lane, r.R_OVER_2] = math.nan, math.nan
-    result[lane, r.R_STORED_B], result[lane, r.R_STORED_T] = stored(w, 0, slot, laws), stored(w, 1, slot, laws)
 
 
 @called
@@ -180,7 +178,7 @@ def topple(result: Table, w: Table, lane: int, slot: int, time: float) -> None:
 
 
 @called
-def finish(result: Table, w: Table, lane: int, slot: int, fell: bool, laws: Any) -> None:
+def finish(result: Table, w: Table, lane: int, slot: int, fell: bool, laws: Any, rubber: Any) -> None:
     """Close the account of a lane that ends now; ``fell``: a body has reached pi/2."""
     h = w[STEP * W + slot]
     time = h * w[CLOCK * W + slot]
@@ -199,12 +197,15 @@ def finish(result: Table, w: Table, lane: int, slot: int, fell: bool, laws: Any)
     result[lane, r.R_SHARE_B] = 0.5 * w[SHARE_B * W + slot] / w[B1 * W + slot]
     result[lane, r.R_SHARE_T] = 0.5 * w[SHARE_T * W + slot] / w[BT * W + slot]
     result[lane, r.R_CLOSED_B], result[lane, r.R_CLOSED_T] = w[CLOSED_B * W + slot], w[CLOSED_T * W + slot]
-    result[lane, r.R_LOST_B] = result[lane, r.R_STORED_B] - stored(w, 0, slot, laws) - 0.5 * h * w[WORK_B * W + slot]
-    result[lane, r.R_LOST_T] = result[lane, r.R_STORED_T] - stored(w, 1, slot, laws) - 0.5 * h * w[WORK_T * W + slot]
+    result[lane, r.R_LOST_B] = -0.5 * h * w[WORK_B * W + slot]
+    result[lane, r.R_LOST_T] = -0.5 * h * w[WORK_T * W + slot]
     result[lane, r.R_EDGE_B], result[lane, r.R_EDGE_T] = w[r.EDGE_B * W + slot], w[r.EDGE_T * W + slot]
     result[lane, r.R_FRICTION_B] = ratio(w[ALONG_B * W + slot], w[ACROSS_B * W + slot])
     result[lane, r.R_FRICTION_T] = ratio(w[ALONG_T * W + slot], w[ACROSS_T * W + slot])
     result[lane, r.R_END_1], result[lane, r.R_END_2] = t1, t2
+    result[lane, r.R_END_Z1], result[lane, r.R_END_Z2] = w[Z1 * W + slot], w[Z2 * W + slot]
+    if laws is not None:
+        fibres_at_end(w, rubber, lane, slot)
 
 
 @inlined

@@ -10,8 +10,8 @@ the error left is of third order in h, like that of the rule. The stiff axial mo
 rule (am < 0) and sets no bound on h. M, n and Q are the full nonlinear ones of
 `models.interface.equation`, written in the wall's frame: x along the wall's top, z along its axis.
 
-``mixed`` is None or True (one of the joints is bonded), ``laws`` None or a tuple of such, one for each
-rubber law: a compiled variant holds only what is in use.
+``mixed`` is None or True (one of the joints is bonded), ``laws`` None or True (a layer has rubber
+laws beside the linear one): a compiled variant holds only what is in use.
 """
 
 from __future__ import annotations

@@ -12,51 +12,57 @@ from typing import Any
 import numpy as np
 
 from models.isolated.declaration import CALM
+from models.isolated.lanes import bearing
 from models.isolated.lanes import rows as r
-from models.isolated.lanes.rows import W
+from models.isolated.lanes.rows import Table, W
 from models.isolated.lanes.step import step_all
+from models.isolated.lanes.tables import Given, Lent, Records
 from models.lanes.compiler import called, compiled
-
-Table = Any
+from models.rubber import lanes as rubber
 
 
 @called
-def start(
-    slot: int, lane: int, s: Table, x: Table, p: Table, y: Table, transition: Table, g: Table, link: Table, mass: Table,
-    scalars: Table, memory: Table, numbers: Table, states: Table, transitions: Table, gains: Table, links: Table,
-    masses: Table,
-) -> None:  # fmt: skip
+def start(slot: int, lane: int, work: Lent, given: Given) -> None:
     """Put a lane in a slot."""
-    for k in range(s.shape[0]):
-        s[k, slot] = scalars[lane, k]
-    for k in range(x.shape[0]):
-        x[k, slot] = memory[lane, k]
-    for k in range(p.shape[0]):
-        p[k, slot] = numbers[lane, k]
-    for row in range(y.shape[0]):
-        y[row, slot] = states[lane, row]
+    for k in range(r.N_SCALAR):
+        work.scalars[k, slot] = given.scalars[lane, k]
+    for k in range(r.N_MEMORY):
+        work.memory[k, slot] = given.memory[lane, k]
+    for k in range(r.N_LAW):
+        work.numbers[k, slot] = given.numbers[lane, k]
+    work.spring[bearing.K + slot] = given.numbers[lane, r.K]
+    work.spring[bearing.LAST + slot] = given.memory[lane, r.U]
+    for k in range(rubber.N_HIDDEN):
+        work.spring[bearing.HIDDEN + k * W + slot] = given.hidden[lane, k]
+    for k in range(rubber.N_NUMBERS):
+        work.spring[bearing.P_LAWS + k * W + slot] = given.rubber[lane, k]
+    rows = work.state.shape[0]
+    for row in range(rows):
+        work.state[row, slot] = given.states[lane, row]
         for k in range(4):
-            g[row, k, slot] = gains[lane, row, k]
-        for column in range(y.shape[0]):
-            transition[row, column, slot] = transitions[lane, row, column]
-    for j in range(link.shape[1]):
+            work.gains[row, k, slot] = given.gains[lane, row, k]
+        for column in range(rows):
+            work.transition[row, column, slot] = given.transitions[lane, row, column]
+    for j in range(rows // 2):
         for k in range(3):
-            link[k, j, slot] = links[lane, k, j]
+            work.links[k, j, slot] = given.links[lane, k, j]
         for k in range(2):
-            mass[k, j, slot] = masses[lane, k, j]
+            work.masses[k, j, slot] = given.masses[lane, k, j]
 
 
 @called
-def finish(slot: int, lane: int, result: Table, s: Table, x: Table, y: Table) -> None:
+def finish(slot: int, lane: int, work: Lent, records: Records) -> None:
     """Put a lane on record."""
-    rows = y.shape[0]
+    result, s, y = records.result, work.scalars, work.state
     failed = 0.0
-    for row in range(rows):
-        result[lane, r.N_RESULT + row] = y[row, slot]
+    for row in range(y.shape[0]):
+        records.states[lane, row] = y[row, slot]
         if not abs(y[row, slot]) < math.inf:
             failed = 1.0
-    for k in range(x.shape[0]):
-        result[lane, r.N_RESULT + rows + k] = x[k, slot]
+    for k in range(r.N_MEMORY):
+        records.memory[lane, k] = work.memory[k, slot]
+    for k in range(rubber.N_HIDDEN):
+        records.hidden[lane, k] = work.spring[bearing.HIDDEN + k * W + slot]
     result[lane, r.R_PEAK_U] = s[r.PEAK_U, slot]
     result[lane, r.R_PEAK_ACCELERATION] = s[r.PEAK_ACCELERATION, slot]
     result[lane, r.R_PEAK_DRIFT] = s[r.PEAK_DRIFT, slot]
@@ -66,23 +72,24 @@ def finish(slot: int, lane: int, result: Table, s: Table, x: Table, y: Table) ->
 
 @compiled
 def advance(
-    record: Table, time_step: float, shaken: int, per: int, first: Table, last: Table, period: Table, scalars: Table,
-    memory: Table, numbers: Table, states: Table, transitions: Table, gains: Table, links: Table, masses: Table,
-    result: Table, trace: Table, may_rest: bool, size: Any, laws: Any,
+    record: Table, time_step: float, shaken: int, per: int, first: Table, last: Table, period: Table, given: Given,
+    records: Records, may_rest: bool, size: Any, laws: Any,
 ) -> int:  # fmt: skip
     """Run every lane from sample ``first`` to ``last``; returns the number of lane-steps computed.
 
     ``record`` (samples,): a every ``time_step`` (s), linear between; the shaking ends at sample ``shaken``, where a
-    may jump to zero. ``per`` steps a sample. ``period`` (n,): samples in a lane's first period. The
-    other tables hold a line a lane: see `models.isolated.lanes.run`. ``trace`` (n, m, rows) takes y
-    and the bearings' force at every sample if m > 0. ``may_rest``: a lane ends when it has come to rest.
+    may jump to zero. ``per`` steps a sample. ``period`` (n,): samples in a lane's first period. ``may_rest``: a lane
+    ends when it has come to rest. ``size``, ``laws``: see `models.isolated.lanes.step`.
     """
-    n, levels = states.shape[0], len(size)
+    n, levels = given.states.shape[0], len(size)
     rows = 2 * levels
-    s, x, p = np.zeros((r.N_SCALAR, W)), np.zeros((r.N_MEMORY, W)), np.zeros((r.N_LAW, W))
-    y, new = np.zeros((rows, W)), np.zeros((rows, W))
-    transition, g = np.zeros((rows, rows, W)), np.zeros((rows, 4, W))
-    link, mass = np.zeros((3, levels, W)), np.zeros((2, levels, W))
+    work = Lent(
+        np.zeros((r.N_SCALAR, W)), np.zeros((r.N_MEMORY, W)), np.zeros((r.N_LAW, W)),
+        np.zeros((rows, W)), np.zeros((rows, rows, W)), np.zeros((rows, 4, W)), np.zeros((3, levels, W)),
+        np.zeros((2, levels, W)), np.zeros((rows, W)), np.zeros(bearing.N_SPRING),
+    )  # fmt: skip
+    s, y, link = work.scalars, work.state, work.links
+    result, trace = records.result, records.trace
     of, window = np.zeros(W, np.int64), np.zeros(W, np.int64)
     steps = 0
     for batch in range(0, n, W):
@@ -93,10 +100,7 @@ def advance(
             of[slot] = lane if batch + slot < n else -1
             running += 1 if of[slot] >= 0 else 0
             window[slot] = -1
-            start(
-                slot, lane, s, x, p, y, transition, g, link, mass,
-                scalars, memory, numbers, states, transitions, gains, links, masses,
-            )  # fmt: skip
+            start(slot, lane, work, given)
             if of[slot] >= 0:
                 result[lane, r.R_REST] = math.nan
         sample = 0
@@ -123,13 +127,13 @@ def advance(
                     s[r.WINDOW, slot] = 0.0
                     window[slot] = i + 1 + period[lane]
                 if ended:
-                    finish(slot, lane, result, s, x, y)
+                    finish(slot, lane, work, records)
                     of[slot] = -1
                     running -= 1
             if running == 0:
                 break
             for _ in range(per):
-                step_all(s, x, p, y, new, transition, g, link, mass, size, laws)
+                step_all(work, size, laws)
             steps += running * per
             sample += 1
     return steps

@@ -1,49 +1,48 @@
 """The bearings' force beyond the linear one over the coming step, for all lanes; see `models.isolated.bearing`.
 
-u and u' at the step's end are predicted with the force held, to the third order in the step. Hidden states advance
-from where they last looked, u linear between: the Maxwell arm exactly, Bouc-Wen by the exponential
-Rosenbrock-Euler rule. Where Payne's amplitude or the count of cycles changes inside the step, the force
-jumps there; the straight line that the step rule takes instead has the same impulse and moment.
+u and u' at the step's end are predicted with the force held, to the third order in the step. The laws of
+`models.rubber` advance from where they last looked, u linear between. Where Payne's amplitude or the count of
+cycles changes inside the step, the force jumps there; the straight line that the step rule takes instead has the
+same impulse and moment.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from models.isolated.lanes import rows as r
+from models.isolated.lanes.rows import Table, W
+from models.isolated.lanes.tables import Lent
 from models.lanes.compiler import inlined
 from models.lanes.elementary import exponential_decay
+from models.rubber import lanes as rubber
+from models.rubber.base import RubberLaw
 
-Table = Any
+# --- rows of the springs, W numbers each: u predicted, the springs' force there, u at the last look, stiffness; then
+# the laws' hidden states and numbers
+U, WHOLE, LAST, K, HIDDEN = (row * W for row in range(5))
+P_LAWS = HIDDEN + rubber.N_HIDDEN * W
+N_SPRING = P_LAWS + rubber.N_NUMBERS * W
+PLACES = rubber.Places(HIDDEN, W, P_LAWS, W)
 
 
 @inlined
-def bearing_one(s: Table, x: Table, p: Table, y: Table, g: Table, levels: int, i: int) -> None:
-    """One lane: advances its memory, sets the force's ends BEFORE and AFTER for the step, FORCE for the next.
+def predict(s: Table, spring: Table, y: Table, g: Table, levels: int, i: int) -> None:
+    """u and u' at the step's end.
 
-    ``y``: the state at the step's end without this force; ``g`` (2 levels, 4, W): the step's gains.
+    ``y`` (2 levels, W): the state at the step's end without this force; ``g`` (2 levels, 4, W): the step's gains.
     """
     force = s[r.FORCE, i]
-    u = y[0, i] + (g[0, 2, i] + g[0, 3, i]) * force
-    rate = y[levels, i] + (g[levels, 2, i] + g[levels, 3, i]) * force
-    u_was, rate_was = x[r.U, i], x[r.RATE, i]
-    size, change = abs(u), u - u_was
-    k = p[r.K, i]
-    whole = k * u * p[r.P_HARDENING, i] * u * u
-    arm = p[r.P_ARM_DECAY, i] * x[r.ARM, i] + p[r.P_ARM_GAIN, i] * change
-    whole += p[r.P_ARM, i] * arm
-    # --- Bouc-Wen: |zeta/u_y|^(n-1), n = 1, 2, 3, 4
-    zeta, order = x[r.ZETA, i], p[r.P_ORDER, i]
-    way = 1.0 if change >= 0.0 else -1.0
-    loaded = min(max(way * zeta * p[r.P_YIELD, i], 0.0), 1.0)
-    first, second = 1.0 if loaded > 0.0 else 0.0, loaded if order > 1.5 else 1.0
-    lower = first * second * (loaded if order > 2.5 else 1.0) * (loaded if order > 3.5 else 1.0)
-    eased = order * lower * p[r.P_YIELD, i] * abs(change) + 1e-8
-    zeta += change * (1.0 - lower * loaded) * (1.0 - exponential_decay(eased)) / eased
-    whole += p[r.P_HYSTERETIC, i] * (zeta - u)
-    # --- Mullins
-    largest = max(x[r.LARGEST, i], size)
-    whole -= k * u * p[r.P_SOFTENING, i] * (1.0 - exponential_decay(largest * p[r.P_PER_STRAIN, i]))
+    spring[U + i] = y[0, i] + (g[0, 2, i] + g[0, 3, i]) * force
+    s[r.RATE_NEXT, i] = y[levels, i] + (g[levels, 2, i] + g[levels, 3, i]) * force
+
+
+@inlined
+def close(s: Table, x: Table, p: Table, spring: Table, i: int) -> None:
+    """Sets the force's ends BEFORE and AFTER for the step, FORCE for the next, and the memory."""
+    u, rate, u_was, rate_was = spring[U + i], s[r.RATE_NEXT, i], x[r.U, i], x[r.RATE, i]
+    force, size, linear, whole = s[r.FORCE, i], abs(u), p[r.K, i] * u, spring[WHOLE + i]
     # --- Payne: the amplitude before and after a reversal in this step
     amplitude, turned = x[r.AMPLITUDE, i], rate * rate_was < 0.0
     share = rate_was / (rate_was - rate) if turned else 1.0
@@ -56,12 +55,40 @@ def bearing_one(s: Table, x: Table, p: Table, y: Table, g: Table, levels: int, i
     wear = 1.0 - p[r.P_LOSS, i] * (1.0 - exponential_decay(float(int(0.5 * crossings)) * p[r.P_PER_CROSSING, i]))
     share = u_was / (u_was - u) if crossed else share
     # --- on the branch of the step's start, and after the jump
-    linear = k * u
-    before = worn * (linear + whole - old * linear) - linear
-    after = wear * (linear + whole - new * linear) - linear
+    before = worn * (whole - old * whole) - linear
+    after = wear * (whole - new * whole) - linear
     left, jump = 1.0 - share, after - before
     s[r.BEFORE, i] = force + jump * left * (3.0 * left - 2.0)
     s[r.AFTER, i] = before + jump * left * (4.0 - 3.0 * left)
     s[r.FORCE, i] = after
-    x[r.U, i], x[r.RATE, i], x[r.ARM, i], x[r.ZETA, i] = u, rate, arm, zeta
-    x[r.LARGEST, i], x[r.AMPLITUDE, i], x[r.CROSSINGS, i], x[r.WEAR, i] = largest, reached, crossings, wear
+    x[r.U, i], x[r.RATE, i] = u, rate
+    x[r.AMPLITUDE, i], x[r.CROSSINGS, i], x[r.WEAR, i] = reached, crossings, wear
+
+
+def _springs(laws: Sequence[RubberLaw]) -> Callable[..., None]:
+    """Compiled ``(spring)``: the springs' force of all lanes; the laws go on from one look to the next."""
+    numbers, respond = rubber.responding(laws, PLACES)
+
+    @inlined
+    def springs_all(spring: Table) -> None:
+        for i in range(W):
+            u = spring[U + i]
+            k = spring[K + i]
+            spring[WHOLE + i] = k * u + respond(spring, i, u, u - spring[LAST + i], k, numbers(spring, i))[0]
+            spring[LAST + i] = u
+
+    return springs_all
+
+
+springs = rubber.chosen([_springs(laws) for laws in rubber.VARIANTS])
+
+
+@inlined
+def bearing_all(work: Lent, laws: Any, levels: int) -> None:
+    """The bearings of all lanes, their rubber by the variant ``laws`` of `models.rubber.lanes`."""
+    s, x, spring = work.scalars, work.memory, work.spring
+    for i in range(W):
+        predict(s, spring, work.new, work.gains, levels, i)
+    springs(spring, laws)
+    for i in range(W):
+        close(s, x, work.numbers, spring, i)

@@ -15,7 +15,9 @@ from models.isolated.chain import Chain
 from models.isolated.declaration import MOST_LEVELS, STATES
 from models.isolated.lanes import rows as r
 from models.isolated.lanes.advance import advance
+from models.isolated.lanes.tables import Given, Records
 from models.isolated.modes import exact_step, modes
+from models.rubber import lanes as rubber
 from models.shaking import Shaking
 
 LARGEST_PHASE = (0.1, 0.4)
@@ -44,21 +46,10 @@ def substeps(omega: FloatArray, time_step: float) -> NDArray[np.int64]:
     return np.asarray(np.maximum(1, np.ceil(needed - 1e-9)), np.int64)
 
 
-def law_numbers(chain: Chain, h: FloatArray) -> FloatArray:
-    """The laws' numbers (n, rows) for steps of ``h`` (n,) seconds; zero where a law is absent."""
+def law_numbers(chain: Chain) -> FloatArray:
+    """The numbers (n, rows) of Payne's law and of wear; zero where they are absent."""
     table = np.zeros((chain.size, r.N_LAW))
-    table[:, r.K], table[:, r.P_ORDER] = chain.stiffness, 1.0
-    if p := chain.numbers("hardening"):
-        table[:, r.P_HARDENING] = p["beta2"] / p["thickness"] ** 2
-    if p := chain.numbers("maxwell"):
-        tau = p["relaxation_time"]
-        table[:, r.P_ARM] = p["arm_stiffness_ratio"] * p["stiffness"]
-        table[:, r.P_ARM_DECAY], table[:, r.P_ARM_GAIN] = np.exp(-h / tau), -np.expm1(-h / tau) * tau / h
-    if p := chain.numbers("bouc_wen"):
-        table[:, r.P_HYSTERETIC] = (1.0 - p["post_yield_ratio"]) * p["stiffness"]
-        table[:, r.P_YIELD], table[:, r.P_ORDER] = 1.0 / p["yield_compression"], p["exponent"]
-    if p := chain.numbers("mullins"):
-        table[:, r.P_SOFTENING], table[:, r.P_PER_STRAIN] = p["softening"], 1.0 / (p["strain"] * p["thickness"])
+    table[:, r.K] = chain.stiffness
     if p := chain.numbers("payne"):
         table[:, r.P_PAYNE], table[:, r.P_PER_AMPLITUDE] = p["softening"], 1.0 / (p["strain"] * p["thickness"])
     if p := chain.numbers("degradation"):
@@ -67,25 +58,9 @@ def law_numbers(chain: Chain, h: FloatArray) -> FloatArray:
 
 
 def memory_table(chain: Chain, u: FloatArray, rate: FloatArray, memory: bearing.Memory) -> FloatArray:
-    """The memory's rows (n, rows) of bearings at u, u'."""
-    table = np.zeros((chain.size, r.N_MEMORY))
-    table[:, r.U], table[:, r.RATE] = u, rate
-    for (law, _), hidden in zip(chain.rubber_laws, memory.hidden, strict=True):
-        if law.name in HIDDEN:
-            table[:, HIDDEN[law.name]] = hidden
-    table[:, r.AMPLITUDE], table[:, r.CROSSINGS] = memory.amplitude, memory.crossings
-    table[:, r.WEAR] = bearing.wear(chain, memory.crossings)
-    return table
-
-
-HIDDEN = {"maxwell": r.ARM, "bouc_wen": r.ZETA, "mullins": r.LARGEST}
-
-
-def memory_of(chain: Chain, table: FloatArray) -> bearing.Memory:
-    """The memory from the rows that `memory_table` writes."""
-    empty = np.zeros(chain.size)
-    hidden = tuple(table[:, HIDDEN[law.name]] if law.name in HIDDEN else empty for law, _ in chain.rubber_laws)
-    return bearing.Memory(hidden, table[:, r.AMPLITUDE], table[:, r.CROSSINGS])
+    """The bearings' rows (n, rows) at u, u'; the rubber's hidden states have a table of their own."""
+    worn = bearing.wear(chain, memory.crossings)
+    return np.stack([u, rate, memory.amplitude, memory.crossings, worn], axis=1)
 
 
 def run(
@@ -187,16 +162,25 @@ class _Group:
         scalars[:, r.KINETIC] = chain.mass * rate**2
         transition, gains = exact_step(chain, levels, self.h)
         rows = 2 * self.size
-        result = np.zeros((chain.size, r.N_RESULT + rows + r.N_MEMORY))
+        n, laws = chain.size, chain.rubber_laws
+        given = Given(
+            scalars, memory_table(chain, u, rate, self.memory), law_numbers(chain),
+            rubber.hidden_table(laws, self.memory.hidden) if laws else np.zeros((n, rubber.N_HIDDEN)),
+            rubber.number_table(laws, self.h), self.padded(self.y, 1), self.padded(transition, 1, 2),
+            self.padded(gains, 1), links, masses,
+        )  # fmt: skip
+        records = Records(
+            np.zeros((n, r.N_RESULT)), np.zeros((n, rows)), np.zeros((n, r.N_MEMORY)), np.zeros((n, rubber.N_HIDDEN)),
+            self.trace,
+        )  # fmt: skip
         self.steps = advance(
             self.shaking.horizontal, self.shaking.time_step, self.shaking.horizontal.size - 1, self.per, first, last,
-            period, scalars, memory_table(chain, u, rate, self.memory), law_numbers(chain, self.h),
-            self.padded(self.y, 1), self.padded(transition, 1, 2), self.padded(gains, 1), links, masses, result,
-            self.trace, may_rest, (None,) * self.size, True if chain.laws else None,
+            period, given, records, may_rest, (None,) * self.size, rubber.variant_for(laws) if chain.laws else None,
         )  # fmt: skip
-        at_end = result[:, r.N_RESULT : r.N_RESULT + rows]
+        at_end, result = records.states, records.result
         at_end = np.concatenate([at_end[:, :levels], at_end[:, self.size : self.size + levels]], axis=1)
-        memory = memory_of(chain, result[:, r.N_RESULT + rows :])
+        hidden = rubber.hidden_states(laws, records.hidden)
+        memory = bearing.Memory(hidden, records.memory[:, r.AMPLITUDE], records.memory[:, r.CROSSINGS])
         work = result[:, r.R_WORK]
         with np.errstate(invalid="ignore", over="ignore"):
             lost = energy(chain, levels, self.y, self.memory) + work - energy(chain, levels, at_end, memory)

@@ -4,7 +4,7 @@
 
 an exponential rule: stiff storeys, however stiff, set no bound on the step, and with linear bearings the step has no
 error at all. ``size`` is a tuple as long as the (padded) chain, so that the compiler knows its length;
-``laws`` None: linear bearings, True: with every law, its numbers zero where it is absent.
+``laws`` None: linear bearings, else the variant of `models.rubber.lanes`.
 """
 
 from __future__ import annotations
@@ -12,11 +12,10 @@ from __future__ import annotations
 from typing import Any
 
 from models.isolated.lanes import rows as r
-from models.isolated.lanes.bearing import bearing_one
-from models.isolated.lanes.rows import W
+from models.isolated.lanes.bearing import bearing_all
+from models.isolated.lanes.rows import Table, W
+from models.isolated.lanes.tables import Lent
 from models.lanes.compiler import inlined
-
-Table = Any
 
 
 @inlined
@@ -61,11 +60,9 @@ def read_one(s: Table, y: Table, new: Table, link: Table, mass: Table, size: Any
 
 
 @inlined
-def step_all(
-    s: Table, x: Table, p: Table, y: Table, new: Table, transition: Table, g: Table, link: Table, mass: Table,
-    size: Any, laws: Any,
-) -> None:  # fmt: skip
-    """One step of all lanes from ``y`` (2 levels, W), by way of ``new``."""
+def step_all(work: Lent, size: Any, laws: Any) -> None:
+    """One step of all lanes."""
+    s, y, new, g, transition = work.scalars, work.state, work.new, work.gains, work.transition
     levels = len(size)
     for i in range(W):
         s[r.NEXT, i] = s[r.AT, i] + s[r.GROWTH, i]
@@ -76,13 +73,12 @@ def step_all(
                 total += transition[row, column, i] * y[column, i]
             new[row, i] = total
     if laws is not None:
-        for i in range(W):
-            bearing_one(s, x, p, new, g, levels, i)
+        bearing_all(work, laws, levels)
         for row in range(2 * levels):
             for i in range(W):
                 new[row, i] += g[row, 2, i] * s[r.BEFORE, i] + g[row, 3, i] * s[r.AFTER, i]
     for i in range(W):
-        read_one(s, y, new, link, mass, size, i)
+        read_one(s, y, new, work.links, work.masses, size, i)
     for row in range(2 * levels):
         for i in range(W):
             y[row, i] = new[row, i]

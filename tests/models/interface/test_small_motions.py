@@ -11,6 +11,7 @@ from tests.models.interface.walls import LONG, MODEL, SHORT, block_on_strip, ran
 
 STRONG = {
     "hardening": {"hardening.beta2": 20.0},
+    "locking": {"locking.lock_strain": 0.7},
     "maxwell": {"maxwell.arm_stiffness_ratio": 0.5, "maxwell.relaxation_time": 0.05},
     "bouc_wen": {"bouc_wen.post_yield_ratio": 0.4, "bouc_wen.yield_compression": 2e-3, "bouc_wen.exponent": 2.0},
     "mullins": {"mullins.softening": 0.3, "mullins.strain": 0.1},
@@ -111,8 +112,8 @@ def test_frequencies_are_those_of_the_jacobian_with_the_flow_held(name: str, joi
         for joint, z, angle, sunk in (("base", q[2], q[0], -rest[2]), ("top", q[3], q[1] - q[0], -rest[3])):
             if joint in equation.fibres:
                 fibres = equation.fibres[joint]
-                u = fibres.x * np.sin(angle) - z
-                hidden += [held(sunk, u, law, p) for law, p in fibres.laws if law.hidden]
+                u = fibres.x[0] * np.sin(angle) - z
+                hidden += [held(sunk, u, law, p) for law, p in one.laws_at(joint) if law.hidden]
         strips = equation.strips(q, np.zeros(4), np.concatenate(hidden) if hidden else np.zeros(0))[:2]
         return equation.balance(q, np.zeros(4), 0.0, float(one.gravity[0]), strips)[1]
 
@@ -123,7 +124,7 @@ def test_frequencies_are_those_of_the_jacobian_with_the_flow_held(name: str, joi
     squares = np.sort(np.linalg.eigvals(np.linalg.solve(mass, -free.T @ slope)).real)
     np.testing.assert_allclose(modes.at_rest(one).squares[0], squares, rtol=1e-4)
     plain = modes.at_rest(wall({**SHORT, "top_layer_modulus": 6e6, "base_layer_modulus": 4.95e6}, joints=joints))
-    if name in ("hardening", "maxwell", "mullins"):  # the others unload along k, and at the very top only
+    if name in ("hardening", "locking", "maxwell", "mullins"):  # the others unload along k, and at the very top only
         assert abs(modes.at_rest(one).squares[0, 0] / plain.squares[0, 0] - 1.0) > 0.05
 
 
@@ -131,17 +132,19 @@ def test_frequencies_are_those_of_the_jacobian_with_the_flow_held(name: str, joi
 def test_uplift_rotation_is_where_a_base_turned_slowly_lifts(name: str) -> None:
     """Turned in small steps under its weight, with the history of 400 fibres followed; the last open end tells."""
     one = wall({**SHORT, **STRONG[name]})
-    [(law, p)], b, k = one.laws_at("base"), float(one.base_half_width[0]), float(one.base_stiffness[0])
+    layer, b, k = one.layer("base"), float(one.base_half_width[0]), float(one.base_stiffness[0])
     weight, z = float(one.mass[0] * one.gravity[0]), float(modes.static_state(one)[0, 2])
     x = ((np.arange(400) + 0.5) / 200 - 1) * b
     u = np.full(400, -z)
-    h, theta = law.relaxed(u, p), 0.0
+    h, theta = layer.relaxed(u), 0.0
     while z + b * theta < 0.0:
         theta += 2e-6
         for _ in range(3):  # the middle sinks until the weight is carried
             new = np.maximum(x * theta - z, 0.0)
-            moved = h if name in ("maxwell", "permanent_set") else h + law.rate(u, new - u, h, p)  # slow, without creep
-            stress = np.maximum(k * new + law.extra(new, moved, p), 0.0)
+            # slow, without creep
+            rates = layer.rates(u, new - u, h)
+            moved = h if name in ("maxwell", "permanent_set") else [h[0] + rates[0]]
+            stress = np.maximum(layer.stress(new, moved), 0.0)
             z += (np.sum(stress) * 2 * b / 400 - weight) / (2 * b * k)
         u, h = new, moved
     values = {**SHORT, **STRONG[name]}

@@ -16,6 +16,7 @@ BODY = {"total_mass": 3e5, "bearing_stiffness": 3e6, "bearing_damping": 1.5e5, "
 HOUSE = {**BODY, "levels": 6.0, "storey_stiffness": 3e8, "storey_damping": 1e6}
 LAWS = {
     "hardening": {"hardening.beta2": 0.3},
+    "locking": {"locking.lock_strain": 3.0},
     "maxwell": {"maxwell.arm_stiffness_ratio": 0.6, "maxwell.relaxation_time": 0.08},
     "bouc_wen_1": {"bouc_wen.post_yield_ratio": 0.2, "bouc_wen.yield_compression": 0.01, "bouc_wen.exponent": 1.0},
     "bouc_wen_2": {"bouc_wen.post_yield_ratio": 0.2, "bouc_wen.yield_compression": 0.01, "bouc_wen.exponent": 2.0},
@@ -25,6 +26,7 @@ LAWS = {
 }
 NULLS = {
     "hardening": {"hardening.beta2": 0.0},
+    "locking": {"locking.lock_strain": np.inf},
     "maxwell": {"maxwell.arm_stiffness_ratio": 0.0},
     "bouc_wen": {"bouc_wen.post_yield_ratio": 1.0},
     "mullins": {"mullins.softening": 0.0},
@@ -57,7 +59,7 @@ def random_building(rng: np.random.Generator) -> dict[str, float]:
         "storey_stiffness": stiffness * float(10 ** rng.uniform(0.5, 3.0)),
         "storey_damping": mass * omega * float(rng.uniform(0.0, 1.0)),
     }
-    for law in LAWS.values():
-        if rng.random() < 0.4:
+    for name, law in LAWS.items():
+        if name != "locking" and rng.random() < 0.4:
             values |= law
     return values

@@ -32,16 +32,13 @@ def drive(values: dict[str, float], turns: list[float], steps: int = 60) -> tupl
             # a second-order step of a law that does not know time, of a Maxwell arm at .3 s a turn
             duration = 0.3 / steps
             half = [h + 0.5 * duration * r for h, r in zip(
-                hidden, bearing.rates(one, np.array([last]), change / duration, hidden), strict=True)]  # fmt: skip
-            rates = bearing.rates(one, middle, change / duration, half)
+                hidden, one.layer.rates(np.array([last]), change / duration, hidden), strict=True)]  # fmt: skip
+            rates = one.layer.rates(middle, change / duration, half)
             hidden = [h + duration * r for h, r in zip(hidden, rates, strict=True)]
             # u and its largest value so far may differ by rounding, and then the latter has no rate
-            hidden = [
-                np.maximum(h, abs(u)) if law.name == "mullins" else h
-                for (law, _), h in zip(one.rubber_laws, hidden, strict=True)
-            ]
+            hidden = one.layer.reached(np.array([u]), hidden)
             crossings = memory.crossings + (1.0 if u * last < 0.0 else 0.0)
-            memory = bearing.Memory(tuple(hidden), memory.amplitude, crossings)
+            memory = bearing.Memory(hidden, memory.amplitude, crossings)
             at = np.array([u])
             told.append((u, float(bearing.spring_force(one, at, memory)[0]), float(bearing.stored(one, at, memory)[0])))
             last = u

@@ -10,6 +10,7 @@ from models.interface.fibres import Fibres
 from models.interface.lanes import run as lanes
 from models.interface.strip import strip
 from models.rubber import LAWS
+from models.rubber.layer import Layer
 from models.shaking import Shaking
 from tests.models.interface.walls import MODEL, SHORT, random_wall, stacked, wall
 from tests.models.strategies import random_motion
@@ -18,6 +19,7 @@ GIVEN = {
     "hardening": {"hardening.beta2": 20.0},
     "maxwell": {"maxwell.arm_stiffness_ratio": 0.5, "maxwell.relaxation_time": 0.05},
     "bouc_wen": {"bouc_wen.post_yield_ratio": 0.4, "bouc_wen.yield_compression": 2e-3, "bouc_wen.exponent": 2.0},
+    "locking": {"locking.lock_strain": 0.7},
     "mullins": {"mullins.softening": 0.3, "mullins.strain": 0.3},
     "permanent_set": {"permanent_set.rate": 2.0, "permanent_set.strain_limit": 0.3},
 }
@@ -25,6 +27,7 @@ NULLS = {
     "hardening": {"hardening.beta2": 0.0},
     "maxwell": {"maxwell.arm_stiffness_ratio": 0.0},
     "bouc_wen": {"bouc_wen.post_yield_ratio": 1.0},
+    "locking": {"locking.lock_strain": np.inf},
     "mullins": {"mullins.softening": 0.0},
     "permanent_set": {"permanent_set.rate": 0.0},
 }
@@ -35,6 +38,11 @@ def numbers(name: str, **more: float) -> dict[str, np.ndarray]:
     own = {key.partition(".")[2]: value for key, value in GIVEN[name].items()}
     shared = {"stiffness": 6.21e7, "thickness": 0.01}
     return {k: np.asarray(v) for k, v in {**own, **shared, **more}.items()}
+
+
+def alone(*names: str, **more: float) -> Layer:
+    """A layer with these laws at their given numbers, or at ``more``."""
+    return Layer(np.asarray(6.21e7), [(LAWS[name], numbers(name, **more)) for name in LAWS if name in names])
 
 
 @pytest.mark.parametrize("name", LAWS)
@@ -101,15 +109,14 @@ def test_relaxed_walls_stay_at_rest_and_carry_their_weight(name: str) -> None:
     rest = modes.static_state(one)[0]
     state = lanes.run(one, Shaking.silence(1.0, 0.01), np.ones(1), samples=101).samples[0]
     assert np.max(np.abs(state - state[0])) < 1e-12
-    law, p = one.laws_at("base")[0]
-    u = np.array([-rest[2]])
-    carried = p["stiffness"] * u + law.extra(u, law.relaxed(u, p), p)
+    layer, u = one.layer("base"), np.array([-rest[2]])
+    carried = layer.stress(u, layer.relaxed(u))
     assert carried[0] * one.base_half_width[0] * 2.0 == pytest.approx(float(one.mass[0] * 9.81), rel=1e-12)
 
 
 @pytest.mark.parametrize("name", LAWS)
 def test_closed_cycles_never_give_energy_back(name: str) -> None:
-    law, p = LAWS[name], numbers(name)
+    layer = alone(name)
     rng = np.random.default_rng(2)
     count = 4000
     time = np.linspace(0.0, 1.0, count, endpoint=False)
@@ -118,11 +125,11 @@ def test_closed_cycles_never_give_energy_back(name: str) -> None:
         ways = rng.uniform(-1, 1, 3)
         u = np.tile(3e-3 + 5e-4 * sum(w * np.sin(f * time) for w, f in zip(ways, lines, strict=True)), 4)
         u_rate = np.gradient(u, 1.0 / count)
-        h, stress = law.relaxed(u[:1], p), np.empty(u.size)
+        h, stress = layer.relaxed(u[:1]), np.empty(u.size)
         for k in range(u.size):
-            stress[k] = (p["stiffness"] * u[k] + law.extra(u[k : k + 1], h, p))[0]
-            h = h + law.rate(u[k : k + 1], u_rate[k : k + 1], h, p) / count
-            h = np.maximum(h, u[k]) if name == "mullins" else h
+            stress[k] = layer.stress(u[k : k + 1], h)[0]
+            rates = layer.rates(u[k : k + 1], u_rate[k : k + 1], h)
+            h = layer.reached(u[k : k + 1], [one + rate / count for one, rate in zip(h, rates, strict=True)])
         # the fourth cycle: the hidden state has closed its loop by then, apart from the creep of a set
         last = slice(3 * count - 1, None)
         work = np.sum(0.5 * (stress[last][1:] + stress[last][:-1]) * np.diff(u[last]))
@@ -158,7 +165,7 @@ def test_sixteen_fibres_of_the_difference_against_ten_thousand_of_the_whole_law(
         u = np.maximum(x * np.sin(angle) - z, 0.0)
         stress = k * u * (1 + 20.0 * (u / 0.01) ** 2)
         exact = stress.sum() * 2 * b / 10_000
-        more, _, _ = Fibres(one, "base").difference(z, angle, 0.0, 0.0, np.zeros(0))
+        more = Fibres(one, "base").difference((z, angle, 0.0, 0.0), [np.zeros(1)]).force.item()
         assert strip(b, k, 0.0, z, np.sin(angle)).force + more == pytest.approx(exact, rel=3e-3)
 
 

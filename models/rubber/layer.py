@@ -1,0 +1,117 @@
+"""The laws of one layer together: stress, slope, energy and hidden states of rubber at a compression.
+
+    s = m(h) [k u_e + sum of s_j(u_e, h_j)],   psi = m(h) [k u_e^2/2 + sum of psi_j(u_e, h_j)],   u_e = u - u_p(h)
+
+u_e is what laws that shift leave of u, m the product of what softens. What softens multiplies all that the others
+carry: taken off k instead, it could exceed what a law such as Bouc-Wen's has left of it. As m falls only and psi
+is not negative, no combination gives more energy than it has taken. A dashpot stands outside.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from models.base import FloatArray
+from models.rubber.base import Numbers, Role, RubberLaw
+
+Hidden = Sequence[FloatArray]
+"""The hidden states of a layer's laws, one array for each of them, whether it has one or not."""
+
+
+@dataclass(frozen=True)
+class Layer:
+    """``stiffness`` k, per metre of contact (N m-2) or of a whole bearing (N m-1), and laws with their numbers.
+
+    Compressions u and hidden states are arrays that broadcast against the numbers.
+    """
+
+    stiffness: FloatArray
+    laws: Sequence[tuple[RubberLaw, Numbers]]
+
+    def _of(self, role: Role, u: FloatArray, hidden: Hidden) -> list[FloatArray]:
+        """The effects of the laws of one role."""
+        return [
+            law.effect(u, h, p) for (law, p), h in zip(self.laws, hidden, strict=True) if law.role == role
+        ]  # fmt: skip
+
+    def elastic(self, u: FloatArray, hidden: Hidden) -> FloatArray:
+        """u_e (m)."""
+        return np.asarray(u - sum(self._of("shifts", u, hidden)))
+
+    def softening(self, u: FloatArray, hidden: Hidden) -> FloatArray:
+        """m."""
+        lost = self._of("softens", self.elastic(u, hidden), hidden)
+        return np.asarray(np.prod([np.ones_like(u), *(1.0 - share for share in lost)], axis=0))
+
+    def stress(self, u: FloatArray, hidden: Hidden) -> FloatArray:
+        """s, without a dashpot."""
+        e = self.elastic(u, hidden)
+        return self.softening(u, hidden) * (self.stiffness * e + sum(self._of("adds", e, hidden)))
+
+    def slope(self, u: FloatArray, hidden: Hidden) -> FloatArray:
+        """ds/du on unloading, what has flowed held."""
+        e = self.elastic(u, hidden)
+        return self.softening(u, hidden) * (
+            self.stiffness + sum(law.slope(e, h, p) for (law, p), h in zip(self.laws, hidden, strict=True))
+        )
+
+    def energy(self, u: FloatArray, hidden: Hidden) -> FloatArray:
+        """psi: stored, per metre of contact and of width, or of a whole bearing."""
+        e = self.elastic(u, hidden)
+        more = sum(law.energy(e, h, p) for (law, p), h in zip(self.laws, hidden, strict=True))
+        return self.softening(u, hidden) * (0.5 * self.stiffness * e**2 + more)
+
+    def rates(self, u: FloatArray, u_rate: FloatArray, hidden: Hidden) -> list[FloatArray]:
+        """h' (per s), zeros of a law without h."""
+        shifted = {
+            k: law.rate(u, u_rate, h, p)
+            for k, ((law, p), h) in enumerate(zip(self.laws, hidden, strict=True))
+            if law.role == "shifts"
+        }
+        e, e_rate = self.elastic(u, hidden), np.asarray(u_rate - sum(shifted.values()))
+        return [
+            shifted[k] if k in shifted else law.rate(e, e_rate, h, p)
+            for k, ((law, p), h) in enumerate(zip(self.laws, hidden, strict=True))
+        ]
+
+    def reached(self, u: FloatArray, hidden: Hidden) -> list[FloatArray]:
+        """What the hidden states become at once at u."""
+        e = self.elastic(u, hidden)
+        return [law.reached(e, h, p) for (law, p), h in zip(self.laws, hidden, strict=True)]
+
+    def relaxed(self, u: FloatArray) -> list[FloatArray]:
+        """The hidden states after an infinitely long rest at u; no law that shifts has flowed there."""
+        return [law.relaxed(u, p) for law, p in self.laws]
+
+    def static_compression(self, load: FloatArray, most: FloatArray) -> FloatArray:
+        """u (m) at which the relaxed layer carries ``load``, by bisection up to ``most``; nan if it does not."""
+        return _reaching(load, lambda u: self.stress(u, self.relaxed(u)), most)
+
+    def edge_at_uplift(self, load: FloatArray, rest: FloatArray) -> FloatArray:
+        """Compression (m) of the far edge of a strip turned slowly, from ``rest``, until its freer end is at zero.
+
+        It runs linearly from 0 to the edge then, and its stress, clipped at zero, carries ``load`` (N m-1) on
+        the mean. Every fibre is taken straight from ``rest``; a permanent set has not begun to flow.
+        """
+        nodes, weights = np.polynomial.legendre.leggauss(16)
+
+        def mean(edge: FloatArray) -> FloatArray:
+            u = 0.5 * (1.0 + nodes[:, None]) * edge
+            hidden = [law.turned(u, rest + 0.0 * u, p) for law, p in self.laws]
+            return np.asarray(0.5 * weights @ np.maximum(self.stress(u, hidden), 0.0))
+
+        return _reaching(load, mean, 8.0 * rest)
+
+
+def _reaching(load: FloatArray, carried: Callable[[FloatArray], FloatArray], most: FloatArray) -> FloatArray:
+    """u up to ``most`` at which a growing ``carried(u)`` reaches ``load``; nan where it does not."""
+    low, high = np.zeros_like(load), np.asarray(most, dtype=np.float64).copy()
+    held = carried(high) >= load
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        short = carried(middle) < load
+        low, high = np.where(short, middle, low), np.where(short, high, middle)
+    return np.where(held, 0.5 * (low + high), np.nan)
