@@ -1,23 +1,17 @@
-"""Writing a specimen file that reads back equal."""
+"""The text of a specimen file."""
 
 from __future__ import annotations
 
 import json
 import re
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
 from grids.specimen import Specimen
 
 
-def write_specimen(specimen: Specimen, path: str | Path) -> None:
-    """Write the file that `grids.specimen.read_specimen` reads back equal, numbers in SI."""
-    Path(path).write_text(specimen_text(specimen), encoding="utf-8")
-
-
 def specimen_text(specimen: Specimen) -> str:
-    """The specimen as TOML; floats with all their digits."""
+    """The TOML that `grids.specimen.read_specimen` reads back equal: SI units, floats with all their digits."""
     head = {"title": specimen.title, "model": specimen.model}
     tables: dict[str, Mapping[str, Any]] = {
         "parameters": specimen.parameters,

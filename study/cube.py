@@ -103,7 +103,7 @@ def _dtype(quantity: Quantity) -> np.dtype[Any]:
 
 
 def _missing(quantity: Quantity) -> Any:
-    """Fill value of cells without a result; ``status`` has none, for it always says something."""
+    """Fill value of cells without a result; ``status`` has none, for every cell has one."""
     if quantity.name == "status":
         return False
     return np.nan if _dtype(quantity).kind == "f" else MISSING

@@ -73,7 +73,7 @@ def _local(scheduler: str, workers: int) -> Executor:
 
 
 def _start_worker() -> None:
-    """Leave Ctrl-C to the parent, and end with it: a killed parent cannot tell its workers."""
+    """Leave Ctrl-C to the parent, and end with it: a killed parent cannot stop its workers."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent = multiprocessing.parent_process()
     if parent is not None:

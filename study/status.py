@@ -10,4 +10,4 @@ from models.base import STATUS, UNANSWERED
 
 NOT_RUN, REST, ROCKING, OVERTURNED, OUTSIDE_MODEL, NOT_CONVERGED, FAILED = range(len(STATUS))
 UNKNOWN = (NOT_RUN, *UNANSWERED)
-"""Flags of cells whose outputs say nothing."""
+"""Flags of cells without a valid result."""

@@ -129,7 +129,7 @@ class BlockStore:
             return float(dataset.seconds)
 
     def fail(self, key: str, reason: str) -> None:
-        """Note why a block failed; the next run tries it again."""
+        """Record why a block failed; the next run tries it again."""
         write_text(self.failed / f"{key}.txt", reason)
 
 

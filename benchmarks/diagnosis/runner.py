@@ -63,7 +63,7 @@ def run_all(
 def _outcome(done: Future[str]) -> str:
     try:
         return done.result()
-    except Exception as error:  # the case that failed is told, the others go on
+    except Exception as error:  # the case that failed is reported, the others go on
         return f"not made: {type(error).__name__}: {error}"
 
 

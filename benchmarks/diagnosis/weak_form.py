@@ -107,7 +107,9 @@ def _rows(specimen: Specimen, recording: Recording) -> tuple[FloatArray, dict[st
     a = recording.channels["base_acceleration_x"]
     vertical = recording.channels.get("base_acceleration_z")
     gravity = specimen.parameters.get("gravity", 9.80665)
-    felt = gravity + vertical if vertical is not None and specimen.vertical else np.full(theta.size, gravity)
+    effective_gravity = (
+        gravity + vertical if vertical is not None and specimen.vertical else np.full(theta.size, gravity)
+    )
     sigma = noise_of(theta).sigma
     width = max(5, round(0.05 / step) | 1)
     smooth = savgol_filter(theta, width, 3)
@@ -119,7 +121,7 @@ def _rows(specimen: Specimen, recording: Recording) -> tuple[FloatArray, dict[st
         derived = get(specimen.model).derive(values)
         p2, alpha = float(derived["frequency_parameter"][0]) ** 2, float(derived["alpha"][0])
         lean = alpha * sign - theta
-        return np.asarray(-p2 / gravity * (felt * np.sin(lean) + a * np.cos(lean)))
+        return np.asarray(-p2 / gravity * (effective_gravity * np.sin(lean) + a * np.cos(lean)))
 
     model = equation({})
     tolerance = {name: specimen.tolerance.get(name, 0.0) for name in ("width", "height")}

@@ -90,7 +90,7 @@ def calibrate(
 
 
 def _steps(progress: Progress, count: int) -> Callable[[str], None]:
-    """Tells ``progress`` of ``count`` steps of about the same length, as each begins."""
+    """Reports to ``progress``, of ``count`` steps of about the same length, as each begins."""
     begun = iter(range(count))
     return lambda text: progress(text, next(begun) / count)
 

@@ -1,4 +1,4 @@
-"""The whole chain: calibrate, screen, name, test, locate, show, say."""
+"""The whole chain: calibration, screen, selection, tests, location, held-out comparison, statement."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What would tell the rivals apart: a recording, a sensor, or a test that needs no shaking.
+"""What would separate the rivals: a recording, a sensor, or a test that needs no shaking.
 
 For an explanation A and its rival B the expected evidence of an experiment is what B, refitted within
 what it has learnt (covariance V of its estimates), misses of A's noise-free windows:
@@ -29,7 +29,7 @@ from models.errors import InputError
 
 SCALES = (0.7, 1.0, 1.4)
 NEW_SENSOR_NOISE = 0.01
-"""Of the peak of a channel that is not measured yet."""
+"""Noise assumed of a channel that is not measured yet, over its peak."""
 
 
 def next_experiment(found: Search, near: Sequence[tuple[Explanation, Candidate, float]]) -> Mapping[str, Any] | None:
@@ -59,7 +59,7 @@ def next_experiment(found: Search, near: Sequence[tuple[Explanation, Candidate, 
 
 
 def _sensor(best: Explanation, other: Explanation) -> Mapping[str, Any] | None:
-    """The channel of the model that is not recorded yet and would say most, on the same runs."""
+    """The channel of the model that is not recorded yet and would add most evidence, on the same runs."""
     measured = best.measured
     free = [q.name for q in measured.model.observables if q.name not in measured.channels and q.unit != SHARE]
     gains = {}

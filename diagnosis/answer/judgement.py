@@ -44,18 +44,18 @@ def verdict_of(
 
 
 def p_value(found: Search, gain: float) -> float:
-    """Chance of a gain, shapes paid for, by the score's null distribution; stated down to LEAST_P."""
+    """Chance of a gain (less the price of shapes) by the score's null distribution; stated down to LEAST_P."""
     return max(found.null.p_value(gain), LEAST_P) if found.null else 1.0
 
 
 def p_of_effects(found: Search, gains: Sequence[float]) -> list[float]:
-    """Of each effect of the answer, from its evidence less what its shapes cost."""
+    """p-value of each effect of the answer, from its evidence less the price of its shape parameters."""
     price = [PER_SHAPE * (len(c.unknowns) - 1 + len(c.held)) for c in found.chosen.candidates]
     return [p_value(found, gain - cost) for gain, cost in zip(gains, price, strict=True)]
 
 
 def p_of_missing(found: Search, gains: Sequence[float], finished: bool) -> float | None:
-    """Of "something is missing": of the strongest effect, else suspect. None if a stopped search has not tested it."""
+    """p-value of "something is missing": of the strongest effect, else suspect; None if a search was stopped early."""
     if gains:
         return min(p_of_effects(found, gains))
     if found.null is None or not finished:

@@ -1,4 +1,4 @@
-"""Where the base model misses: intervals of the recordings, and in which phase of the motion.
+"""Where the residual exceeds the noise: intervals of the recordings, and in which phase of the motion.
 
 The excess of a window is what the extended model takes off its squared misfit; where no model of the
 library is adequate, what the base model leaves over that of the noise. Runs of neighbouring
@@ -22,7 +22,7 @@ from models.identification import Identification
 
 SHUFFLES = 1000
 LEVEL = 0.05
-"""Of all scans of an answer together."""
+"""Probability that any scan of an answer finds an interval by chance."""
 FEWEST = 4
 """Windows from which on a run of them can stand out."""
 SHARE_OF_PLAIN = 0.3
@@ -84,7 +84,7 @@ def _squared(shown: Shown, prediction: FloatArray) -> FloatArray:
 
 
 def intervals(excess: FloatArray, level: float, rng: np.random.Generator) -> Iterator[tuple[int, int]]:
-    """The run of windows that holds more than its part (by chance with probability ``level``), else all of them."""
+    """The run of windows that holds more than its share (by chance with probability ``level``), else all of them."""
     size = np.sqrt(np.maximum(excess, 0.0))
     if size.size < FEWEST:
         yield 0, excess.size - 1

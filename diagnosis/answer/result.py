@@ -40,7 +40,7 @@ class Rival:
 
 @dataclass(frozen=True)
 class Undecided:
-    """A suspect that is not named although chance hardly brings its ``gain`` (2 log likelihood, shapes paid for).
+    """A suspect that is not named although chance hardly brings its ``gain`` (2 log likelihood less that of shapes).
 
     ``rests_on``: "one window" or "one recording" without which too little is left; "" where the gain is
     under what a name takes.
@@ -54,7 +54,7 @@ class Undecided:
 
 @dataclass(frozen=True)
 class Located:
-    """An interval of a recording in which the base model misses; ``share`` of the excess misfit."""
+    """An interval of a recording in which the residual exceeds the noise; ``share`` of the excess misfit."""
 
     recording: str
     channel: str

@@ -1,4 +1,4 @@
-"""One paragraph in plain words, as a laboratory engineer would write it."""
+"""One paragraph in plain words, as an engineer would write it in a report."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ CONFIRMED = 0.5
 
 
 def statement(found: Diagnosis, model: Model) -> str:
-    """The paragraph; every number in it stands in the other fields too."""
+    """The paragraph; every number in it is in another field of the answer too."""
     known = library(model)
     declared = identification_of(model)
     parts = [_suspicion(name, what) for name, all_of in found.suspicions.items() for what in all_of]
@@ -71,7 +71,7 @@ def _suspicion(recording: str, what: str) -> str:
 
 
 def _nothing(found: Diagnosis) -> str:
-    """Nothing is named, because there is nothing or because a suspect is not sure enough."""
+    """Nothing is named: nothing is missing, or the strongest suspect is not certain enough."""
     suspect = found.undecided
     if suspect is None:
         chance = f", {p_text(found.p_value)}" if found.p_value is not None else ""
@@ -134,7 +134,7 @@ def _where(located: Sequence[Located], words: Mapping[str, str]) -> str:
     first = located[0]
     phases = " and ".join(words[word] for word in first.where)
     return (
-        f"The model misses {phases}, most of all in {first.recording} from {first.start:.1f} s to {first.end:.1f} s "
+        f"The residual lies {phases}, most of all in {first.recording} from {first.start:.1f} s to {first.end:.1f} s "
         f"({first.channel}, {first.share:.0%} of the excess misfit)."
     )
 

@@ -18,9 +18,9 @@ from grids.recordings.noise import noise_of
 BLOCK = 40
 QUIET_SHARE = 0.1
 RELATIVE_FLOOR = 1e-4
-"""Of the channel's peak: the least noise assumed, for computed channels."""
+"""Least noise assumed over the channel's peak, for computed channels."""
 BAND = 15.0
-"""Hz: the effects of mechanisms lie under it."""
+"""Hz, below which the effects of mechanisms lie."""
 STILL, FEWEST = 0.35, 3
 """s that nothing moves, and how many such stretches must follow one another."""
 LIKE = 1.5

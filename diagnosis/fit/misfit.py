@@ -39,7 +39,7 @@ class Linear:
 
 @dataclass(frozen=True)
 class Reduced:
-    """The same, projected off the states; ``solve_states`` (W, S, M) gives the states' answer -dx."""
+    """The same, projected off the states; ``solve_states`` (W, S, M) gives the change -dx of the states."""
 
     residual: FloatArray
     by_unknown: FloatArray

@@ -95,10 +95,10 @@ def of_specimen(specimen: Specimen, model: Model) -> tuple[Unknown, ...]:
     return tuple(found)
 
 
-def of_parameter(mechanism: Mechanism, parameter: MechanismParameter, start: float | None = None) -> Unknown:
-    """A mechanism's parameter over its range, from its null or from ``start``."""
+def of_parameter(mechanism: Mechanism, parameter: MechanismParameter) -> Unknown:
+    """A mechanism's parameter over its range, from its null."""
     name = f"{mechanism.name}.{parameter.name}"
-    at = parameter.null if start is None else start
+    at = parameter.null
     if parameter.fit_inverse:
         scale = 1.0 / (parameter.low * STEPS_OF_RANGE)
         return Unknown(name, parameter.unit, parameter.low, parameter.high, at, scale, "inverse", stiff=parameter.stiff)

@@ -55,7 +55,7 @@ def _svg(draw: Draw, width: float, salt: str) -> str:
     written = io.StringIO()
     with rc_context({"svg.fonttype": "none", "svg.hashsalt": salt, "path.simplify_threshold": 0.6}):
         figure_of(drawn[0] if isinstance(drawn, tuple) else drawn).savefig(written, format="svg")
-    return _lean(written.getvalue())
+    return _stripped(written.getvalue())
 
 
 def _of_page(text: str) -> str:
@@ -64,7 +64,7 @@ def _of_page(text: str) -> str:
     return text
 
 
-def _lean(text: str) -> str:
+def _stripped(text: str) -> str:
     """Without what a page has no use for: metadata, sizes and names of the drawing program, long decimals."""
     text = text[text.index("<svg") :].rstrip()
     text = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->|<style.*?</style>", "", text, flags=re.DOTALL)

@@ -75,9 +75,9 @@ def estimate_texts(value: Estimate) -> tuple[str, str, str]:
     return texts[0], f"{texts[1]} to {texts[2]}", unit_text(unit)
 
 
-def percent(share: float, digits: int = 2) -> str:
+def percent(share: float) -> str:
     """A share in percent."""
-    return f"{number(100 * share, digits)} %"
+    return f"{number(100 * share, 2)} %"
 
 
 def chance(p_value: float | None) -> str:
@@ -93,10 +93,10 @@ def chance(p_value: float | None) -> str:
     return f"1 in {number(1.0 / p_value, 2)}"
 
 
-def listed(words: Iterable[str], last: str = "and") -> str:
+def listed(words: Iterable[str]) -> str:
     """``a, b and c``."""
     *head, tail = [*words] or [""]
-    return f"{', '.join(head)} {last} {tail}" if head else tail
+    return f"{', '.join(head)} and {tail}" if head else tail
 
 
 def named(keys: Iterable[str], names: Mapping[str, str]) -> list[str]:

@@ -45,7 +45,7 @@ class Null:
         return float(min(1.0, self.effective * chi2.sf(gain, 1)))
 
 
-def null_distribution(screen: Linearisation, scores: Sequence[Score], seed: int = 0) -> Null:
+def null_distribution(screen: Linearisation, scores: Sequence[Score]) -> Null:
     """The distribution for these candidates on these recordings."""
     kept = [s for s in scores if screen.product(s.column, s.column) > 1e-9]
     n = len(kept)
@@ -53,7 +53,7 @@ def null_distribution(screen: Linearisation, scores: Sequence[Score], seed: int 
     size = np.sqrt(np.maximum(np.diag(gram), 1e-300))
     values, vectors = np.linalg.eigh(gram / np.outer(size, size))
     root = vectors * np.sqrt(np.maximum(values, 0.0))
-    z = np.random.default_rng(seed).normal(size=(DRAWS, n)) @ root.T
+    z = np.random.default_rng(0).normal(size=(DRAWS, n)) @ root.T
     one_sided = np.array([s.candidate.one_sided for s in kept], bool)
     z = np.where(one_sided & (z < 0.0), 0.0, z)
     draws = np.sort(np.max(z**2, axis=1)) if n else np.zeros(DRAWS)

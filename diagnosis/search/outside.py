@@ -21,7 +21,7 @@ MARGIN = 25.0
 
 
 def outside(single: Explanation, seconds: Sequence[Score]) -> Constancy | None:
-    """The force that beats every second mechanism, with its lead; None if the library holds its own."""
+    """The force outside the library that gains more than any second mechanism, and by how much; None if none does."""
     about = forces(single.fitted)
     excess = inflation(about)
     found = tests(about)

@@ -63,7 +63,7 @@ def extend(
     )
 
 
-def without(explanation: Explanation, candidate: Candidate, iterations: int = ITERATIONS) -> Explanation:
+def without(explanation: Explanation, candidate: Candidate) -> Explanation:
     """Fit without one of the mechanisms, from the explanation's own optimum."""
     base = explanation.fitted
     gone = {x.name for x in candidate.unknowns}
@@ -74,7 +74,7 @@ def without(explanation: Explanation, candidate: Candidate, iterations: int = IT
         fixed={k: v for k, v in base.misfit.fixed.items() if k not in candidate.held},
     )
     rest = tuple(c for c in explanation.candidates if c is not candidate)
-    return Explanation(rest, fit(misfit, base.u[keep], base.states, iterations))
+    return Explanation(rest, fit(misfit, base.u[keep], base.states))
 
 
 def again(explanation: Explanation) -> Explanation:
@@ -83,7 +83,7 @@ def again(explanation: Explanation) -> Explanation:
     return replace(explanation, fitted=fit_thoroughly(f.misfit, f.u, f.states))
 
 
-def from_other(explanation: Explanation, other: Explanation, iterations: int = ITERATIONS) -> Explanation:
+def from_other(explanation: Explanation, other: Explanation) -> Explanation:
     """The same model refitted from another one's base parameters and states (a cross restart)."""
     mine, theirs = explanation.fitted, other.fitted.values
     u = np.array(
@@ -92,7 +92,7 @@ def from_other(explanation: Explanation, other: Explanation, iterations: int = I
             for x, c in zip(mine.misfit.unknowns, mine.u, strict=True)
         ]
     )
-    tried = Explanation(explanation.candidates, fit(mine.misfit, u, other.fitted.states, iterations))
+    tried = Explanation(explanation.candidates, fit(mine.misfit, u, other.fitted.states))
     return min((explanation, tried), key=lambda e: e.loss)
 
 

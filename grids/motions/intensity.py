@@ -112,10 +112,8 @@ def arias_growth(acceleration: FloatArray, time_step: float) -> FloatArray:
     return math.pi / (2 * STANDARD_GRAVITY) * growth
 
 
-def significant_interval(
-    acceleration: FloatArray, time_step: float, low: float = 0.05, high: float = 0.95
-) -> tuple[float, float]:
-    """Times (s) at which Arias intensity reaches the shares ``low`` and ``high`` of its total.
+def significant_interval(acceleration: FloatArray, time_step: float) -> tuple[float, float]:
+    """Times (s) at which Arias intensity reaches 5 and 95 % of its total.
 
     Source: Trifunac and Brady, Bull. Seism. Soc. Am. 65 (1975). Raises InputError for silence.
     """
@@ -123,7 +121,7 @@ def significant_interval(
     if growth[-1] == 0.0:
         raise InputError("significant duration: the acceleration is zero throughout, it has none")
     times = []
-    for share in (low, high):
+    for share in (0.05, 0.95):
         after = int(np.searchsorted(growth, share * growth[-1]))
         step = growth[after] - growth[after - 1]
         times.append(float(after - 1 + (share * growth[-1] - growth[after - 1]) / step) * time_step)

@@ -21,8 +21,8 @@ SAMPLES_A_PERIOD = 64
 class ResponseSpectrum:
     """Peaks (n,) of u'' + 2 zeta w u' + w^2 u = -a(t), w = 2 pi / period, from rest.
 
-    ``displacement`` |u| (m, relative to the ground), ``pseudo_velocity`` w |u| (m s-1),
-    ``pseudo_acceleration`` w^2 |u| (m s-2), over ``periods`` (s), at ``damping`` zeta.
+    ``displacement`` |u| (m, relative to the ground) and ``pseudo_acceleration`` w^2 |u| (m s-2),
+    over ``periods`` (s), at ``damping`` zeta.
     """
 
     periods: FloatArray
@@ -30,17 +30,13 @@ class ResponseSpectrum:
     displacement: FloatArray
 
     @property
-    def pseudo_velocity(self) -> FloatArray:
-        return 2 * np.pi / self.periods * self.displacement
-
-    @property
     def pseudo_acceleration(self) -> FloatArray:
         return (2 * np.pi / self.periods) ** 2 * self.displacement
 
 
-def default_periods(count: int = 120) -> FloatArray:
-    """Periods from 0.02 to 10 s, evenly spaced on a logarithmic axis."""
-    return np.geomspace(0.02, 10.0, count)
+def default_periods() -> FloatArray:
+    """120 periods from 0.02 to 10 s, evenly spaced on a logarithmic axis."""
+    return np.geomspace(0.02, 10.0, 120)
 
 
 def response_spectrum(

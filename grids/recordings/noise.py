@@ -54,7 +54,7 @@ def noise_of(values: FloatArray) -> Noise:
     noise that was filtered, shows as not white. Raises InputError for a channel that is too short.
     """
     if values.size < 2 * WINDOW + 2:
-        raise InputError(f"a channel of {values.size} samples is too short to tell its noise; give 20.")
+        raise InputError(f"a channel of {values.size} samples is too short to estimate its noise; give at least 20.")
     kernel = _high_pass()
     energy = float(kernel @ kernel)
     if_white = float(kernel[:-1] @ kernel[1:]) / energy

@@ -24,7 +24,7 @@ CAUGHT = 0.1
 RESTS_FOR, STILL, OF_PEAK = 1.0, 0.05, 0.7
 """s at the end of the record within this share of its level, which is at least this share of the peak."""
 FEWEST = 20
-"""Samples; what is left before a fall must be enough to tell the noise."""
+"""Samples; what is left before a fall must suffice to estimate the noise."""
 
 
 def cut_before_fall(recording: Recording) -> Recording:

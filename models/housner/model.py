@@ -20,7 +20,7 @@ class Housner(Model[Block]):
 
     theta'' = -p^2 [ (G/g) sin(alpha s - theta) + (a/g) cos(alpha s - theta) ],  G = g + a_z,
     p^2 = M g R/I_O, s = sign(theta); rocking starts when |a| > G tan(alpha); an impact multiplies
-    theta' by e. No sliding and no lift-off: ``friction_demand`` tells when that would fail.
+    theta' by e. No sliding and no lift-off: ``friction_demand`` shows where that would fail.
     """
 
     name = "housner"

@@ -21,7 +21,7 @@ class Stacked(Model[Stack]):
     Eight configurations and rest; Lagrange's equations of the two-link pendulum in each
     (`models.stacked.equation`); impacts by projection in the kinetic metric (`models.stacked.reference.impact`);
     what follows an impact, an opening or a start from rest by one complementarity condition
-    (`models.stacked.reference.choice`). No sliding and no lift-off: ``friction_demand`` tells when that would fail.
+    (`models.stacked.reference.choice`). No sliding and no lift-off: ``friction_demand`` shows where that would fail.
     A rotation_2 not given at the start equals rotation_1 (seated).
     """
 

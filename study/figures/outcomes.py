@@ -32,7 +32,7 @@ OUTCOMES = (
     Outcome(NOT_RUN, "not run", "#ffffff", "."),
 )
 OF_OVERTURNED = ("overturned", "overturning_time", "status")
-"""How the names of outputs begin that say something of an overturned wall, too."""
+"""Beginnings of the names of outputs that are meaningful for an overturned wall too."""
 
 
 def marked(output: str, status: NDArray[np.integer]) -> list[Outcome]:

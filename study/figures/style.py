@@ -1,4 +1,4 @@
-"""What all figures share: colours that colour-blind readers tell apart, labels with units, axes."""
+"""What all figures share: colours that colour-blind readers can distinguish, labels with units, axes."""
 
 from __future__ import annotations
 
@@ -37,9 +37,9 @@ def shown(values: xr.DataArray) -> tuple[NDArray[Any], str]:
     return (values.values if factor == 1.0 else factor * values.values), unit
 
 
-def label(values: xr.DataArray, name: str | None = None) -> str:
+def label(values: xr.DataArray) -> str:
     """Name and unit of a quantity for an axis or a colour bar."""
-    words, unit = title(name or str(values.name)), shown(values)[1]
+    words, unit = title(str(values.name)), shown(values)[1]
     return words if unit == "1" else f"{words} [{unit}]"
 
 

@@ -25,7 +25,6 @@ CELLS: dict[str, Values] = {
         "bearing_stiffness": 1e6, "bearing_damping": 2e4,
     },
 }  # fmt: skip
-RATES = ("rotation_rate", "bearing_velocity")
 STEP = 0.005
 TIME = np.arange(0.0, 1.5, STEP)
 SHAKING = Shaking(STEP, 3.0 * np.sin(2.0 * np.pi * 1.3 * TIME) * np.sin(np.pi * TIME / 1.5))

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 import rocking
 from diagnosis.report import extend
 from grids.motions import Motion
-from grids.write_specimen import write_specimen
+from grids.write_specimen import specimen_text
 from models.errors import InputError
 from models.shaking import Shaking
 from rocking.commands import app
@@ -61,7 +61,7 @@ def test_a_level_is_over_the_reference_peak_of_the_specimen(tmp_path: Path, moti
     read = rocking.simulate(block(tmp_path, level), motion, duration=4.0)["rotation_1"].values
     np.testing.assert_allclose(read, np.clip(true, -0.01, 0.01), atol=1e-15)
     specimen = rocking.read_specimen(block(tmp_path, level))
-    write_specimen(specimen, tmp_path / "again.toml")
+    (tmp_path / "again.toml").write_text(specimen_text(specimen), encoding="utf-8")
     assert rocking.read_specimen(tmp_path / "again.toml") == specimen
     with pytest.raises(InputError, match=r"reference_peak = -1 rad: give a rotation above 0"):
         rocking.read_specimen(block(tmp_path, level.replace("0.02", "-1")))
@@ -108,7 +108,7 @@ def test_an_unknown_mechanism_is_named_with_the_nearest(tmp_path: Path) -> None:
 
 def test_study_over_an_extended_specimen(tmp_path: Path) -> None:
     extended = extend(specimen(), diagnosis())
-    write_specimen(extended, tmp_path / "extended.toml")
+    (tmp_path / "extended.toml").write_text(specimen_text(extended), encoding="utf-8")
     with (tmp_path / "extended.toml").open("a") as file:
         file.write("[mechanisms.gain]\ngain = 0.05\n")
     plan = tmp_path / "plan.toml"

@@ -1,4 +1,4 @@
-"""How large a residual is, in steps that anybody can tell apart: deeper accent, larger misfit."""
+"""How large a residual is, in steps that can be distinguished: deeper accent, larger misfit."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def draw_cells(
             ax.add_patch(PathPatch(outline, facecolor=palette.accent, alpha=depth, linewidth=0.0))
 
 
-def explain_levels(figure: Figure, palette: Palette, *, columns: int = 6) -> None:
+def explain_levels(figure: Figure, palette: Palette, *, columns: int) -> None:
     """The key to the steps, below the panels."""
     handles = [
         Patch(facecolor=palette.accent, alpha=depth, linewidth=0.0, label=word)

@@ -73,10 +73,10 @@ def name_panel(ax: Axes, text: str, palette: Palette) -> None:
     ax.set_title(text, loc="left", fontsize=FONT, color=palette.ink, pad=6)
 
 
-def legend(ax: Axes, palette: Palette, *, columns: int = 4) -> None:
+def legend(ax: Axes, palette: Palette) -> None:
     """The meaning of the curves, above the right end of a panel."""
     ax.legend(
-        loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=columns, frameon=False, fontsize=FONT - 1,
+        loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=4, frameon=False, fontsize=FONT - 1,
         labelcolor=palette.ink, borderaxespad=0.2, handlelength=1.6, columnspacing=1.2, handletextpad=0.5,
     )  # fmt: skip
 

@@ -16,7 +16,7 @@ from diagnosis.report.figures.panels import WIDE, figure_of, is_narrow, name_pan
 CELLS = (25, 19)
 """Across rotation and angular velocity."""
 FEWEST = 3
-"""Samples without which a cell says nothing."""
+"""Fewest samples of a cell that is drawn."""
 
 
 def noise_of_trace(trace: Trace, windows: Sequence[Windows]) -> float:

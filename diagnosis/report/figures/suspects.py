@@ -14,7 +14,7 @@ from diagnosis.report.figures.panels import WIDE, is_narrow, legend, new_panels
 MOST = 14
 """Suspects drawn; the weaker ones lie inside the band."""
 LEAST = 0.5
-"""Left end of the axis: evidence below it is none."""
+"""Left end of the axis; less counts as no evidence."""
 
 
 def order_of(screen: Sequence[Screened]) -> list[Screened]:

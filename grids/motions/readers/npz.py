@@ -103,7 +103,7 @@ def _check_index(where: str, line: Mapping[str, str], component: str, values: Fl
     role = next((h for h in ("H1", "H2") if line.get(h) == component), "UD")
     stated = line.get(f"PGA_{role}_g")
     if not stated:
-        raise InputError(f"{where}: the table has no PGA_{role}_g to tell the unit: add a TOML with time_step and unit")
+        raise InputError(f"{where}: the table has no PGA_{role}_g to show the unit: add a TOML with time_step and unit")
     peak = float(np.max(np.abs(values))) / STANDARD_GRAVITY
     if abs(peak - float(stated)) > PGA_TOLERANCE * float(stated):
         raise InputError(

@@ -20,7 +20,6 @@ from typing import Any
 
 import numpy as np
 
-from models.base import FloatArray
 from models.stacked.equation import System, held
 
 Corners = Callable[[int, int], System]
@@ -59,8 +58,3 @@ def choose(system: Corners, base: int, top: int, *, moving: bool = False) -> tup
     if moving:
         pairs.remove((0, 0))
     return max(pairs, key=lambda pair: float(margin(system, base, top, *pair)))
-
-
-def admissible(system: Corners) -> FloatArray:
-    """Margins ``(n, 9)`` of all candidates of n walls with both joints closed, in the order of `candidates`."""
-    return np.stack([margin(system, 0, 0, *pair) for pair in candidates(0, 0)], axis=-1)

@@ -14,13 +14,13 @@ from models.errors import InputError
 from tests.diagnosis.made import SPECIMEN, TRUE, recording
 
 
-def told(effect: dict[str, dict[str, float]] | None, **options: object) -> Diagnosis:
+def diagnosed(effect: dict[str, dict[str, float]] | None, **options: object) -> Diagnosis:
     training = [recording("train_1", 1, effect), recording("train_2", 2, effect)]
     return diagnose(SPECIMEN, training, [recording("test_1", 3, effect)], **options)  # type: ignore[arg-type]
 
 
 def test_nothing_missing() -> None:
-    found = told(None)
+    found = diagnosed(None)
     assert found.verdict == "nothing_missing", found.statement
     alone = calibrate(SPECIMEN, [recording("train_1", 1), recording("train_2", 2)], profile=False)
     assert alone.misfit == pytest.approx(found.train.before, rel=1e-9)
@@ -34,7 +34,7 @@ def test_nothing_missing() -> None:
 
 def test_restitution_is_named_and_recovered() -> None:
     truth = 0.93
-    found = told({"restitution": {"factor_on_housner": truth}})
+    found = diagnosed({"restitution": {"factor_on_housner": truth}})
     assert found.effects[0].name == "restitution", found.statement
     value = found.effects[0].parameters["factor_on_housner"]
     assert value.low95 <= truth <= value.high95
@@ -46,12 +46,12 @@ def test_restitution_is_named_and_recovered() -> None:
     assert "restitution" in found.statement
 
 
-def test_a_stopped_search_tells_what_it_has() -> None:
+def test_a_stopped_search_gives_what_it_has() -> None:
     def stop(text: str, share: float) -> None:
         if text.startswith("looking for a second effect"):
             raise KeyboardInterrupt
 
-    found = told({"restitution": {"factor_on_housner": 0.93}}, progress=stop)
+    found = diagnosed({"restitution": {"factor_on_housner": 0.93}}, progress=stop)
     assert not found.finished
     assert found.effects and found.effects[0].name == "restitution"
     assert "stopped" in found.statement

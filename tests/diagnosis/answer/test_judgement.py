@@ -62,9 +62,9 @@ def test_what_a_stopped_search_did_not_test_has_no_p_value() -> None:
 def test_a_suspect_refused_says_what_it_rests_on(losses: list[float], rests_on: str) -> None:
     suspect = explanation(losses, candidate("saturation"))
     found = search(suspect)
-    told = judgement.undecided(found, judgement.p_of_missing(found, [], True))
-    assert told is not None and (told.name, told.rests_on) == ("saturation", rests_on)
-    assert told.gain == 400.0 - sum(losses) and (told.gain >= MISSING) == bool(rests_on)
+    left_open = judgement.undecided(found, judgement.p_of_missing(found, [], True))
+    assert left_open is not None and (left_open.name, left_open.rests_on) == ("saturation", rests_on)
+    assert left_open.gain == 400.0 - sum(losses) and (left_open.gain >= MISSING) == bool(rests_on)
 
 
 def test_what_chance_brings_is_not_undecided() -> None:

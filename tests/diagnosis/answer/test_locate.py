@@ -1,4 +1,4 @@
-"""Where the base model misses: what stands out is found, what does not is not."""
+"""Where the residual exceeds the noise: what stands out is found, what does not is not."""
 
 from __future__ import annotations
 

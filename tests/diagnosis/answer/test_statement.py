@@ -41,7 +41,7 @@ def answer(verdict: Verdict = "missing", **changes: object) -> Diagnosis:
     return replace(diagnosis(verdict), **changes)  # type: ignore[arg-type]
 
 
-def test_nothing_missing_is_told_by_its_chance() -> None:
+def test_nothing_missing_is_stated_with_its_p_value() -> None:
     assert "no stronger than chance, p = 0.41" in said("nothing_missing")
 
 
@@ -62,7 +62,7 @@ def test_a_refused_suspect_is_named_as_undecided(rests_on: str) -> None:
     }
 
 
-def test_no_p_value_is_told_below_the_floor() -> None:
+def test_no_p_value_is_stated_below_the_floor() -> None:
     assert "far beyond chance, p < 1e-6" in said(p_value=LEAST_P)
     assert "p = 0.003" in said(p_value=0.003) and "beyond chance" not in said(p_value=0.003)
 
@@ -95,7 +95,7 @@ def test_a_search_stopped_before_its_first_answer_says_no_more() -> None:
     assert "stopped before its end" in said("cannot_tell_apart", finished=False)
 
 
-def test_what_was_skipped_is_told() -> None:
+def test_what_was_skipped_is_stated() -> None:
     assert said(skipped=("the bootstrap", "runs from rest")).endswith("left out: the bootstrap, runs from rest.")
     assert "left out" not in said()
 

@@ -17,7 +17,7 @@ from diagnosis.fit.intervals import Estimate
 from diagnosis.report import diagnosis_json, extend
 from diagnosis.report.pictures import write_figures
 from diagnosis.report.svg import Picture
-from grids.write_specimen import write_specimen
+from grids.write_specimen import specimen_text
 from models.shaking import Shaking
 from rocking import read_specimen
 from study.history import simulate_specimen
@@ -93,7 +93,7 @@ def test_a_high_pass_reads_back_and_is_simulated(tmp_path: Path) -> None:
     """The only mechanism that may act through a parameter other than its first."""
     pole = {"high_pass_hz": Estimate(3.6, 3.0, 4.4, "Hz"), "order": Estimate(1.0, 1.0, 1.0, "1")}
     found = replace(diagnosis(), effects=(Effect("filter", "filter", pole, 80.0, 1e-6),))
-    write_specimen(extend(specimen(), found), tmp_path / "extended.toml")
+    (tmp_path / "extended.toml").write_text(specimen_text(extend(specimen(), found)), encoding="utf-8")
     block = read_specimen(tmp_path / "extended.toml")
     assert block.mechanisms["filter"] == {"corner_hz": np.inf, "high_pass_hz": 3.6, "order": 1.0}
     shaking = Shaking(0.005, 3.0 * np.sin(np.arange(600) * 0.04))

@@ -22,8 +22,6 @@ def test_spectrum_at_resonance_is_the_steady_state(damping):
     motion = pulse("sine", frequency=2.0, cycles=150.0)
     spectrum = response_spectrum(motion.horizontal, motion.time_step, [0.5], damping)
     assert spectrum.pseudo_acceleration[0] == pytest.approx(2.0 / (2 * damping), rel=1e-4)
-    omega = 2 * np.pi / 0.5
-    assert spectrum.pseudo_velocity[0] == pytest.approx(omega * spectrum.displacement[0])
 
 
 @pytest.mark.parametrize("ratio", [0.05, 0.2, 0.4, 0.5, 1.0, 3.0])

@@ -69,8 +69,8 @@ def history(
 
 
 @dataclass(frozen=True)
-class Told:
-    """What the reference says of one block: outputs, history at the samples, events."""
+class Response:
+    """Response of one block by the reference: outputs, history at the samples, events."""
 
     outputs: dict[str, float]
     time: FloatArray
@@ -88,10 +88,10 @@ def by_reference(
     tail: float = 0.0,
     initial: Mapping[str, float] | None = None,
     rtol: float = 1e-10,
-) -> Told:
+) -> Response:
     """One block by the reference."""
     start = {name: np.array([value]) for name, value in (initial or {}).items()}
     request = Request(shaking, np.array([scale]), tail=tail, initial=start)
     run = reference.run(block, request, rtol)
     outputs = {name: float(values[0]) for name, values in run.outputs.items()}
-    return Told(outputs, request.times, *np.moveaxis(run.samples[0], -1, 0), run.events[0])
+    return Response(outputs, request.times, *np.moveaxis(run.samples[0], -1, 0), run.events[0])

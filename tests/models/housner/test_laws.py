@@ -11,7 +11,7 @@ from models.housner.lanes import run as lanes
 from models.housner.reference.impact import momentum_restitution, restitution
 from models.runs import Request
 from models.shaking import Shaking
-from tests.models.housner.adapter import Told, by_reference, rectangle
+from tests.models.housner.adapter import Response, by_reference, rectangle
 from tests.models.strategies import random_motion
 
 ALPHA = 0.25
@@ -41,14 +41,14 @@ LAWS: dict[str, dict[str, float]] = {
 }  # fmt: skip
 
 
-def energy(block: Block, run: Told, lift: Lift) -> np.ndarray:
+def energy(block: Block, run: Response, lift: Lift) -> np.ndarray:
     """J theta'^2/2 + M g (Z - Z_0) at the samples, with ``lift(theta)`` = (X_t, Z_t, potential arm)."""
     sway, rise, potential = lift(run.rotation)
     turning = float(block.inertia[0]) + M * (sway**2 + rise**2)
     return 0.5 * turning * run.rate**2 + WEIGHT * potential
 
 
-def free(block: Block, theta: float, duration: float) -> Told:
+def free(block: Block, theta: float, duration: float) -> Response:
     return by_reference(block, Shaking.silence(duration, 0.005), initial={"rotation_1": theta}, rtol=1e-12)
 
 

@@ -60,7 +60,7 @@ def free(duration: float, step: float = 0.005) -> Shaking:
 
 
 @dataclass(frozen=True)
-class Told:
+class Response:
     """One run: outputs, and theta, theta', shift at the samples; events as (time, kind)."""
 
     outputs: dict[str, float]
@@ -72,16 +72,16 @@ class Told:
 
 def by_lanes(
     values: Mapping[str, Any], shaking: Shaking, initial: Mapping[str, float] | None = None, refinement: int = 1
-) -> Told:
+) -> Response:
     """One run by the kernel, as long as the record."""
     block = HOUSNER.build(values, vertical=shaking.vertical is not None and shaking.vertical_acts)
-    return _told(lanes.run(block, _request(shaking, initial), refinement))
+    return _response(lanes.run(block, _request(shaking, initial), refinement))
 
 
-def by_reference(values: Mapping[str, Any], shaking: Shaking, initial: Mapping[str, float] | None = None) -> Told:
+def by_reference(values: Mapping[str, Any], shaking: Shaking, initial: Mapping[str, float] | None = None) -> Response:
     """The same by the reference."""
     block = HOUSNER.build(values, vertical=shaking.vertical is not None and shaking.vertical_acts)
-    return _told(reference.run(block, _request(shaking, initial)))
+    return _response(reference.run(block, _request(shaking, initial)))
 
 
 def _request(shaking: Shaking, initial: Mapping[str, float] | None) -> Request:
@@ -89,9 +89,9 @@ def _request(shaking: Shaking, initial: Mapping[str, float] | None) -> Request:
     return Request(shaking, np.ones(1), initial=start, samples=shaking.horizontal.size, log=2000)
 
 
-def _told(run: Run) -> Told:
+def _response(run: Run) -> Response:
     outputs = {name: float(values[0]) for name, values in run.outputs.items()}
-    return Told(outputs, *np.moveaxis(run.samples[0], -1, 0), tuple((e.time, e.kind) for e in run.events[0]))
+    return Response(outputs, *np.moveaxis(run.samples[0], -1, 0), tuple((e.time, e.kind) for e in run.events[0]))
 
 
 def released(start: float) -> float:

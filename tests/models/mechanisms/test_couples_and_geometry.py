@@ -9,7 +9,7 @@ from tests.models.mechanisms.cases import (
     HOUSNER,
     WALL,
     P,
-    Told,
+    Response,
     by_lanes,
     dotted,
     free,
@@ -21,8 +21,8 @@ G = 9.80665
 START = {"rotation_1": 0.4 * ALPHA}
 
 
-def first_impact(told: Told) -> float:
-    return next(float(time) for time, kind in told.events if kind == "impact")
+def first_impact(response: Response) -> float:
+    return next(float(time) for time, kind in response.events if kind == "impact")
 
 
 @pytest.mark.parametrize(
@@ -39,20 +39,20 @@ def first_impact(told: Told) -> float:
     ],
 )
 def test_all_energy_released_is_lost_when_the_block_is_at_rest(name: str, values: dict[str, float]) -> None:
-    told = by_lanes({**WALL, **dotted(name, values)}, free(30.0), START)
+    response = by_lanes({**WALL, **dotted(name, values)}, free(30.0), START)
     theta, rho = START["rotation_1"], values.get("radius_over_half_width", 0.0) * WALL["width"] / 2
     # a rolling corner carries the mass centre on a circle about the corner's own centre
     b, h = WALL["width"] / 2 - rho, WALL["height"] / 2 - rho
     energy = WALL["mass"] * G * (b * np.sin(theta) + h * np.cos(theta) - h)
-    assert told.events[-1][1] == "rest" and told.rotation[-1] == 0.0
-    assert told.outputs["dissipated_energy"] == pytest.approx(energy, rel=1e-8)
+    assert response.events[-1][1] == "rest" and response.rotation[-1] == 0.0
+    assert response.outputs["dissipated_energy"] == pytest.approx(energy, rel=1e-8)
 
 
 @pytest.mark.parametrize(("name", "values"), [("rounded_corner", {"radius_over_half_width": 0.3})])
 def test_energy_is_conserved_between_impacts(name: str, values: dict[str, float]) -> None:
-    told = by_lanes({**WALL, **dotted(name, values)}, free(3.0, 0.001), START)
-    before = np.arange(told.rotation.size) * 0.001 < first_impact(told)
-    theta, rate = told.rotation[before], told.rate[before]
+    response = by_lanes({**WALL, **dotted(name, values)}, free(3.0, 0.001), START)
+    before = np.arange(response.rotation.size) * 0.001 < first_impact(response)
+    theta, rate = response.rotation[before], response.rate[before]
     rho = values["radius_over_half_width"] * WALL["width"] / 2
     b, h, m = WALL["width"] / 2 - rho, WALL["height"] / 2 - rho, WALL["mass"]
     # the mass centre rolls: x = rho theta - b cos + h sin, z = rho + b sin + h cos
@@ -65,14 +65,14 @@ def test_energy_is_conserved_between_impacts(name: str, values: dict[str, float]
 def test_a_spring_keeps_energy_too() -> None:
     """Kinetic energy at the first impact = what weight and spring release, seen in what the impact takes."""
     k, gap, e = 0.3, 0.03, 0.8
-    told = by_lanes(
+    response = by_lanes(
         {**WALL, "restitution": e, "added_stiffness.over_m_g_R": k, "added_stiffness.gap": gap}, free(0.7, 0.001), START
     )
     radius = np.hypot(WALL["width"], WALL["height"]) / 2
     spring = 0.5 * k * WALL["mass"] * G * radius * (START["rotation_1"] - gap) ** 2
-    assert told.outputs["impacts"] == 1
+    assert response.outputs["impacts"] == 1
     lost = (1 - e**2) * (released(START["rotation_1"]) + spring)
-    assert told.outputs["dissipated_energy"] == pytest.approx(lost, rel=1e-5)
+    assert response.outputs["dissipated_energy"] == pytest.approx(lost, rel=1e-5)
 
 
 @pytest.mark.parametrize(
@@ -84,22 +84,22 @@ def test_a_spring_keeps_energy_too() -> None:
     ],
 )
 def test_the_first_impact_keeps_the_declared_share(values: dict[str, float], ratios: object) -> None:
-    told = by_lanes({**WALL, **values}, free(0.7, 0.001), START)
+    response = by_lanes({**WALL, **values}, free(0.7, 0.001), START)
     energy = released(START["rotation_1"])
     block = HOUSNER.build(WALL)
     speed = float(np.sqrt(2 * energy / block.pivot_inertia[0])) / (P * ALPHA)
     e = ratios(1 - 1.5 * np.sin(ALPHA) ** 2, speed)  # type: ignore[operator]
-    assert told.outputs["impacts"] == 1
-    assert told.outputs["dissipated_energy"] == pytest.approx((1 - e**2) * energy, rel=1e-9)
+    assert response.outputs["impacts"] == 1
+    assert response.outputs["dissipated_energy"] == pytest.approx((1 - e**2) * energy, rel=1e-9)
 
 
 def test_restitution_falls_from_impact_to_impact_down_to_the_floor() -> None:
     loss, floor, e = 0.03, 0.92, 1 - 1.5 * np.sin(ALPHA) ** 2
     name = "degradation"
     values = dotted(name, {"loss_of_restitution_per_impact": loss, "floor": floor})
-    told = by_lanes({**WALL, **values}, free(5.0, 0.0005), START)
+    response = by_lanes({**WALL, **values}, free(5.0, 0.0005), START)
     b, h = WALL["width"] / 2, WALL["height"] / 2
-    size = np.abs(told.rotation)
+    size = np.abs(response.rotation)
     height = b * np.sin(size) + h * np.cos(size) - h
     peaks = np.flatnonzero((size[1:-1] > size[:-2]) & (size[1:-1] >= size[2:])) + 1
     energy = np.concatenate([[height[0]], height[peaks]])[:6]
@@ -141,9 +141,9 @@ def test_tilt_equals_a_constant_acceleration_and_less_gravity() -> None:
 def test_all_of_the_vertical_motion_equals_feeding_it() -> None:
     left_out = pulse(3.9, 0.5)
     fed = Shaking(left_out.time_step, left_out.horizontal, left_out.vertical)
-    told = by_lanes({**WALL, "vertical_acceleration.kappa": 1.0}, left_out)
-    np.testing.assert_array_equal(told.rotation, by_lanes(WALL, fed).rotation)
-    assert np.any(told.rotation != by_lanes(WALL, left_out).rotation)
+    response = by_lanes({**WALL, "vertical_acceleration.kappa": 1.0}, left_out)
+    np.testing.assert_array_equal(response.rotation, by_lanes(WALL, fed).rotation)
+    assert np.any(response.rotation != by_lanes(WALL, left_out).rotation)
 
 
 def test_the_vertical_motion_cannot_act_twice() -> None:

@@ -36,10 +36,10 @@ def test_a_mechanism_is_declared_as_in_the_catalogue(name: str) -> None:
     assert mechanism.effect_class == effect_class
     assert [p.name for p in mechanism.parameters] == list(parameters)
     for parameter in mechanism.parameters:
-        told = parameters[parameter.name]
-        assert parameter.shape == (told is None)
-        if told is not None:
-            assert (parameter.null, parameter.low, parameter.high) == told
+        catalogued = parameters[parameter.name]
+        assert parameter.shape == (catalogued is None)
+        if catalogued is not None:
+            assert (parameter.null, parameter.low, parameter.high) == catalogued
             assert parameter.fit_inverse == np.isinf(parameter.null)
 
 

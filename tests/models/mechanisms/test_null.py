@@ -26,8 +26,8 @@ def test_null_equals_base(name: str) -> None:
     general = HOUSNER.build(values)
     assert plain.plain and general.take([0]).plain and not general.plain
     ran = lanes.run(general, Request(shaking, np.ones(2), samples=shaking.horizontal.size))
-    for told, expected in zip(ran.samples[0].T[:2], base.samples[0].T[:2], strict=True):
-        np.testing.assert_allclose(told, expected, rtol=0, atol=1e-12 * np.max(np.abs(expected)))
+    for channel, expected in zip(ran.samples[0].T[:2], base.samples[0].T[:2], strict=True):
+        np.testing.assert_allclose(channel, expected, rtol=0, atol=1e-12 * np.max(np.abs(expected)))
     np.testing.assert_array_equal(ran.samples[0, :, 2], 0.0)
     for output, expected in base.outputs.items():
         np.testing.assert_allclose(ran.outputs[output][0], expected[0], rtol=1e-11, err_msg=output)

@@ -20,44 +20,44 @@ def test_a_stocky_block_slides_as_a_particle_does() -> None:
     """Constant acceleration a for T, then none: slip a' T^2/2 + (a' T)^2/(2 mu g), a' = a - mu g."""
     mu, a, duration = 0.2, 5.0, 0.4
     shaking = Shaking(0.01, np.full(41, a))
-    told = HOUSNER.simulate({**STOCKY, "sliding.friction": mu}, shaking, duration=2.0)
+    response = HOUSNER.simulate({**STOCKY, "sliding.friction": mu}, shaking, duration=2.0)
     surplus = a - mu * G
     slip = surplus * duration**2 / 2 + (surplus * duration) ** 2 / (2 * mu * G)
-    assert told.channels["displacement_1_x"][-1] == pytest.approx(-slip, rel=1e-12)
-    np.testing.assert_array_equal(told.channels["rotation_1"], 0.0)
-    np.testing.assert_array_equal(told.channels["contact_1"], 1.0)
-    assert told.outputs["dissipated_energy"] == pytest.approx(mu * STOCKY["mass"] * G * slip, rel=1e-12)
-    assert told.outputs["uplift_duration"] == 0.0 and told.outputs["status"] == 1.0
+    assert response.channels["displacement_1_x"][-1] == pytest.approx(-slip, rel=1e-12)
+    np.testing.assert_array_equal(response.channels["rotation_1"], 0.0)
+    np.testing.assert_array_equal(response.channels["contact_1"], 1.0)
+    assert response.outputs["dissipated_energy"] == pytest.approx(mu * STOCKY["mass"] * G * slip, rel=1e-12)
+    assert response.outputs["uplift_duration"] == 0.0 and response.outputs["status"] == 1.0
 
 
 def test_a_block_slides_before_it_rocks_if_friction_is_under_its_slope() -> None:
     """Rocking from rest takes mu > b/h."""
     slope = WALL["width"] / WALL["height"]
     for factor, rocks in ((0.99, False), (1.01, True)):
-        told = by_lanes({**WALL, "sliding.friction": factor * slope}, pulse(6.0, 0.3))
-        assert (told.outputs["uplift_duration"] > 0.0) == rocks
-        assert np.max(np.abs(told.shift)) > 1e-3
-        assert told.outputs["friction_demand"] <= factor * slope * (1 + 1e-12)
+        response = by_lanes({**WALL, "sliding.friction": factor * slope}, pulse(6.0, 0.3))
+        assert (response.outputs["uplift_duration"] > 0.0) == rocks
+        assert np.max(np.abs(response.shift)) > 1e-3
+        assert response.outputs["friction_demand"] <= factor * slope * (1 + 1e-12)
 
 
 @pytest.mark.parametrize("factor", [1.1, 3.0])
 def test_friction_over_the_demand_changes_nothing(factor: float) -> None:
     shaking = pulse(3.9, 0.5)
     sticks = by_lanes(WALL, shaking)
-    told = by_lanes({**WALL, "sliding.friction": factor * sticks.outputs["friction_demand"]}, shaking)
-    np.testing.assert_allclose(told.rotation, sticks.rotation, rtol=0, atol=1e-12)
-    np.testing.assert_array_equal(told.shift, 0.0)
+    response = by_lanes({**WALL, "sliding.friction": factor * sticks.outputs["friction_demand"]}, shaking)
+    np.testing.assert_allclose(response.rotation, sticks.rotation, rtol=0, atol=1e-12)
+    np.testing.assert_array_equal(response.shift, 0.0)
 
 
 def test_a_nearly_smooth_base_leaves_the_mass_centre_where_it_is() -> None:
     """Only friction moves it: |x''| <= mu N, and N stays under M g while the block falls back."""
     mu, step = 0.03, 0.002
-    told = HOUSNER.simulate({**WALL, "sliding.friction": mu}, free(0.2, step), initial=START)
-    moved = told.channels["displacement_1_x"] - told.channels["displacement_1_x"][0]
-    assert not told.events
-    assert np.max(np.abs(moved) - 0.5 * mu * G * told.time**2) < 1e-9
+    response = HOUSNER.simulate({**WALL, "sliding.friction": mu}, free(0.2, step), initial=START)
+    moved = response.channels["displacement_1_x"] - response.channels["displacement_1_x"][0]
+    assert not response.events
+    assert np.max(np.abs(moved) - 0.5 * mu * G * response.time**2) < 1e-9
     # the corner slips by far more than that
-    slip = moved - 1.0 * (np.sin(told.channels["rotation_1"]) - np.sin(START["rotation_1"]))
+    slip = moved - 1.0 * (np.sin(response.channels["rotation_1"]) - np.sin(START["rotation_1"]))
     assert np.max(np.abs(slip)) > 5 * np.max(np.abs(moved))
 
 
@@ -86,16 +86,16 @@ def test_no_regime_adds_energy(seed: int) -> None:
 def test_the_block_turns_steadily_in_the_air() -> None:
     """After an impact theta' is constant, and e - c (1 - e) times what it was, until a corner lands."""
     c, step = 0.6, 0.0005
-    told = by_lanes({**WALL, "bounce.contact_restitution": c}, free(1.0, step), START)
-    time = next(t for t, kind in told.events if kind == "impact")
+    response = by_lanes({**WALL, "bounce.contact_restitution": c}, free(1.0, step), START)
+    time = next(t for t, kind in response.events if kind == "impact")
     k = int(time / step)
-    flight = told.rate[k + 1 : k + 6]
+    flight = response.rate[k + 1 : k + 6]
     e = 1 - 1.5 * np.sin(ALPHA) ** 2
     block = HOUSNER.build(WALL)
     before = -np.sqrt(2 * released(START["rotation_1"]) / block.pivot_inertia[0])
     assert flight[0] == pytest.approx((e - c * (1 - e)) * before, rel=1e-9)
     np.testing.assert_array_equal(flight, flight[0])
-    hop = np.flatnonzero(told.rate[k + 1 :] != flight[0])[0] * step
+    hop = np.flatnonzero(response.rate[k + 1 :] != flight[0])[0] * step
     rebound = c * WALL["width"] * abs(before)
     # the corner falls back with g less the centripetal part
     assert hop == pytest.approx(2 * rebound / (G - flight[0] ** 2), rel=0.02)
@@ -106,13 +106,13 @@ def test_the_mode_is_that_of_a_uniform_cantilever() -> None:
     shape = 0.5 * (np.cosh(BETA * x) - np.cos(BETA * x) - SIGMA * (np.sinh(BETA * x) - np.sin(BETA * x)))
     assert np.cos(BETA) * np.cosh(BETA) == pytest.approx(-1.0, abs=1e-12)
     ones, none = np.ones(1), np.zeros(1)
-    told = modal_integrals(ones, 2.0 * ones, none, none, none)
+    integrals = modal_integrals(ones, 2.0 * ones, none, none, none)
     for name, integrand in (
         ("modal_mass", shape**2),
         ("modal_force", shape),
         ("modal_moment", 2.0 * x * shape),
     ):
-        assert told[name][0] == pytest.approx(np.trapezoid(integrand, x), rel=1e-7)
+        assert integrals[name][0] == pytest.approx(np.trapezoid(integrand, x), rel=1e-7)
     top = modal_integrals(none, 2.0 * ones, ones, none, none)
     assert (top["modal_mass"][0], top["modal_force"][0], top["modal_moment"][0]) == (1.0, 1.0, 2.0)
 
@@ -121,9 +121,9 @@ def test_a_clamped_wall_rings_at_its_declared_frequency() -> None:
     frequency, step = 9.0, 0.001
     time = np.arange(2001) * step
     kick = np.where(time < 0.05, 0.3 * np.sin(2 * np.pi * time / 0.05), 0.0)
-    told = by_lanes({**WALL, "wall_flexibility.first_frequency": frequency}, Shaking(step, kick))
-    assert told.outputs["uplift_duration"] == 0.0
-    ring = told.shift[100:]
+    response = by_lanes({**WALL, "wall_flexibility.first_frequency": frequency}, Shaking(step, kick))
+    assert response.outputs["uplift_duration"] == 0.0
+    ring = response.shift[100:]
     up = np.flatnonzero((ring[:-1] < 0.0) & (ring[1:] >= 0.0))
     crossings = (up - ring[up] / (ring[up + 1] - ring[up])) * step
     damped = frequency * np.sqrt(1 - STRUCTURAL_DAMPING**2)
@@ -151,8 +151,8 @@ def test_a_stiff_wall_follows_the_rigid_block() -> None:
     rigid = by_lanes(WALL, shaking, START).rotation
     apart = []
     for frequency in (25.0, 50.0, 100.0):
-        told = by_lanes({**WALL, "wall_flexibility.first_frequency": frequency}, shaking, START)
-        apart.append(np.max(np.abs(told.rotation - rigid)) / START["rotation_1"])
+        response = by_lanes({**WALL, "wall_flexibility.first_frequency": frequency}, shaking, START)
+        apart.append(np.max(np.abs(response.rotation - rigid)) / START["rotation_1"])
     assert apart[1] < 0.6 * apart[0] and apart[2] < 0.6 * apart[1] < 0.02
 
 
@@ -160,13 +160,13 @@ def test_a_bending_wall_loses_what_it_released() -> None:
     """Weight and spring of the start, all lost when the wall has come to rest."""
     frequency = 15.0
     values = {**WALL, "wall_flexibility.first_frequency": frequency}
-    told = by_lanes(values, free(16.0), START)
+    response = by_lanes(values, free(16.0), START)
     block = HOUSNER.build(values)
     m, f = float(block.modal_mass[0]), float(block.modal_force[0])
-    eta = told.shift[0] / (f / WALL["mass"] * np.cos(START["rotation_1"]))
+    eta = response.shift[0] / (f / WALL["mass"] * np.cos(START["rotation_1"]))
     bent = 0.5 * m * (2 * np.pi * frequency * eta) ** 2 - G * f * eta * np.sin(START["rotation_1"])
-    assert told.rotation[-1] == 0.0 and abs(told.shift[-1]) < 1e-9
-    assert told.outputs["dissipated_energy"] == pytest.approx(released(START["rotation_1"]) + bent, rel=1e-5)
+    assert response.rotation[-1] == 0.0 and abs(response.shift[-1]) < 1e-9
+    assert response.outputs["dissipated_energy"] == pytest.approx(released(START["rotation_1"]) + bent, rel=1e-5)
 
 
 def test_a_lane_without_regimes_pays_nothing() -> None:
