@@ -20,14 +20,14 @@ FIBRES = 20
 LEVELS = (0.1, 0.2, 0.3)
 """PGA in g."""
 LADDER = ((FIBRES, 1), (40, 1), (40, 4), (80, 4), (80, 8), (160, 8))
-"""Fibres a layer, and how many times finer the step, from cheap to dear."""
+"""Fibres a layer, and how many times finer the step, from cheap to expensive."""
 FINEST = (320, 16)
 
 
 def ratios(rate: float, seconds: float = 10.0) -> dict[str, Any]:
     """``rate`` lane-steps a second against OpenSeesPy; empty where it is not installed.
 
-    ``ratio_opensees_strip``: the cheapest setting of `LADDER` that is as accurate as the lanes, or its dearest
+    ``ratio_opensees_strip``: the cheapest setting of `LADDER` that is as accurate as the lanes, or its most expensive
     (a lower bound, ``opensees_as_accurate`` false). ``..._same_step``: fibre sections, 20 fibres.
     ``..._springs_same_step``: 20 springs with exact levers at any angle.
     """

@@ -1,4 +1,4 @@
-"""Runs from rest, shown last: where the motion is chaotic they part from the recording after a while."""
+"""Runs from rest, shown last: where the motion is chaotic they diverge from the recording after a while."""
 
 from __future__ import annotations
 
