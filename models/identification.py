@@ -152,7 +152,7 @@ class Separation:
 class Identification:
     """The declaration of one model.
 
-    ``chaotic``: neighbouring trajectories part quickly, so that runs from rest say little. ``windows`` None: each
+    ``chaotic``: neighbouring trajectories diverge quickly, so that runs from rest show little. ``windows`` None: each
     recording is one window. ``forces`` empty: laws outside the library are not tested for. ``phases``: every phase
     word in plain English. ``not_carried``: what else a window would have to inherit and does not yet; with it, or
     with a latent state, calibration and diagnosis are refused.

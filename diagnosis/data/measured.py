@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.data.noise import base_noise, response_noise, smooth
-from diagnosis.data.windows import Window, cut, over_noise
+from diagnosis.data.windows import ABOVE_NOISE, Window, cut, over_noise
 from grids.recordings.base import CHANNELS, REQUIRED, SHARE, FloatArray, Recording
+from models import MODELS, get
 from models.errors import InputError
 from models.identification import Identification, Largest, State, WindowLengths
 from models.model import Model
@@ -80,9 +81,10 @@ def identification_of(model: Model) -> Identification:
     declared = model.identification
     lacking = "what they need to know of it" if declared is None else declared.refusal()
     if declared is None or lacking:
+        offered = [name for name in MODELS if (known := get(name).identification) and not known.refusal()]
         raise InputError(
             f"calibration and diagnosis of model {model.name} are not offered yet: {lacking} is not declared or "
-            'measured; describe the wall by rigid bodies (model = "housner" or "stacked"), or simulate.'
+            f"measured; use model {' or '.join(offered)}, or simulate."
         )
     return declared
 
@@ -120,8 +122,8 @@ def arrange(
         windows += cut(np.max(sizes, axis=0), recording.time_step, k, lengths)
     if not windows:
         raise InputError(
-            f"{' or '.join(leads)} never rises above 8 times its noise in {', '.join(r.name for r in recordings)}: "
-            "nothing can be compared; shake harder, or measure with less noise."
+            f"{' or '.join(leads)} never exceeds {ABOVE_NOISE:g} times its noise in "
+            f"{', '.join(r.name for r in recordings)}: nothing can be compared; shake harder, or reduce the noise."
         )
     with_vertical = vertical or all("base_acceleration_z" in r.channels for r in recordings)
     start = np.stack([_start(recordings, windows, state) for state in declared.states], axis=1)

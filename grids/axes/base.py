@@ -82,7 +82,7 @@ class Request:
         where = f"{self.where} {key}"
         low, high = (self.in_si(value, self.number_target(), where) for value in entry[:2])
         if not low < high or not np.isfinite([low, high]).all():
-            raise InputError(f"{where} = {entry}: low must be below high, both finite; swap or part them.")
+            raise InputError(f"{where} = {entry}: low must be below high, both finite; swap or separate them.")
         return low, high, count(entry[2], 2, where)
 
     def own_name(self) -> str:

@@ -63,7 +63,7 @@ def _scale(request: Request, name: str, entry: object) -> tuple[float, float, bo
         for end in ends
     )
     if not low < high:
-        raise InputError(f"{where} = {ends}: low must be below high; swap or part them.")
+        raise InputError(f"{where} = {ends}: low must be below high; swap or separate them.")
     if spacing == "log" and low <= 0.0:
         raise InputError(f"{where}: a log spacing starts above zero, not at {low:.6g}; raise it or use linear.")
     bounded(np.array([low, high]), target, where)

@@ -36,7 +36,7 @@ def plot_before_after(trace: Trace, *, width: float = WIDE, palette: Palette = P
     for values, colour, style in ((trace.before, palette.before, (0, (4, 2))), (trace.after, palette.accent, "-")):
         left = in_milli(trace.measured - values, trace.unit)[0]
         _curve(ax, trace, left, narrow, color=colour, linewidth=1.1, linestyle=style)
-    ax.set_ylabel(f"left over [{unit}]")
+    ax.set_ylabel(f"residual [{unit}]")
     if trace.from_rest_before is not None and trace.from_rest_after is not None:
         ax = panels[2]
         _curve(ax, trace, measured, narrow, color=palette.ink, linewidth=2.4, alpha=0.35)

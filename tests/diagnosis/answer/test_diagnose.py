@@ -129,7 +129,7 @@ def test_nothing_to_compare_is_said() -> None:
     still = replace(
         flat, channels={**flat.channels, "rotation_1": np.random.default_rng(0).normal(size=flat.time.size)}
     )
-    with pytest.raises(InputError, match="never rises above 8 times its noise"):
+    with pytest.raises(InputError, match="never exceeds 8 times its noise"):
         diagnose(SPECIMEN, [still])
     with pytest.raises(InputError, match="no recording"):
         diagnose(SPECIMEN, [])
