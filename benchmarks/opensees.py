@@ -115,7 +115,7 @@ def build(wall: LayeredWall, fibres: int, way: str) -> dict[str, int]:
     ops.wipe()
     ops.model("basic", "-ndm", 2, "-ndf", 3)
     ops.geomTransf("Corotational", 1)
-    top = one.height_1 + one.rise
+    top = one.height_1 + one.top_thickness_in_height
     if wall.joints == "both":
         # the upper body is held laterally where the compressed layer puts it
         top += float(modes.static_state(wall)[0, 3])

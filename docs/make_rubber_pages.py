@@ -221,7 +221,7 @@ def rubber_laws(cube: xr.Dataset) -> None:
     rows = []
     for name in WORDS:
         own = {key: value for key, value in fixed.items() if "." not in key or key.startswith(f"{name}.")}
-        compressed = 1e3 * get("interface").derive({**own, "layer_modulus": moduli})["static_sinking_base"]
+        compressed = 1e3 * get("interface").derive({**own, "layer_modulus": moduli})["static_compression_base"]
         ratio = (strong / strong.sel(rubber_law="linear")).sel(rubber_law=name).values
         low, middle, high = np.nanquantile(ratio, [0.1, 0.5, 0.9])
         rows.append(
@@ -239,7 +239,7 @@ def rubber_laws(cube: xr.Dataset) -> None:
     def part(start: int, stop: int) -> str:
         return table(["law, MPa", *heads], [[row[0], *row[start:stop]] for row in rows])
 
-    write("rubber_laws_sinking", part(1, 1 + first))
+    write("rubber_laws_compression", part(1, 1 + first))
     write("rubber_laws_lifts", part(1 + first, 1 + 2 * first))
     write("rubber_laws_uplift", part(1 + 2 * first, 1 + 3 * first))
     write(

@@ -56,7 +56,7 @@ def test_the_diagnosis_imports_in_the_order_of_its_folders(path: Path) -> None:
         assert room != "diagnosis" or rest.partition(".")[0] in allowed, module
 
 
-OF_A_MODEL = re.compile(r"rotation_[12]|contact_[12]|displacement_[12]|bearing_|\bimpacts?\b|sinking|compression_")
+OF_A_MODEL = re.compile(r"rotation_[12]|contact_[12]|displacement_[12]|bearing_|\bimpacts?\b|compression_")
 """What only a model's own declaration may say."""
 
 

@@ -87,12 +87,12 @@ class _Draft:
         self.block = specimens.draw(rng)
         self.sampling_hz = float(rng.choice(list(LOW_PASS)))
         left_out = "vertical_acceleration" in wish.names
-        told = wish.kind != "open" and not left_out and rng.uniform() < VERTICAL_SHARE
-        self.vertical_channel, self.vertical_told = left_out or told, told
+        acts = wish.kind != "open" and not left_out and rng.uniform() < VERTICAL_SHARE
+        self.vertical_channel, self.vertical_acts = left_out or acts, acts
         tracks = [self._track() for _ in RECORDINGS]
         if "saturation" in wish.names:  # its level refers to the first training recording, the largest one
             tracks[:2] = sorted(tracks[:2], key=lambda track: -track.plain_peak)
-        self.scene = Scene(self.block, tuple(tracks), told, self.sampling_hz, wish.noise)
+        self.scene = Scene(self.block, tuple(tracks), acts, self.sampling_hz, wish.noise)
 
     def _track(self) -> Track:
         """A motion at a scale, drawn among those at which the block without effects rocks well."""
@@ -101,7 +101,7 @@ class _Draft:
         onset = specimens.GRAVITY * true["width"] / true["height"]
         if not self.vertical_channel:
             unit = Shaking(unit.time_step, unit.horizontal)
-        block = MODEL.build(true, vertical=self.vertical_told, size=SCALES.size)
+        block = MODEL.build(true, vertical=self.vertical_acts, size=SCALES.size)
         found = lanes.run(block, Request(unit, onset * SCALES, tail=TAIL)).outputs
         ratio = found["peak_rotation_ratio"]
         good = (ratio > PEAK[0]) & (ratio < PEAK[1]) & (found["impacts"] > FEWEST_IMPACTS) & ~found["overturned"]
@@ -113,7 +113,7 @@ class _Draft:
 
     def case(self, seed: int) -> Case:
         peak = self.scene.tracks[0].plain_peak
-        effects, told, weak = self._effects(peak)
+        effects, described, weak = self._effects(peak)
         motions = [self.scene.truth(k, effects, exact=True) for k in range(len(RECORDINGS))]
         channels: dict[str, Mapping[str, FloatArray]] = {}
         notes: dict[str, dict[str, Any]] = {}
@@ -133,13 +133,13 @@ class _Draft:
             if effects.active:
                 notes[name]["active_interval"] = effects.active[k]
         exact = max(notes[name]["strength"] for name in RECORDINGS[:2])
-        if told and len(told) == 1 and not weak and self.wish.relative_size == 1.0:
+        if described and len(described) == 1 and not weak and self.wish.relative_size == 1.0:
             if not abs(exact / size.NOMINAL - 1.0) < EXACT_WITHIN:
                 raise Unsuitable
         key = {
             "kind": self.wish.kind, "model": "housner", "seed": seed, "number": self.wish.number,
             "noise_fraction_of_peak": self.wish.noise, "relative_size": self.wish.relative_size,
-            "sampling_hz": self.sampling_hz, "weak": weak, "effects": told, "over_peak": scale,
+            "sampling_hz": self.sampling_hz, "weak": weak, "effects": described, "over_peak": scale,
             "true_parameters": dict(self.block.true), "recordings": notes,
         }  # fmt: skip
         return Case(self._specimen(), self.sampling_hz, channels, key)
@@ -148,7 +148,7 @@ class _Draft:
         lines = [f'title = "{self.wish.label}"', 'model = "housner"', "", "[parameters]"]
         lines += [f"{name} = {value!r}" for name, value in self.block.nominal.items()]
         lines += ["", "[tolerance]", *(f"{name} = {value!r}" for name, value in specimens.TOLERANCE.items())]
-        if self.vertical_told:
+        if self.vertical_acts:
             lines += ["", "[motion]", "vertical = true"]
         return "\n".join(lines) + "\n"
 
@@ -158,7 +158,7 @@ class _Draft:
         """The effects at their sizes, as the key tells them, and whether one could not reach its size."""
         if self.wish.kind == "open":
             return self._open({**LAWS, **UNSEEN}[self.wish.names[0]], peak)
-        both, told, weak = Effects({}, {}), [], False
+        both, described, weak = Effects({}, {}), [], False
         for name in self.wish.names:
             row = CATALOGUE[name]
             end = float(self.rng.choice(row.ends))
@@ -173,12 +173,12 @@ class _Draft:
                 value = row.half(value)
             alone = _alone(row, value, shapes)
             both = Effects({**both.mechanisms, **alone.mechanisms}, {**both.sensors, **alone.sensors})
-            told.append(
+            described.append(
                 {"name": name, "class": row.effect_class, "parameters": {row.parameter: value, **shapes},
                  "primary": row.parameter}
             )  # fmt: skip
             weak = weak or not reached
-        return both, told, weak
+        return both, described, weak
 
     def _open(self, law: Law, peak: float) -> tuple[Effects, list[dict[str, Any]], bool]:
         end = law.end * (float(self.rng.choice([-1.0, 1.0])) if law.either else 1.0)

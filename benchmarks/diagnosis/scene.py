@@ -48,7 +48,7 @@ class Effects:
 
 @dataclass(frozen=True)
 class Scene:
-    """A block under its base motions; ``vertical_told``: the vertical one acts and the specimen says so.
+    """A block under its base motions; ``vertical_acts``: the vertical one acts and the specimen says so.
 
     ``noise``: standard deviation of the rotation's noise over its peak. ``tracks`` in the order of the
     recordings, the two for training first.
@@ -56,7 +56,7 @@ class Scene:
 
     block: specimens.Block
     tracks: Sequence[Track]
-    vertical_told: bool
+    vertical_acts: bool
     sampling_hz: float
     noise: float
 
@@ -81,7 +81,7 @@ class Scene:
             ran = truth.run(true["width"], true["height"], specimens.GRAVITY, fine, step, law)
             every = 1 if exact else shakings.FINE
             return ran.rotation[::every], ran.rate[::every], ran.impacts
-        block = MODEL.build({**true, **effects.mechanisms}, vertical=self.vertical_told)
+        block = MODEL.build({**true, **effects.mechanisms}, vertical=self.vertical_acts)
         if exact:
             ran = reference.run(block, Request(shakings.on_fine_grid(shaking), np.ones(1)), 1e-8)
             if ran.outputs["overturned"][0]:
@@ -99,7 +99,7 @@ class Scene:
         measured = Shaking(
             step,
             instruments.base(shaking.horizontal, effects.sensors),
-            shaking.vertical if self.vertical_told else None,
+            shaking.vertical if self.vertical_acts else None,
         )
         windows = size.windows(rotation, rate, step, noise)
         return size.over_noise(self.block.true, specimens.TOLERANCE, measured, recorded, windows, noise)

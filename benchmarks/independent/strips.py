@@ -10,11 +10,12 @@ from numpy.typing import NDArray
 from benchmarks import opensees
 from benchmarks.independent.table import Row
 from grids.motions import read_motion
-from models.interface import modes, reference
+from models.interface import modes
 from models.interface.assembly import build
 from models.interface.lanes import run as lanes
 from models.interface.layered import LayeredWall
 from models.interface.model import MODEL
+from models.interface.reference import run as reference
 from models.interface.strip import strip
 from models.shaking import Shaking
 

@@ -61,7 +61,7 @@ def assemble(values: Values, options: Mapping[str, str], vertical: bool, size: i
         mass_2=two.mass_2,
         inertia_2=two.inertia_2,
         centre_2=two.half_height_2,
-        rise=thickness["top"],
+        top_thickness_in_height=thickness["top"],
         base_half_width=two.half_length_1,
         top_half_width=two.half_joint,
         base_stiffness=stiffness["base"],
@@ -122,8 +122,8 @@ def _check_laws(wall: LayeredWall) -> None:
     """Refuse laws that cannot carry the wall at rest."""
     if not wall.laws:
         return
-    sunk = -modes.static_state(wall)[:, 2:]
-    for joint, u in zip(JOINTS, sunk.T, strict=True):
+    compression = -modes.static_state(wall)[:, 2:]
+    for joint, u in zip(JOINTS, compression.T, strict=True):
         if np.any(np.isnan(u)):
             raise InputError(
                 f"the law of the {joint} layer cannot carry its load at rest: make it stiffer or yield later"

@@ -97,11 +97,11 @@ OUTPUTS = (
     *by_joint("dissipated_energy", "E_d", "J", "energy lost in the layer", LOST, "in all"),
     *by_joint(
         "peak_strain", "max u/e", "1", "largest compression of the joint's edge over the layer's thickness",
-        "(sinking + b |sin r|)/e at the steps, of an overturned wall that of the fall; above 1 the layer would be "
+        "(compression + b |sin r|)/e at the steps, of an overturned wall that of the fall; above 1 the layer would be "
         "compressed beyond its own thickness; nan for a bonded joint", WORST,
     ),
     *by_joint(
-        "needed_friction", "max |H|/N", "1", "largest ratio of the forces along and across the joint",
+        "friction_demand", "max |H|/N", "1", "largest ratio of the forces along and across the joint",
         "nan for a bonded joint; inf when the joint opens completely: the model holds it laterally all the same", WORST,
     ),
     Quantity("status", "", "1", "what became of the run", "not_converged: the state is not a number", dtype="int8"),
@@ -113,8 +113,8 @@ MODES = range(1, 5)
 DERIVED = (
     Quantity("alpha", "alpha", "rad", "slenderness angle of both as one body"),
     Quantity("alpha_2", "alpha_2", "rad", "slenderness angle of the upper block"),
-    Quantity("static_sinking_base", "-z_1", "m", "compression of the base layer at rest"),
-    Quantity("static_sinking_top", "-z_2", "m", "compression of the top layer at rest"),
+    Quantity("static_compression_base", "-z_1", "m", "compression of the base layer at rest"),
+    Quantity("static_compression_top", "-z_2", "m", "compression of the top layer at rest"),
     Quantity(
         "uplift_rotation", "theta_u", "rad", "rotation at which the base begins to lift, turned slowly", "nan if bonded"
     ),
@@ -129,7 +129,7 @@ DERIVED = (
     *(
         Quantity(f"mode_{k}_{name}", f"phi_{k}", "1", f"{name} in mode {k}; largest component 1, rotations times b_1")
         for k in MODES
-        for name in ("rotation_1", "rotation_2", "sinking_base", "sinking_top")
+        for name in ("rotation_1", "rotation_2", "compression_base", "compression_top")
     ),
     Quantity("base_damping_used", "c_b", "N s m-2", "dashpot of the base layer"),
     Quantity("top_damping_used", "c_t", "N s m-2", "dashpot of the top layer"),
@@ -142,8 +142,8 @@ OBSERVABLES = (
     Quantity("rotation_rate_2", "theta_2'", "rad s-1", "angular velocity of the upper block"),
     Quantity("displacement_1_x", "x_1", "m", "horizontal displacement of the wall's mass centre against the base"),
     Quantity("displacement_2_x", "x_2", "m", "horizontal displacement of the upper block's mass centre"),
-    Quantity("sinking_1", "-z_1", "m", "compression of the base layer at its middle"),
-    Quantity("sinking_2", "-z_2", "m", "compression of the top layer at its middle"),
+    Quantity("compression_base", "-z_1", "m", "compression of the base layer at its middle"),
+    Quantity("compression_top", "-z_2", "m", "compression of the top layer at its middle"),
     Quantity("contact_1", "", "1", "share of the base in contact"),
     Quantity("contact_2", "", "1", "share of the top joint in contact"),
 )

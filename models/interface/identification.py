@@ -9,8 +9,8 @@ IDENTIFICATION = Identification(
     states=(
         State("rotation_1", "rotation_1"),
         State("rotation_2", "rotation_2"),
-        State("displacement_z_1", at_rest=lambda d: -d["static_sinking_base"]),
-        State("displacement_z_2", at_rest=lambda d: -d["static_sinking_top"]),
+        State("displacement_z_1", at_rest=lambda d: -d["static_compression_base"]),
+        State("displacement_z_2", at_rest=lambda d: -d["static_compression_top"]),
         State("rotation_rate_1", "rotation_1", rate=True),
         State("rotation_rate_2", "rotation_2", rate=True),
         State("velocity_z_1"),

@@ -27,7 +27,7 @@ class LayeredWall:
 
     Body 1 (the wall): ``mass_1``, ``inertia_1`` about its centre at ``centre_1`` (h1), top at
     ``height_1`` (2 h1). Body 2: its centre at ``centre_2`` (h2) over its underside. The top layer's
-    unstressed thickness ``rise`` (e_t) is part of the height. The strips have half widths
+    unstressed thickness ``top_thickness_in_height`` (e_t) is part of the height. The strips have half widths
     ``base_half_width`` (b1) and ``top_half_width`` (bt), stiffness (N m-2) and dashpot (N s m-2) per
     metre of contact; ``*_thickness`` turns compression into strain.
 
@@ -46,7 +46,7 @@ class LayeredWall:
     mass_2: FloatArray
     inertia_2: FloatArray
     centre_2: FloatArray
-    rise: FloatArray
+    top_thickness_in_height: FloatArray
     base_half_width: FloatArray
     top_half_width: FloatArray
     base_stiffness: FloatArray
@@ -133,8 +133,10 @@ class LayeredWall:
 
     @property
     def slenderness(self) -> FloatArray:
-        """alpha = atan(b/h) in rad of both bodies as one on the wall's corners (without layers' sinking)."""
-        centre = self.mass_1 * self.centre_1 + self.mass_2 * (self.height_1 + self.rise + self.centre_2)
+        """alpha = atan(b/h) in rad of both bodies as one on the wall's corners (layers uncompressed)."""
+        centre = self.mass_1 * self.centre_1 + self.mass_2 * (
+            self.height_1 + self.top_thickness_in_height + self.centre_2
+        )
         return np.arctan2(self.base_half_width, centre / self.mass)
 
     @property

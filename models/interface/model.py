@@ -22,8 +22,8 @@ class Interface(Model[LayeredWall]):
     """Two rigid blocks, a no-tension visco-elastic layer under each (Mordant, Denoel, Degee 2015, section 3).
 
     M(q) q'' + n(q, q', a, G) = Q(q, q') in q = (theta1, theta2, z1, z2), full nonlinear, with the exact
-    contact length of each layer; see `models.interface.equation` and docs/errata.md for the paper's
-    printed form. No sliding: ``needed_friction`` tells when that would fail.
+    contact length of each layer; see `models.interface.reference.equation` and docs/errata.md for the paper's
+    printed form. No sliding: ``friction_demand`` tells when that would fail.
     """
 
     name = "interface"
@@ -62,16 +62,16 @@ class Interface(Model[LayeredWall]):
                 f"k_t = {wall.top_stiffness[worst]:.3g} N m-2): make them stiffer or the wall longer"
             ]
         found = []
-        sunk = -modes.static_state(wall)
-        for joint, sinking, thickness in (
-            ("base", sunk[:, 2], wall.base_thickness),
-            ("top", sunk[:, 3], wall.top_thickness),
+        compression = -modes.static_state(wall)
+        for joint, compressed, thickness in (
+            ("base", compression[:, 2], wall.base_thickness),
+            ("top", compression[:, 3], wall.top_thickness),
         ):
-            if wall.joints in ("both", joint) and np.any(sinking > thickness):
-                worst = int(np.argmax(sinking - thickness))
+            if wall.joints in ("both", joint) and np.any(compressed > thickness):
+                worst = int(np.argmax(compressed - thickness))
                 found.append(
-                    f"under its load the {joint} layer is compressed by {sinking[worst] * 1e3:.3g} mm, more than its "
-                    f"thickness of {thickness[worst] * 1e3:.3g} mm: make it stiffer or thicker"
+                    f"under its load the {joint} layer is compressed by {compressed[worst] * 1e3:.3g} mm, more than "
+                    f"its thickness of {thickness[worst] * 1e3:.3g} mm: make it stiffer or thicker"
                 )
         return found
 
@@ -90,7 +90,7 @@ class Interface(Model[LayeredWall]):
         return by_lanes(run, outputs, coefficients, request)
 
     def run_reference(self, coefficients: LayeredWall, request: Request) -> Run:
-        from models.interface.reference import run
+        from models.interface.reference.run import run
 
         return by_reference(run, coefficients, request)
 

@@ -108,7 +108,7 @@ class Modes:
 def at_rest(wall: LayeredWall) -> Modes:
     """Undamped modes in full contact, gravity included, with l as the wall stands at rest."""
     rest = static_state(wall)
-    lever = wall.height_1 + wall.rise + rest[:, 3]
+    lever = wall.height_1 + wall.top_thickness_in_height + rest[:, 3]
     stiffness = layer_matrix(wall, *tangents(wall, rest)) - gravity_matrix(wall, lever)
     return modes(wall, mass_matrix(wall, lever), stiffness)
 
@@ -150,13 +150,13 @@ def derived(wall: LayeredWall, found: Modes) -> dict[str, FloatArray]:
     result = {
         "alpha": wall.slenderness,
         "alpha_2": wall.slenderness_2,
-        "static_sinking_base": 0.0 - rest[:, 2],
-        "static_sinking_top": 0.0 - rest[:, 3],
+        "static_compression_base": 0.0 - rest[:, 2],
+        "static_compression_top": 0.0 - rest[:, 3],
         "uplift_rotation": uplift_rotation(wall, rest),
         "base_damping_used": wall.base_damping,
         "top_damping_used": wall.top_damping,
     }
-    names = ("rotation_1", "rotation_2", "sinking_base", "sinking_top")
+    names = ("rotation_1", "rotation_2", "compression_base", "compression_top")
     for k in range(4):
         result[f"frequency_{k + 1}"] = frequencies[:, k]
         result[f"modal_damping_{k + 1}"] = damping[:, k]

@@ -19,7 +19,7 @@ def observe(wall: LayeredWall, state: FloatArray) -> dict[str, FloatArray]:
     turn = t2 - t1
     roll = toe * np.sign(t1) * lane(wall.base_half_width) * (1.0 - np.cos(t1))
     along = toe * np.sign(turn) * lane(wall.top_half_width) * (1.0 - np.cos(turn))
-    height = lane(wall.height_1 + wall.rise) + z2
+    height = lane(wall.height_1 + wall.top_thickness_in_height) + z2
     base, top = np.ones_like(t1), np.ones_like(t1)
     if wall.joints != "top":
         late = np.where(wall.clip, wall.base_damping / wall.base_stiffness, 0.0)
@@ -34,8 +34,8 @@ def observe(wall: LayeredWall, state: FloatArray) -> dict[str, FloatArray]:
         "rotation_rate_2": v2,
         "displacement_1_x": roll + lane(wall.centre_1) * np.sin(t1),
         "displacement_2_x": roll + along * np.cos(t1) + height * np.sin(t1) + lane(wall.centre_2) * np.sin(t2),
-        "sinking_1": -z1,
-        "sinking_2": -z2,
+        "compression_base": -z1,
+        "compression_top": -z2,
         "contact_1": base,
         "contact_2": top,
     }

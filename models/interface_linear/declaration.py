@@ -26,8 +26,8 @@ RULES = {
     "status": "outside_model: a joint opened completely (z >= b |r|), which these equations do not describe; "
     "not_converged: a state is not a number, or too many switches within one sample",
     "minimum_contact": "1 in full contact, .5 once it was left, 0 where z >= b |r|",
-    "peak_strain": "(sinking + b |r|)/e, of an overturned wall that of the fall; above 1 the layer would be compressed "
-    "beyond its own thickness; nan for a bonded joint",
+    "peak_strain": "(compression + b |r|)/e, of an overturned wall that of the fall; above 1 the layer would be "
+    "compressed beyond its own thickness; nan for a bonded joint",
     "dissipated_energy": "work of the dashpots, and the springs' energy that is lost (leaving full contact: 12.5 % "
     "of it) or gained at the switches; counted to overturning",
 }

@@ -34,7 +34,7 @@ ACCELERATION, WATCH, KICK, N_ROWS = 0, 4, 8, 9
 
 def lever(wall: LayeredWall) -> FloatArray:
     """L = 2 h1 + e_t, (n,)."""
-    return wall.height_1 + wall.rise
+    return wall.height_1 + wall.top_thickness_in_height
 
 
 def matrices(
@@ -97,11 +97,11 @@ def strain_rows(wall: LayeredWall, joint: int, side: int) -> FloatArray:
 
 def sizes(wall: LayeredWall) -> tuple[FloatArray, FloatArray]:
     """Compression (m) and sigma (N m-2) of both joints at the uplift under their weight, ``(n, 2)``; 1 if bonded."""
-    sunk = -modes.static_state(wall)[:, 2:]
-    sunk = np.where(sunk > 0.0, sunk, 1.0)
+    compression = -modes.static_state(wall)[:, 2:]
+    compression = np.where(compression > 0.0, compression, 1.0)
     width = np.stack([wall.base_half_width, wall.top_half_width], axis=1)
     k = np.stack([wall.base_stiffness, wall.top_stiffness], axis=1)
-    return sunk, np.where(k > 0.0, k * sunk / width, 1.0)
+    return compression, np.where(k > 0.0, k * compression / width, 1.0)
 
 
 def systems(wall: LayeredWall) -> FloatArray:
@@ -115,7 +115,7 @@ def systems(wall: LayeredWall) -> FloatArray:
     free = FREE[wall.joints]
     mass = matrices(wall, (0, 0))[0]
     mobility = free @ np.linalg.inv(free.T @ mass @ free) @ free.T
-    load, (sunk, sigma) = loads(wall), sizes(wall)
+    load, (compression, sigma) = loads(wall), sizes(wall)
     laid = [wall.joints in ("both", name) for name in ("base", "top")]
     found = np.zeros((n, STATES**2, N_ROWS, 10))
     for configuration in range(STATES**2):
@@ -142,7 +142,7 @@ def systems(wall: LayeredWall) -> FloatArray:
             if not laid[joint]:
                 continue
             first, second = WATCH + 2 * joint, WATCH + 2 * joint + 1
-            side, unit = SIDE[state[joint]], sunk[:, joint, None]
+            side, unit = SIDE[state[joint]], compression[:, joint, None]
             if state[joint] == FULL:
                 rows[:, first, :4] = gap(wall, joint, 1) / unit
                 rows[:, second, :4] = gap(wall, joint, -1) / unit

@@ -43,7 +43,7 @@ class InterfaceLinear(Interface):
         return by_lanes(run, outputs, coefficients, request)
 
     def run_reference(self, coefficients: LayeredWall, request: Request) -> Run:
-        from models.interface_linear.reference import run
+        from models.interface_linear.reference.run import run
 
         return by_reference(run, coefficients, request)
 

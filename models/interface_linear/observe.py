@@ -31,14 +31,14 @@ def observe(wall: LayeredWall, state: FloatArray) -> dict[str, FloatArray]:
         "rotation_rate_2": v2,
         "displacement_1_x": lane(wall.centre_1) * t1,
         "displacement_2_x": lane(lever(wall)) * t1 + lane(wall.centre_2) * t2,
-        "sinking_1": -z1,
-        "sinking_2": -z2,
+        "compression_base": -z1,
+        "compression_top": -z2,
         "contact_1": base,
         "contact_2": top,
     }
 
 
-def share(rise: FloatArray, z: FloatArray) -> FloatArray:
+def share(lift: FloatArray, z: FloatArray) -> FloatArray:
     """Share of a joint in contact as the model takes it: 1, 1/2 while z + b |r| > 0, 0 while z >= b |r|."""
-    up = z + rise > ROUNDING * np.abs(z)
-    return np.where(up, np.where(z >= rise, 0.0, 0.5), 1.0)
+    up = z + lift > ROUNDING * np.abs(z)
+    return np.where(up, np.where(z >= lift, 0.0, 0.5), 1.0)

@@ -71,7 +71,7 @@ class Isolated(Model[Chain]):
         return Run(ran.result, ran.samples, events, ran.steps)
 
     def run_reference(self, coefficients: Chain, request: Request) -> Run:
-        from models.isolated.reference import run
+        from models.isolated.reference.run import run
 
         ran = run(
             coefficients, request.shaking, float(request.scale[0]), tail=request.tail, initial=request.start,

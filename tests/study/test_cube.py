@@ -57,11 +57,11 @@ def test_derived_coordinates_know_the_option_words() -> None:
     plan = read_plan(Path(__file__).parents[2] / "studies" / "rubber_laws.toml")
     model = models.get("interface")
     found = {c.name: c for c in derived_coordinates(plan, model)}
-    compressed = found["static_sinking_base"]
+    compressed = found["static_compression_base"]
     assert compressed.dims == ("rubber_law", "layer_modulus")
     laws = plan.axes[0].values.tolist()
     alone = {k: v for k, v in plan.fixed.items() if "." not in k} | {"layer_modulus": plan.axes[1].values}
-    linear = model.derive(alone)["static_sinking_base"]
+    linear = model.derive(alone)["static_compression_base"]
     np.testing.assert_allclose(compressed.values[laws.index("linear")], linear, rtol=1e-12)
     np.testing.assert_allclose(compressed.values[laws.index("maxwell")], linear, rtol=1e-12)
     assert np.all(compressed.values[laws.index("hardening")] < linear)

@@ -160,7 +160,9 @@ def test_a_law_between_others_and_the_parameter_that_it_alone_uses() -> None:
     softening = '"mullins.softening" = { values = [0.1, 0.3] }'
     parameters = f"{WALL}\nwall_height = 1.8\naspect_ratio = 0.8\ntop_mass = 3000\nlayer_modulus = 8e6\n{RUBBER}"
     plan = made("interface", parameters, laws, softening)
-    (compressed,) = [c for c in derived_coordinates(plan, models.get("interface")) if c.name == "static_sinking_base"]
+    (compressed,) = [
+        c for c in derived_coordinates(plan, models.get("interface")) if c.name == "static_compression_base"
+    ]
     assert compressed.dims == ("law", "mullins.softening")
     linear, hardening, _, softened, _ = compressed.values
     assert np.all(hardening < linear) and linear[0] < softened[0] < softened[1]

@@ -55,9 +55,9 @@ def note(log: Table, count: Table, lane: int, time: float, kind: float) -> None:
 def note_joints(log: Table, count: Table, was: Table, w: Table, lane: int, slot: int) -> None:
     """Write the uplifts and closings of the step just done; ``was`` (2, W) holds the heights before it."""
     for joint in range(2):
-        before, now = was[joint, slot], w[(LIFT_B + joint) * W + slot]
+        before, now = was[joint, slot], w[LIFT_B + joint, slot]
         if (before > 0.0) != (now > 0.0):
-            at = (w[CLOCK * W + slot] - now / (now - before)) * w[STEP * W + slot]
+            at = (w[CLOCK, slot] - now / (now - before)) * w[STEP, slot]
             kind = LOG_UPLIFT_B if now > 0.0 else LOG_CLOSING_B
             note(log, count, lane, at, float(kind + joint))
 
@@ -76,7 +76,9 @@ def advance(
     ``rubber``: the `Rubber` of `models.interface.lanes.fibres` if there are laws.
     """
     n = given.shape[0]
-    w = np.zeros((N_WORK if laws is None else N_WORK_LAWS) * W)
+    w = np.zeros((N_WORK if laws is None else N_WORK_LAWS, W))
+    # the fibres' rows are looked up by place
+    flat = w.reshape(w.size)
     was = np.zeros((2, W))
     at, bound, of = np.zeros(W, np.int64), np.zeros(W, np.int64), np.full(W, -1)
     sub, per, window = np.zeros(W, np.int64), np.ones(W, np.int64), np.zeros(W, np.int64)
@@ -104,7 +106,7 @@ def advance(
                 i = at[slot]
                 if sampled and i - first[lane] < trace.shape[1]:
                     for k in range(8):
-                        trace[lane, i - first[lane], k] = w[(T1 + k) * W + slot]
+                        trace[lane, i - first[lane], k] = w[T1 + k, slot]
                 if i == shaken and i > first[lane]:
                     consistent(w, slot, 0.0, 0.0, mixed, laws)
                 ended = i >= last[lane]
@@ -137,30 +139,30 @@ def advance(
         for _ in range(common):
             for slot in range(W):
                 sub[slot] += 1
-                w[RA * W + slot] += w[GROWTH_A * W + slot]
-                w[RV * W + slot] += w[GROWTH_V * W + slot]
+                w[RA, slot] += w[GROWTH_A, slot]
+                w[RV, slot] += w[GROWTH_V, slot]
             for slot in range(W):
                 if sub[slot] == per[slot]:
                     sub[slot] = 0
                     at[slot] += 1
             if logged:
                 for slot in range(W):
-                    was[0, slot], was[1, slot] = w[LIFT_B * W + slot], w[LIFT_T * W + slot]
+                    was[0, slot], was[1, slot] = w[LIFT_B, slot], w[LIFT_T, slot]
             if laws is not None:
-                fibres_all(w, rubber)
+                fibres_all(flat, rubber)
             flagged = step_all(w, mixed, laws)
             steps += active
             if flagged > 0:
                 for slot in range(W):
                     lane = of[slot]
-                    if w[FLAG * W + slot] == 0.0 or lane < 0:
+                    if w[FLAG, slot] == 0.0 or lane < 0:
                         continue
                     if logged:
                         note_joints(log, count, was, w, lane, slot)
-                    if not (abs(w[T1 * W + slot]) < HALF_TURN and abs(w[T2 * W + slot]) < HALF_TURN):
+                    if not (abs(w[T1, slot]) < HALF_TURN and abs(w[T2, slot]) < HALF_TURN):
                         if logged:
-                            over = LOG_OVER_1 if abs(w[T1 * W + slot]) >= HALF_TURN else LOG_OVER_2
-                            note(log, count, lane, w[CLOCK * W + slot] * w[STEP * W + slot], float(over))
+                            over = LOG_OVER_1 if abs(w[T1, slot]) >= HALF_TURN else LOG_OVER_2
+                            note(log, count, lane, w[CLOCK, slot] * w[STEP, slot], float(over))
                         finish(result, w, lane, slot, True, laws, rubber)
                         of[slot] = -1
                         empty(w, slot)

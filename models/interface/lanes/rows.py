@@ -1,4 +1,4 @@
-"""Names of the rows of the lane kernel's tables: ``work`` (row times W lanes), ``given``, ``result``."""
+"""Names of the rows of the lane kernel's tables: ``work`` (rows, W lanes), ``given``, ``result``."""
 
 from typing import Any
 

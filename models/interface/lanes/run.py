@@ -65,7 +65,7 @@ def given_table(wall: LayeredWall, scale: FloatArray, initial: Mapping[str, Floa
     constants: dict[int, Any] = {
         r.SCALE: scale, r.OFFSET: wall.offset, r.GRAVITY: wall.gravity, r.VSCALE: wall.vertical_factor * scale,
         r.M1: wall.mass_1, r.H1: wall.centre_1, r.I1: wall.inertia_1, r.M2: wall.mass_2, r.H2: wall.centre_2,
-        r.I2: wall.inertia_2, r.HEIGHT: wall.height_1 + wall.rise, r.B1: wall.base_half_width,
+        r.I2: wall.inertia_2, r.HEIGHT: wall.height_1 + wall.top_thickness_in_height, r.B1: wall.base_half_width,
         r.BT: wall.top_half_width, r.TOE_1: toe * wall.base_half_width, r.TOE_T: toe * wall.top_half_width,
         r.KB: wall.base_stiffness, r.KT: wall.top_stiffness, r.CB: wall.base_damping, r.CT: wall.top_damping,
         r.LATE_B: clip * late_b, r.LATE_T: clip * late_t, r.CLIP: clip, r.FREE_B: free_b, r.FREE_T: free_t,
@@ -165,7 +165,7 @@ def outputs(wall: LayeredWall, table: NDArray[np.float64]) -> dict[str, NDArray[
         **_both("residual_rotation", "12", end, larger),
         **_both("dissipated_energy", "bt", lost, lost.sum(axis=1)),
         **_both("peak_strain", "bt", strain, np.fmax(strain[:, 0], strain[:, 1])),
-        **_both("needed_friction", "bt", friction, np.fmax(friction[:, 0], friction[:, 1])),
+        **_both("friction_demand", "bt", friction, np.fmax(friction[:, 0], friction[:, 1])),
         "status": np.where(failed, STATUS.index("not_converged"), status).astype(np.int8),
     }
 

@@ -58,7 +58,6 @@ from models.interface.lanes.rows import (
     WORK_T,
     Z1,
     Z2,
-    W,
 )  # fmt: skip
 from models.interface.lanes.step import AM, BETA, GAMMA, step_one
 from models.lanes.compiler import called, inlined
@@ -71,13 +70,13 @@ NEVER = 1e300
 @called
 def set_step(w: Table, slot: int, h: float) -> None:
     """What the step rule makes of a lane's constants and its step of h seconds."""
-    w[STEP * W + slot] = h
-    w[r.HALF * W + slot], w[r.NEAR * W + slot], w[r.FAR * W + slot] = 0.5 * h * h, BETA * h * h, GAMMA * h
+    w[STEP, slot] = h
+    w[r.HALF, slot], w[r.NEAR, slot], w[r.FAR, slot] = 0.5 * h * h, BETA * h * h, GAMMA * h
     for body in range(2):
-        w[(r.N1 + body) * W + slot] = (1.0 - AM) * w[(M1 + (r.M2 - r.M1) * body) * W + slot]
+        w[r.N1 + body, slot] = (1.0 - AM) * w[M1 + (r.M2 - r.M1) * body, slot]
     for joint in range(2):
-        k, c = w[(KB + joint) * W + slot], w[(r.CB + joint) * W + slot]
-        w[(r.STIFF_B + joint) * W + slot] = h * (GAMMA * c + BETA * h * k)
+        k, c = w[KB + joint, slot], w[r.CB + joint, slot]
+        w[r.STIFF_B + joint, slot] = h * (GAMMA * c + BETA * h * k)
 
 
 @called
@@ -85,20 +84,20 @@ def consistent(w: Table, slot: int, a: float, v: float, mixed: Any, laws: Any) -
     """Give a lane the acceleration of its state under the record's values a and v, nothing else."""
     kept = np.empty(N_WORK)
     for row in range(N_WORK):
-        kept[row] = w[row * W + slot]
-    w[RA * W + slot], w[RV * W + slot] = a, v
+        kept[row] = w[row, slot]
+    w[RA, slot], w[RV, slot] = a, v
     for row in range(A1, A1 + 4):
-        w[row * W + slot] = 0.0
+        w[row, slot] = 0.0
     # a step of no length from no acceleration: (1 - am) M d = Q - n
     set_step(w, slot, 0.0)
     step_one(w, slot, mixed, laws)
     for row in range(A1, A1 + 4):
-        kept[row] = (1.0 - AM) * w[row * W + slot]
-    kept[r.POWER_B], kept[r.POWER_T] = w[r.POWER_B * W + slot], w[r.POWER_T * W + slot]
+        kept[row] = (1.0 - AM) * w[row, slot]
+    kept[r.POWER_B], kept[r.POWER_T] = w[r.POWER_B, slot], w[r.POWER_T, slot]
     for row in (LIFT_B, LIFT_T, r.EDGE_B, r.EDGE_T, ALONG_B, ALONG_T, ACROSS_B, ACROSS_T):
-        kept[row] = w[row * W + slot]
+        kept[row] = w[row, slot]
     for row in range(N_WORK):
-        w[row * W + slot] = kept[row]
+        w[row, slot] = kept[row]
 
 
 @called
@@ -108,25 +107,25 @@ def start(
 ) -> None:  # fmt: skip
     """Put a lane in a slot, in its initial state, at ``sample`` of the record."""
     for row in range(N_WORK):
-        w[row * W + slot] = 0.0
+        w[row, slot] = 0.0
     for k in range(N_CONSTANTS):
-        w[(SCALE + k) * W + slot] = given[lane, k]
+        w[SCALE + k, slot] = given[lane, k]
     for k in range(8):
-        w[(T1 + k) * W + slot] = given[lane, Q_STATE + k]
-    w[ONSET_B * W + slot], w[ONSET_T * W + slot] = NEVER, NEVER
-    w[SHARE_B * W + slot], w[SHARE_T * W + slot] = 2.0 * w[B1 * W + slot], 2.0 * w[BT * W + slot]
-    w[ALONG_B * W + slot], w[ALONG_T * W + slot] = 0.0, 0.0
-    w[ACROSS_B * W + slot], w[ACROSS_T * W + slot] = 1.0, 1.0
+        w[T1 + k, slot] = given[lane, Q_STATE + k]
+    w[ONSET_B, slot], w[ONSET_T, slot] = NEVER, NEVER
+    w[SHARE_B, slot], w[SHARE_T, slot] = 2.0 * w[B1, slot], 2.0 * w[BT, slot]
+    w[ALONG_B, slot], w[ALONG_T, slot] = 0.0, 0.0
+    w[ACROSS_B, slot], w[ACROSS_T, slot] = 1.0, 1.0
     n = given[lane, Q_STEPS]
     set_step(w, slot, time_step / n)
-    w[CLOCK * W + slot] = sample * n
+    w[CLOCK, slot] = sample * n
     if laws is not None:
-        fibres_at_start(w, rubber, lane, slot)
+        fibres_at_start(w.reshape(w.size), rubber, lane, slot)
     consistent(w, slot, record[0, sample], record[1, sample], mixed, laws)
-    w[PEAK_1 * W + slot], w[PEAK_2 * W + slot] = abs(w[T1 * W + slot]), abs(w[T2 * W + slot])
-    w[ONSET_B * W + slot] = sample * n if w[LIFT_B * W + slot] > 0.0 else NEVER
-    w[ONSET_T * W + slot] = sample * n if w[LIFT_T * W + slot] > 0.0 else NEVER
-    w[LOGGED * W + slot] = 1.0 if logged else 0.0
+    w[PEAK_1, slot], w[PEAK_2, slot] = abs(w[T1, slot]), abs(w[T2, slot])
+    w[ONSET_B, slot] = sample * n if w[LIFT_B, slot] > 0.0 else NEVER
+    w[ONSET_T, slot] = sample * n if w[LIFT_T, slot] > 0.0 else NEVER
+    w[LOGGED, slot] = 1.0 if logged else 0.0
     for k in range(result.shape[1]):
         result[lane, k] = 0.0
     result[lane, r.R_OVER_1], result[lane, r.R_OVER_2] = math.nan, math.nan
@@ -136,11 +135,11 @@ def start(
 def empty(w: Table, slot: int) -> None:
     """A slot without a lane: a light body at rest on soft layers, without gravity."""
     for row in range(N_WORK):
-        w[row * W + slot] = 0.0
+        w[row, slot] = 0.0
     for row in (r.M1, r.I1, r.M2, r.I2, r.B1, r.BT, r.KB, r.KT, r.FREE_B, r.FREE_T):
-        w[row * W + slot] = 1.0
-    w[Z1 * W + slot], w[Z2 * W + slot] = -1.0, -1.0
-    w[GRAVITY * W + slot] = 0.0
+        w[row, slot] = 1.0
+    w[Z1, slot], w[Z2, slot] = -1.0, -1.0
+    w[GRAVITY, slot] = 0.0
     set_step(w, slot, 0.0)
 
 
@@ -152,26 +151,26 @@ def ratio(along: float, across: float) -> float:
 @called
 def topple(result: Table, w: Table, lane: int, slot: int, time: float) -> None:
     """At the end of the run: a body whose centre is past its toe and moves outwards counts as overturned."""
-    t1, t2, v1, v2 = w[T1 * W + slot], w[T2 * W + slot], w[V1 * W + slot], w[V2 * W + slot]
-    m1, m2, h1, h2 = w[M1 * W + slot], w[M2 * W + slot], w[H1 * W + slot], w[H2 * W + slot]
-    toe_t, bt, b1 = w[r.TOE_T * W + slot], w[BT * W + slot], w[B1 * W + slot]
+    t1, t2, v1, v2 = w[T1, slot], w[T2, slot], w[V1, slot], w[V2, slot]
+    m1, m2, h1, h2 = w[M1, slot], w[M2, slot], w[H1, slot], w[H2, slot]
+    toe_t, bt, b1 = w[r.TOE_T, slot], w[BT, slot], w[B1, slot]
     turn = t2 - t1
-    if w[r.FREE_B * W + slot] > 0.0:
+    if w[r.FREE_B, slot] > 0.0:
         side = 1.0 if t1 >= 0.0 else -1.0
-        height = w[HEIGHT * W + slot] + w[Z2 * W + slot]
-        x1 = side * w[TOE_1 * W + slot] * (1.0 - math.cos(t1))
+        height = w[HEIGHT, slot] + w[Z2, slot]
+        x1 = side * w[TOE_1, slot] * (1.0 - math.cos(t1))
         xr = math.copysign(toe_t, turn) * (1.0 - math.cos(turn))
         xr_d = math.copysign(toe_t, turn) * math.sin(turn)
         first = x1 + h1 * math.sin(t1)
         second = x1 + xr * math.cos(t1) + height * math.sin(t1) + h2 * math.sin(t2)
-        x1_d = side * w[TOE_1 * W + slot] * math.sin(t1)
+        x1_d = side * w[TOE_1, slot] * math.sin(t1)
         rate_1 = (x1_d + h1 * math.cos(t1)) * v1
         rate_2 = (x1_d + (height - xr_d) * math.cos(t1) - xr * math.sin(t1)) * v1
-        rate_2 += (xr_d * math.cos(t1) + h2 * math.cos(t2)) * v2 + math.sin(t1) * w[(V1 + 3) * W + slot]
-        toe = b1 if w[TOE_1 * W + slot] > 0.0 else b1 * math.cos(t1)
+        rate_2 += (xr_d * math.cos(t1) + h2 * math.cos(t2)) * v2 + math.sin(t1) * w[V1 + 3, slot]
+        toe = b1 if w[TOE_1, slot] > 0.0 else b1 * math.cos(t1)
         if side * (m1 * first + m2 * second) > (m1 + m2) * toe and side * (m1 * rate_1 + m2 * rate_2) > 0.0:
             result[lane, r.R_OVER_1], result[lane, r.R_OVER_2] = time, time
-    if w[r.FREE_T * W + slot] > 0.0 and not result[lane, r.R_OVER_2] == result[lane, r.R_OVER_2]:
+    if w[r.FREE_T, slot] > 0.0 and not result[lane, r.R_OVER_2] == result[lane, r.R_OVER_2]:
         side = 1.0 if turn >= 0.0 else -1.0
         if side * h2 * math.sin(t2) > bt * math.cos(t2) and side * (v2 - v1) > 0.0:
             result[lane, r.R_OVER_2] = time
@@ -180,9 +179,9 @@ def topple(result: Table, w: Table, lane: int, slot: int, time: float) -> None:
 @called
 def finish(result: Table, w: Table, lane: int, slot: int, fell: bool, laws: Any, rubber: Any) -> None:
     """Close the account of a lane that ends now; ``fell``: a body has reached pi/2."""
-    h = w[STEP * W + slot]
-    time = h * w[CLOCK * W + slot]
-    t1, t2 = w[T1 * W + slot], w[T2 * W + slot]
+    h = w[STEP, slot]
+    time = h * w[CLOCK, slot]
+    t1, t2 = w[T1, slot], w[T2, slot]
     if t1 != t1 or t2 != t2:
         result[lane, r.R_FAILED] = 1.0
     elif fell:
@@ -191,29 +190,29 @@ def finish(result: Table, w: Table, lane: int, slot: int, fell: bool, laws: Any,
         result[lane, r.R_OVER_2] = time
     else:
         topple(result, w, lane, slot, time)
-    result[lane, r.R_PEAK_1], result[lane, r.R_PEAK_2] = w[PEAK_1 * W + slot], w[PEAK_2 * W + slot]
-    result[lane, r.R_UP_B], result[lane, r.R_UP_T] = h * w[UP_B * W + slot], h * w[UP_T * W + slot]
-    result[lane, r.R_ONSET_B], result[lane, r.R_ONSET_T] = h * w[ONSET_B * W + slot], h * w[ONSET_T * W + slot]
-    result[lane, r.R_SHARE_B] = 0.5 * w[SHARE_B * W + slot] / w[B1 * W + slot]
-    result[lane, r.R_SHARE_T] = 0.5 * w[SHARE_T * W + slot] / w[BT * W + slot]
-    result[lane, r.R_CLOSED_B], result[lane, r.R_CLOSED_T] = w[CLOSED_B * W + slot], w[CLOSED_T * W + slot]
-    result[lane, r.R_LOST_B] = -0.5 * h * w[WORK_B * W + slot]
-    result[lane, r.R_LOST_T] = -0.5 * h * w[WORK_T * W + slot]
-    result[lane, r.R_EDGE_B], result[lane, r.R_EDGE_T] = w[r.EDGE_B * W + slot], w[r.EDGE_T * W + slot]
-    result[lane, r.R_FRICTION_B] = ratio(w[ALONG_B * W + slot], w[ACROSS_B * W + slot])
-    result[lane, r.R_FRICTION_T] = ratio(w[ALONG_T * W + slot], w[ACROSS_T * W + slot])
+    result[lane, r.R_PEAK_1], result[lane, r.R_PEAK_2] = w[PEAK_1, slot], w[PEAK_2, slot]
+    result[lane, r.R_UP_B], result[lane, r.R_UP_T] = h * w[UP_B, slot], h * w[UP_T, slot]
+    result[lane, r.R_ONSET_B], result[lane, r.R_ONSET_T] = h * w[ONSET_B, slot], h * w[ONSET_T, slot]
+    result[lane, r.R_SHARE_B] = 0.5 * w[SHARE_B, slot] / w[B1, slot]
+    result[lane, r.R_SHARE_T] = 0.5 * w[SHARE_T, slot] / w[BT, slot]
+    result[lane, r.R_CLOSED_B], result[lane, r.R_CLOSED_T] = w[CLOSED_B, slot], w[CLOSED_T, slot]
+    result[lane, r.R_LOST_B] = -0.5 * h * w[WORK_B, slot]
+    result[lane, r.R_LOST_T] = -0.5 * h * w[WORK_T, slot]
+    result[lane, r.R_EDGE_B], result[lane, r.R_EDGE_T] = w[r.EDGE_B, slot], w[r.EDGE_T, slot]
+    result[lane, r.R_FRICTION_B] = ratio(w[ALONG_B, slot], w[ACROSS_B, slot])
+    result[lane, r.R_FRICTION_T] = ratio(w[ALONG_T, slot], w[ACROSS_T, slot])
     result[lane, r.R_END_1], result[lane, r.R_END_2] = t1, t2
-    result[lane, r.R_END_Z1], result[lane, r.R_END_Z2] = w[Z1 * W + slot], w[Z2 * W + slot]
+    result[lane, r.R_END_Z1], result[lane, r.R_END_Z2] = w[Z1, slot], w[Z2, slot]
     if laws is not None:
-        fibres_at_end(w, rubber, lane, slot)
+        fibres_at_end(w.reshape(w.size), rubber, lane, slot)
 
 
 @inlined
 def at_rest(w: Table, slot: int, calm: float) -> bool:
     """Whether the kinetic energy stayed under its share ``calm`` of the peak; begins the next window."""
-    w[KINETIC * W + slot] = max(w[KINETIC * W + slot], w[WINDOW * W + slot])
-    still = w[WINDOW * W + slot] <= calm * w[KINETIC * W + slot]
-    w[WINDOW * W + slot] = 0.0
+    w[KINETIC, slot] = max(w[KINETIC, slot], w[WINDOW, slot])
+    still = w[WINDOW, slot] <= calm * w[KINETIC, slot]
+    w[WINDOW, slot] = 0.0
     return bool(still)
 
 
@@ -224,4 +223,4 @@ def load(w: Table, slot: int, record: Table, sample: int, shaken: int, n: float)
         # beyond the record's last sample the base is at rest: it may jump there
         value = record[row, sample] if sample < shaken else 0.0
         growth = (record[row, sample + 1] - record[row, sample]) / n if sample < shaken else 0.0
-        w[(RA + row) * W + slot], w[(GROWTH_A + row) * W + slot] = value, growth
+        w[RA + row, slot], w[GROWTH_A + row, slot] = value, growth

@@ -21,7 +21,7 @@ Table = Any
 HALF_TURN = 0.5 * math.pi
 NEVER = 1e300
 ROUNDING = 1e-20
-"""Share of the weight times the static sinking below which kinetic energy is rounding."""
+"""Share of the weight times the static compression below which kinetic energy is rounding."""
 MOST_SWITCHES = 10_000
 """Switches within one sample of the record beyond which a lane is given up."""
 GOES_ON, FALLEN, LOST = range(3)
@@ -210,7 +210,9 @@ def advance(
         place[0], place[1], place[3] = STATES * base + top, levels, 0
         enter(system, table, built, place[0], levels, unit, powers, sums)
         i, window, how = first[lane], -1, GOES_ON
-        noise = ROUNDING * (given[lane, r.M1] + given[lane, r.M2]) * given[lane, r.GRAVITY] * given[lane, r.SUNK_B]
+        noise = (
+            ROUNDING * (given[lane, r.M1] + given[lane, r.M2]) * given[lane, r.GRAVITY] * given[lane, r.COMPRESSION_B]
+        )
         for joint in range(2):
             if (base, top)[joint] != FULL:
                 gathered[r.ONSET_B + joint] = i * time_step

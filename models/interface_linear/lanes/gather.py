@@ -43,9 +43,9 @@ def loss(given: Table, lane: int, joint: int, state: int, x: Table, reading: Tab
     b, c = given[lane, r.B_B + joint], given[lane, r.C_B + joint]
     share, side = share_and_side(state)
     turn, fast = (x[5] - x[4], reading[ACC + 1] - reading[ACC]) if joint == 1 else (x[4], reading[ACC])
-    sinks, sinks_fast = x[6 + joint], reading[ACC + 2 + joint]
-    power = c * form(b, share, side, turn, sinks, turn, sinks)
-    growth = 2.0 * c * form(b, share, side, turn, sinks, fast, sinks_fast)
+    z_rate, z_second = x[6 + joint], reading[ACC + 2 + joint]
+    power = c * form(b, share, side, turn, z_rate, turn, z_rate)
+    growth = 2.0 * c * form(b, share, side, turn, z_rate, fast, z_second)
     if state >= HELD_RIGHT:
         # the force mu d works with d q' = s b^3/3 r' while h' = 0; mu = -sigma_u times the watched value
         arm = (1.0 if state == HELD_RIGHT else -1.0) * b * b * b / 3.0 * given[lane, r.SIGMA_B + joint]
@@ -60,8 +60,8 @@ def summit(t0: float, v0: float, t1: float, v1: float, t: float) -> float:
     """Where its rate changes sign: the cubic through values and rates at both ends of a step; else the first value."""
     if not v0 * v1 < 0.0:
         return t0
-    r0, r1, rise = t * v0, t * v1, t1 - t0
-    second, third = 3.0 * rise - 2.0 * r0 - r1, r0 + r1 - 2.0 * rise
+    r0, r1, change = t * v0, t * v1, t1 - t0
+    second, third = 3.0 * change - 2.0 * r0 - r1, r0 + r1 - 2.0 * change
     root = math.copysign(math.sqrt(max(second * second - 3.0 * third * r0, 0.0)), r0)
     s = r0 / (root - second)
     return float(t0 + s * (r0 + s * (second + s * third)))

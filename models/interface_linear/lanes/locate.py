@@ -37,8 +37,8 @@ def may_cross(before: Table, after: Table, t: float) -> bool:
 @inlined
 def inner_maximum(g0: float, r0: float, g1: float, r1: float) -> float:
     """Maximum on (0, 1) of the cubic with values g and slopes r at both ends, r0 > 0 > r1."""
-    rise = g1 - g0
-    second, third = 3.0 * rise - 2.0 * r0 - r1, r0 + r1 - 2.0 * rise
+    change = g1 - g0
+    second, third = 3.0 * change - 2.0 * r0 - r1, r0 + r1 - 2.0 * change
     # zero of r0 + 2 second s + 3 third s^2 in the stable form, the one at which the slope falls
     s = r0 / (math.sqrt(second * second - 3.0 * third * r0) - second)
     return float(g0 + s * (r0 + s * (second + s * third)))

@@ -33,13 +33,14 @@ def given_table(wall: LayeredWall, scale: FloatArray, initial: Mapping[str, Floa
     """The constants and the state at the start of the lanes, a line a lane; `divide` fills in the steps."""
     table = np.zeros((wall.size, r.N_GIVEN))
     mass = equation.matrices(wall, (0, 0))[0]
-    sunk, sigma = equation.sizes(wall)
+    compression, sigma = equation.sizes(wall)
     constants: dict[int, Any] = {
         r.SCALE: scale, r.OFFSET: wall.offset, r.GRAVITY: wall.gravity, r.VSCALE: wall.vertical_factor * scale,
         r.M1: wall.mass_1, r.M2: wall.mass_2, r.H1: wall.centre_1, r.H2: wall.centre_2, r.LEVER: equation.lever(wall),
         r.I11: mass[:, 0, 0], r.I12: mass[:, 0, 1], r.I22: mass[:, 1, 1],
         r.B_B: wall.base_half_width, r.B_T: wall.top_half_width, r.K_B: wall.base_stiffness, r.K_T: wall.top_stiffness,
-        r.C_B: wall.base_damping, r.C_T: wall.top_damping, r.SUNK_B: sunk[:, 0], r.SUNK_T: sunk[:, 1],
+        r.C_B: wall.base_damping, r.C_T: wall.top_damping,
+        r.COMPRESSION_B: compression[:, 0], r.COMPRESSION_T: compression[:, 1],
         r.SIGMA_B: sigma[:, 0], r.SIGMA_T: sigma[:, 1],
         r.RUBBER_B: float(wall.joints != "top"), r.RUBBER_T: float(wall.joints != "base"),
     }  # fmt: skip

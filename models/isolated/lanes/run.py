@@ -99,9 +99,9 @@ def run(
             lanes = of_length[each == per]
             period = np.asarray(2.0 * np.pi / omega[each == per, 0] / shaking.time_step, np.int64)
             group = _Group(chain.take(lanes), levels, shaking, per, displaced[lanes], moving[lanes], samples)
-            told = group.run(scale[lanes], first[lanes], last[lanes], period, may_rest)
+            ended = group.run(scale[lanes], first[lanes], last[lanes], period, may_rest)
             steps += group.steps
-            for name, values in told.items():
+            for name, values in ended.items():
                 found.setdefault(name, np.zeros(n))[lanes] = values
             size = group.size
             trace[lanes, :, :levels] = group.trace[:, :, :levels]

@@ -7,9 +7,9 @@ of twelve walls of the study), so agreement is asked over a few seconds of motio
 import numpy as np
 import pytest
 
-from models.interface import reference
 from models.interface.lanes import run as lanes
 from models.interface.observe import observe
+from models.interface.reference import run as reference
 from models.shaking import Shaking
 from tests.models.interface.walls import MODEL, SHORT, block_on_strip, random_wall, stacked, undamped, wall
 from tests.models.strategies import random_motion
@@ -20,7 +20,7 @@ def burst(rng: np.random.Generator) -> Shaking:
     return random_motion(rng, duration=1.5)
 
 
-NAMED = ("peak_rotation_1", "peak_rotation_2", "uplift_duration_base", "onset_time", "needed_friction", "peak_strain")
+NAMED = ("peak_rotation_1", "peak_rotation_2", "uplift_duration_base", "onset_time", "friction_demand", "peak_strain")
 
 
 @pytest.mark.parametrize(
@@ -63,7 +63,7 @@ def test_events_and_peaks_are_told_alike_by_both_routes() -> None:
     np.testing.assert_allclose([e.time for e in fast.events], [e.time for e in slow.events], atol=2e-3)
     for history in (fast, slow):
         c = history.channels
-        edge = np.max(c["sinking_1"] + 0.36 * np.abs(np.sin(c["rotation_1"]))) / 0.01
+        edge = np.max(c["compression_base"] + 0.36 * np.abs(np.sin(c["rotation_1"]))) / 0.01
         assert edge * (1 - 1e-12) <= history.outputs["peak_strain_base"] < 1.01 * edge
         assert history.outputs["peak_strain_base"] > history.outputs["peak_strain_top"] > 0.10970
         assert history.outputs["peak_strain"] == history.outputs["peak_strain_base"]
@@ -78,14 +78,14 @@ def test_rubber_at_one_joint_only(joints: str) -> None:
     slow = reference.run(one.replace(vertical_factor=1.0), shaking, scale, duration=1.5, rtol=1e-7)
     fast = MODEL.simulate(values, shaking, scale=scale, options={"joints": joints})
     expected = {k: v[0] for k, v in observe(one, slow.state.T[None]).items()}
-    for name in ("rotation_1", "rotation_2", "sinking_1", "sinking_2"):
+    for name in ("rotation_1", "rotation_2", "compression_base", "compression_top"):
         np.testing.assert_allclose(
             fast.channels[name], expected[name], rtol=0, atol=4e-3 * np.max(np.abs(expected[name])) + 1e-15
         )
     bonded, other = ("top", "base") if joints == "base" else ("base", "top")
     assert fast.outputs[f"uplift_duration_{bonded}"] == 0.0
     assert fast.outputs[f"minimum_contact_{bonded}"] == 1.0
-    assert np.isnan(fast.outputs[f"needed_friction_{bonded}"])
+    assert np.isnan(fast.outputs[f"friction_demand_{bonded}"])
     assert np.isnan(fast.outputs[f"peak_strain_{bonded}"])
     assert fast.outputs[f"peak_strain_{other}"] == pytest.approx(slow.outputs[f"peak_strain_{other}"], rel=3e-3)
     assert fast.outputs[f"dissipated_energy_{other}"] > 0.0
@@ -113,8 +113,8 @@ def test_a_stiff_axial_mode_sets_no_bound_on_the_step() -> None:
 
 def test_energy_of_free_rocking_hardly_decays_without_dashpots() -> None:
     one = wall(undamped(block_on_strip(1e8)), joints="base")
-    told = lanes.run(one, Shaking.silence(2.0, 0.01), np.ones(1), initial={"rotation_1": 0.1}, refinement=4)
-    found = lanes.outputs(one, told.result)
+    outcome = lanes.run(one, Shaking.silence(2.0, 0.01), np.ones(1), initial={"rotation_1": 0.1}, refinement=4)
+    found = lanes.outputs(one, outcome.result)
     assert abs(found["dissipated_energy"][0]) < 2e-2 * 1000.0 * 9.81 * 0.02
 
 

@@ -57,7 +57,7 @@ def test_an_explicit_step_would_be_bound_by_the_axial_mode(modulus, ratio, milli
     one = wall({**SHORT, "layer_modulus": modulus, "damping_ratio": ratio})
     rate = 2 * (one.base_damping * one.base_half_width + one.top_damping * one.top_half_width) / one.mass_1
     assert 2.8e3 / rate[0] == pytest.approx(milliseconds, abs=0.01)
-    lever = one.height_1 + one.rise + modes.static_state(one)[:, 3]
+    lever = one.height_1 + one.top_thickness_in_height + modes.static_state(one)[:, 3]
     mass = modes.mass_matrix(one, lever)[0]
     damping = modes.layer_matrix(one, one.base_damping, one.top_damping)[0]
     fastest = np.max(np.linalg.eigvals(np.linalg.solve(mass, damping)).real)

@@ -27,9 +27,9 @@ def test_an_inset_shortens_the_base_strip_at_equal_stiffness_per_metre() -> None
     assert inset.base_half_width[0] == pytest.approx(0.8 * plain.base_half_width[0])
     assert inset.base_stiffness[0] == plain.base_stiffness[0]
     assert inset.top_half_width[0] == plain.top_half_width[0]
-    assert MODEL.derive({**SHORT, "pivot_inset.inset_over_half_width": 0.2})["static_sinking_base"][0] == pytest.approx(
-        MODEL.derive(SHORT)["static_sinking_base"][0] / 0.8
-    )
+    assert MODEL.derive({**SHORT, "pivot_inset.inset_over_half_width": 0.2})["static_compression_base"][
+        0
+    ] == pytest.approx(MODEL.derive(SHORT)["static_compression_base"][0] / 0.8)
 
 
 def test_all_of_the_vertical_motion_as_a_mechanism_is_the_vertical_motion() -> None:

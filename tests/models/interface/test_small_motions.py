@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from models.interface import modes
-from models.interface.equation import Equation
+from models.interface.reference.equation import Equation
 from models.rubber import LAWS
 from models.rubber.base import RubberLaw
 from tests.models.interface.walls import LONG, MODEL, SHORT, block_on_strip, random_wall, wall
@@ -38,7 +38,7 @@ def test_frequencies_of_the_illustrative_walls(values, expected, digit) -> None:
 )
 def test_frequencies_with_the_unstressed_height(values, expected) -> None:
     one = wall(values)
-    lever = one.height_1 + one.rise
+    lever = one.height_1 + one.top_thickness_in_height
     stiffness = modes.layer_matrix(one, one.base_stiffness, one.top_stiffness) - modes.gravity_matrix(one, lever)
     found = modes.modes(one, modes.mass_matrix(one, lever), stiffness).frequencies[0]
     assert np.all(np.abs(found - expected) < [6e-5, 6e-5, 6e-5, 6e-4])
@@ -66,7 +66,7 @@ def test_at_rest_nothing_is_left_over(kinematics: str) -> None:
 def test_the_linear_matrices_are_the_jacobians_of_the_full_equations(values, kinematics: str) -> None:
     one = wall(values, kinematics=kinematics)
     equation, rest, g = Equation(one), modes.static_state(one)[0], float(one.gravity[0])
-    lever = one.height_1 + one.rise + rest[3]
+    lever = one.height_1 + one.top_thickness_in_height + rest[3]
     stiffness = modes.layer_matrix(one, one.base_stiffness, one.top_stiffness) - modes.gravity_matrix(one, lever)
     damping = modes.layer_matrix(one, one.base_damping, one.top_damping)
 
@@ -109,11 +109,11 @@ def test_frequencies_are_those_of_the_jacobian_with_the_flow_held(name: str, joi
 
     def force(q: np.ndarray) -> np.ndarray:
         hidden = []
-        for joint, z, angle, sunk in (("base", q[2], q[0], -rest[2]), ("top", q[3], q[1] - q[0], -rest[3])):
+        for joint, z, angle, compressed in (("base", q[2], q[0], -rest[2]), ("top", q[3], q[1] - q[0], -rest[3])):
             if joint in equation.fibres:
                 fibres = equation.fibres[joint]
                 u = fibres.x[0] * np.sin(angle) - z
-                hidden += [held(sunk, u, law, p) for law, p in one.laws_at(joint) if law.hidden]
+                hidden += [held(compressed, u, law, p) for law, p in one.laws_at(joint) if law.hidden]
         strips = equation.strips(q, np.zeros(4), np.concatenate(hidden) if hidden else np.zeros(0))[:2]
         return equation.balance(q, np.zeros(4), 0.0, float(one.gravity[0]), strips)[1]
 
@@ -149,13 +149,13 @@ def test_uplift_rotation_is_where_a_base_turned_slowly_lifts(name: str) -> None:
         u, h = new, moved
     values = {**SHORT, **STRONG[name]}
     assert MODEL.derive(values)["uplift_rotation"][0] == pytest.approx(theta, rel=4e-3)
-    assert MODEL.derive(values)["static_sinking_base"][0] == -float(modes.static_state(one)[0, 2])
+    assert MODEL.derive(values)["static_compression_base"][0] == -float(modes.static_state(one)[0, 2])
 
 
 def test_what_a_bonded_joint_leaves_out() -> None:
     found = MODEL.derive(SHORT, {"joints": "top"})
     assert np.isnan(found["uplift_rotation"][0])
-    assert str(found["static_sinking_base"][0]) == "0.0"
+    assert str(found["static_compression_base"][0]) == "0.0"
 
 
 def test_full_contact_frequencies_of_one_block() -> None:
@@ -169,7 +169,7 @@ def test_full_contact_frequencies_of_one_block() -> None:
 def test_shapes_diagonalise_and_damping_ratios_are_modal() -> None:
     one = wall(SHORT)
     found = modes.at_rest(one)
-    lever = one.height_1 + one.rise + modes.static_state(one)[:, 3]
+    lever = one.height_1 + one.top_thickness_in_height + modes.static_state(one)[:, 3]
     mass = modes.mass_matrix(one, lever)[0]
     product = found.shapes[0].T @ mass @ found.shapes[0]
     scale = np.sqrt(np.outer(np.diag(product), np.diag(product)))

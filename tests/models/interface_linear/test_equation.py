@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from models.interface import modes
-from models.interface.equation import Equation
+from models.interface.reference.equation import Equation
 from models.interface.strip import strip
 from models.interface_linear import equation
 from tests.models.interface.walls import LONG, MODEL, SHORT, random_wall

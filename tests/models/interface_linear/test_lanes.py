@@ -6,9 +6,10 @@ from hypothesis import HealthCheck, given, settings
 
 from models.base import STATUS
 from models.interface.lanes import run as full_lanes
-from models.interface_linear import equation, reference
+from models.interface_linear import equation
 from models.interface_linear.lanes import run as lanes
 from models.interface_linear.observe import observe
+from models.interface_linear.reference import run as reference
 from models.shaking import Shaking
 from tests.models.interface.walls import LONG, SHORT, random_wall, undamped
 from tests.models.interface.walls import MODEL as FULL_MODEL
@@ -193,7 +194,7 @@ def test_rubber_at_one_joint_only(joints: str) -> None:
     bonded = "top" if joints == "base" else "base"
     assert fast.outputs[f"uplift_duration_{bonded}"] == 0.0
     assert fast.outputs[f"minimum_contact_{bonded}"] == 1.0
-    assert np.isnan(fast.outputs[f"needed_friction_{bonded}"])
+    assert np.isnan(fast.outputs[f"friction_demand_{bonded}"])
     if joints == "base":
         np.testing.assert_allclose(fast.channels["rotation_1"], fast.channels["rotation_2"], rtol=1e-12)
     else:
@@ -248,9 +249,9 @@ def test_a_lane_does_not_depend_on_the_others() -> None:
 def test_trajectories_begin_anywhere() -> None:
     shaking = random_motion(np.random.default_rng(2), duration=2.0, vertical=False)
     whole = MODEL.simulate(SHORT, shaking, scale=0.3)
-    names = {"rotation_1": "rotation_1", "rotation_2": "rotation_2", "displacement_z_1": "sinking_1"}
+    names = {"rotation_1": "rotation_1", "rotation_2": "rotation_2", "displacement_z_1": "compression_base"}
     initial = {state: np.array([whole.channels[channel][0]]) for state, channel in names.items()}
     initial["displacement_z_1"] *= -1.0
     first = np.zeros(1, np.int64)
-    told = MODEL.trajectories(SHORT, shaking.scaled(0.3), first=first, samples=50, initial=initial)
-    np.testing.assert_allclose(told["rotation_2"][0], whole.channels["rotation_2"][:50], rtol=0, atol=1e-13)
+    outcome = MODEL.trajectories(SHORT, shaking.scaled(0.3), first=first, samples=50, initial=initial)
+    np.testing.assert_allclose(outcome["rotation_2"][0], whole.channels["rotation_2"][:50], rtol=0, atol=1e-13)

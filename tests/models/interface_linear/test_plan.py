@@ -108,8 +108,8 @@ def test_plan_and_simulate_from_the_command_line(tmp_path: Path, monkeypatch: py
     assert planned.exit_code == 0 and "18" in planned.stdout
     for integrator in ("lanes", "reference"):
         words = ["simulate", "wall.toml", "--duration", "0.5", "--integrator", integrator, "--out", f"{integrator}.nc"]
-        told = runner.invoke(app, words)
-        assert told.exit_code == 0, told.output
+        found = runner.invoke(app, words)
+        assert found.exit_code == 0, found.output
     with xr.open_dataset("lanes.nc") as fast, xr.open_dataset("reference.nc") as slow:
         np.testing.assert_allclose(fast["rotation_1"], slow["rotation_1"], rtol=0, atol=1e-9)
         assert fast["contact_1"].values[0] == 0.5

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from models.errors import InputError
-from models.isolated import reference
 from models.isolated.declaration import MOST_LEVELS
 from models.isolated.lanes import run as lanes
+from models.isolated.reference import run as reference
 from models.shaking import Shaking
 from tests.models.isolated.buildings import BODY, HOUSE, LAWS, MODEL, NULLS, chain, random_building, two_tones
 from tests.models.strategies import random_motion

@@ -19,11 +19,11 @@ def drive(values: dict[str, float], turns: list[float], steps: int = 60) -> tupl
     """u, force and stored energy on a slow path from 0 through ``turns``; the amplitude changes at each turn."""
     one = chain(values)
     memory = bearing.relaxed(one, np.zeros(1))
-    told = [(0.0, 0.0, 0.0)]
+    outcome = [(0.0, 0.0, 0.0)]
     for start, end in pairwise([0.0, *turns]):
         memory = bearing.Memory(memory.hidden, np.array([abs(start)]), memory.crossings)
         turn, last = np.array([start]), start
-        told.append(
+        outcome.append(
             (start, float(bearing.spring_force(one, turn, memory)[0]), float(bearing.stored(one, turn, memory)[0]))
         )
         for u in np.linspace(start, end, steps + 1)[1:]:
@@ -40,9 +40,11 @@ def drive(values: dict[str, float], turns: list[float], steps: int = 60) -> tupl
             crossings = memory.crossings + (1.0 if u * last < 0.0 else 0.0)
             memory = bearing.Memory(hidden, memory.amplitude, crossings)
             at = np.array([u])
-            told.append((u, float(bearing.spring_force(one, at, memory)[0]), float(bearing.stored(one, at, memory)[0])))
+            outcome.append(
+                (u, float(bearing.spring_force(one, at, memory)[0]), float(bearing.stored(one, at, memory)[0]))
+            )
             last = u
-    return tuple(np.array(column) for column in zip(*told, strict=True))
+    return tuple(np.array(column) for column in zip(*outcome, strict=True))
 
 
 @pytest.mark.parametrize("name", LAWS)
@@ -91,21 +93,21 @@ def test_bouc_wen_loops_follow_their_closed_forms(n: int) -> None:
     values = {**BODY, **LAWS[f"bouc_wen_{n}"]}
     step = 0.001
     shaking = two_tones(step=step)
-    told = MODEL.simulate(values, shaking).channels
-    u, v = told["bearing_displacement"], told["bearing_velocity"]
+    outcome = MODEL.simulate(values, shaking).channels
+    u, v = outcome["bearing_displacement"], outcome["bearing_velocity"]
     turned = np.flatnonzero(v[1:-1] * v[2:] < 0.0) + 1
     assert turned.size >= 5
     zeta = closed_form_zeta(u, turned.tolist(), 0.01, n)
     k = BODY["bearing_stiffness"]
     force = 0.2 * k * u + 0.8 * k * zeta + BODY["bearing_damping"] * v
-    np.testing.assert_allclose(told["bearing_force"], force, rtol=0, atol=2e-5 * np.max(np.abs(force)))
+    np.testing.assert_allclose(outcome["bearing_force"], force, rtol=0, atol=2e-5 * np.max(np.abs(force)))
 
 
 def test_payne_stiffness_is_that_of_the_cycle() -> None:
     # free swings without a dashpot: at the turns the force is k(A) A of the swing that ends there
     values = {**BODY, **LAWS["payne"], "bearing_damping": 2e4}
-    told = MODEL.simulate(values, Shaking.silence(20.0, 0.002), initial={"bearing_displacement": 0.12}).channels
-    u, v, force = told["bearing_displacement"], told["bearing_velocity"], told["bearing_force"]
+    outcome = MODEL.simulate(values, Shaking.silence(20.0, 0.002), initial={"bearing_displacement": 0.12}).channels
+    u, v, force = outcome["bearing_displacement"], outcome["bearing_velocity"], outcome["bearing_force"]
     turns = np.flatnonzero((v[1:-1] * v[2:] <= 0.0) & (np.abs(u[1:-1]) > 1e-3)) + 1
     assert turns.size > 8
     amplitudes = np.abs(u[turns])
@@ -121,8 +123,8 @@ def test_payne_stiffness_is_that_of_the_cycle() -> None:
 def test_wear_counts_full_cycles() -> None:
     values = {**BODY, **LAWS["degradation"], "bearing_damping": 2e4}
     for start in (0.1, -0.1):
-        told = MODEL.simulate(values, Shaking.silence(20.0, 0.002), initial={"bearing_displacement": start}).channels
-        u, v, force = told["bearing_displacement"], told["bearing_velocity"], told["bearing_force"]
+        outcome = MODEL.simulate(values, Shaking.silence(20.0, 0.002), initial={"bearing_displacement": start}).channels
+        u, v, force = outcome["bearing_displacement"], outcome["bearing_velocity"], outcome["bearing_force"]
         crossings = np.concatenate([[0], np.cumsum(u[1:] * u[:-1] < 0.0)])
         assert crossings[-1] > 10
         expected = BODY["bearing_stiffness"] * (1 - 0.6 * (1 - np.exp(-(crossings // 2) / 3.0))) * u
@@ -135,6 +137,6 @@ def test_shaking_never_takes_energy_out_of_bearings() -> None:
     for name, law in LAWS.items():
         values = {**HOUSE, **law, "bearing_damping": 0.0, "storey_damping": 0.0}
         one = chain({**values, "bearing_stiffness": rng.uniform(1e6, 6e6, 16)})
-        told = lanes.run(one, two_tones(step=0.005), rng.uniform(0.2, 1.5, 16)).result
-        size = one.stiffness * told["peak_bearing_displacement"] ** 2
-        assert np.all(told["dissipated_energy"] > -2e-4 * size), name
+        outcome = lanes.run(one, two_tones(step=0.005), rng.uniform(0.2, 1.5, 16)).result
+        size = one.stiffness * outcome["peak_bearing_displacement"] ** 2
+        assert np.all(outcome["dissipated_energy"] > -2e-4 * size), name

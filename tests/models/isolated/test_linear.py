@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from models.isolated import reference
 from models.isolated.lanes import run as lanes
 from models.isolated.observe import observe
+from models.isolated.reference import run as reference
 from models.shaking import Shaking
 from tests.models.isolated.buildings import BODY, HOUSE, MODEL, chain, two_tones
 from tests.models.strategies import random_motion
@@ -34,13 +34,13 @@ def test_one_level_is_the_damped_oscillator(ratio: float) -> None:
     omega = np.sqrt(BODY["bearing_stiffness"] / BODY["total_mass"])
     damping = 2 * ratio * omega * BODY["total_mass"]
     expected = damped_oscillator(float(omega), ratio, shaking)
-    told = MODEL.simulate({**BODY, "bearing_damping": damping}, shaking)
+    outcome = MODEL.simulate({**BODY, "bearing_damping": damping}, shaking)
     for name, column in (("bearing_displacement", 0), ("bearing_velocity", 1)):
         size = np.max(np.abs(expected[:, column]))
-        np.testing.assert_allclose(told.channels[name], expected[:, column], rtol=0, atol=1e-12 * size)
+        np.testing.assert_allclose(outcome.channels[name], expected[:, column], rtol=0, atol=1e-12 * size)
     force = BODY["bearing_stiffness"] * expected[:, 0] + damping * expected[:, 1]
     np.testing.assert_allclose(
-        told.channels["level_acceleration_x"][0], -force / BODY["total_mass"], rtol=0, atol=1e-11 * omega**2
+        outcome.channels["level_acceleration_x"][0], -force / BODY["total_mass"], rtol=0, atol=1e-11 * omega**2
     )
 
 
@@ -60,11 +60,11 @@ def test_a_mode_swings_at_its_frequency(levels: int) -> None:
     values = {**HOUSE, "levels": float(levels), "bearing_damping": 0.0, "storey_damping": 0.0, "storey_stiffness": 3e9}
     period = 1.0 / float(MODEL.derive(values)["frequency_1"][0])
     # all levels start alike, which is nearly the first mode
-    told = MODEL.simulate(
+    outcome = MODEL.simulate(
         values, Shaking.silence(10 * period, period / 400), initial={"bearing_displacement": 0.1}
     ).channels["bearing_displacement"]
-    np.testing.assert_allclose(told[::400], 0.1, rtol=0, atol=2e-3)
-    np.testing.assert_allclose(told[200::400], -0.1, rtol=0, atol=2e-3)
+    np.testing.assert_allclose(outcome[::400], 0.1, rtol=0, atol=2e-3)
+    np.testing.assert_allclose(outcome[200::400], -0.1, rtol=0, atol=2e-3)
 
 
 def test_stiff_storeys_make_a_rigid_body_and_set_no_bound_on_the_step() -> None:
@@ -97,9 +97,9 @@ def test_unequal_masses() -> None:
 
 def test_without_dashpots_no_energy_is_lost() -> None:
     values = {**HOUSE, "bearing_damping": 0.0, "storey_damping": 0.0}
-    told = MODEL.simulate(values, two_tones(), tail=2.0)
+    outcome = MODEL.simulate(values, two_tones(), tail=2.0)
     free = MODEL.simulate(values, Shaking.silence(20.0, 0.01), initial={"bearing_displacement": 0.1})
     released = 0.5 * HOUSE["bearing_stiffness"] * 0.1**2
     assert abs(free.outputs["dissipated_energy"]) < 1e-10 * released
     # the work of the shaking is read from the ends of the steps, to their fourth order
-    assert abs(told.outputs["dissipated_energy"]) < 1e-5 * released
+    assert abs(outcome.outputs["dissipated_energy"]) < 1e-5 * released

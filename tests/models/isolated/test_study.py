@@ -68,10 +68,10 @@ def current_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_plan_becomes_a_cube_and_a_map() -> None:
     Path("plan.toml").write_text(PLAN)
-    told = rocking("plan", "plan.toml")
-    assert told.exit_code == 0 and "24" in told.stdout, told.output
-    told = rocking("run", "plan.toml", "--scheduler", "synchronous")
-    assert told.exit_code == 0, told.output
+    outcome = rocking("plan", "plan.toml")
+    assert outcome.exit_code == 0 and "24" in outcome.stdout, outcome.output
+    outcome = rocking("run", "plan.toml", "--scheduler", "synchronous")
+    assert outcome.exit_code == 0, outcome.output
     folder = Path("results/isolated_small")
     cube = open_study(folder)
     assert cube["status"].values.tolist() == np.full((2, 3, 2, 2), 2).tolist()
@@ -84,12 +84,12 @@ def test_a_plan_becomes_a_cube_and_a_map() -> None:
     linear = cube.isel({"mullins.softening": 0})
     ratio = linear["peak_bearing_displacement"].isel(pga=1) / linear["peak_bearing_displacement"].isel(pga=0)
     np.testing.assert_allclose(ratio, 4.0, rtol=1e-9)
-    told = rocking("check", folder, "--cells", 10)
-    assert told.exit_code == 0, told.output
-    told = rocking("map", folder)
-    assert told.exit_code == 2 and "neither rocks nor overturns" in told.output
-    told = rocking("map", folder, "--output", "peak_level_acceleration", "--x", "bearing_stiffness", "--y", "pga")
-    assert told.exit_code == 0 and (folder / "peak_level_acceleration_map.png").stat().st_size > 5000, told.output
+    outcome = rocking("check", folder, "--cells", 10)
+    assert outcome.exit_code == 0, outcome.output
+    outcome = rocking("map", folder)
+    assert outcome.exit_code == 2 and "neither rocks nor overturns" in outcome.output
+    outcome = rocking("map", folder, "--output", "peak_level_acceleration", "--x", "bearing_stiffness", "--y", "pga")
+    assert outcome.exit_code == 0 and (folder / "peak_level_acceleration_map.png").stat().st_size > 5000, outcome.output
     values = cube.rocking.output_map(
         "peak_level_acceleration", "bearing_stiffness", "pga", levels=6, **{"mullins.softening": 0.5}
     )
@@ -98,11 +98,11 @@ def test_a_plan_becomes_a_cube_and_a_map() -> None:
 
 def test_a_specimen_becomes_a_history_that_reads_as_a_recording() -> None:
     Path("building.toml").write_text(SPECIMEN)
-    told = rocking(
+    outcome = rocking(
         "simulate", "building.toml", "--motion", "ridgecrest_2019_clc", "--out", "h.nc", "--figure", "h.png",
         "--duration", 15,
     )  # fmt: skip
-    assert told.exit_code == 0 and Path("h.png").exists(), told.output
+    assert outcome.exit_code == 0 and Path("h.png").exists(), outcome.output
     with xr.open_dataset("h.nc") as history:
         assert json.loads(history.attrs["provenance"])["options"] == {"rubber_law": "bouc_wen"}
     recording = read_recording("h.nc")
@@ -120,19 +120,21 @@ def test_a_specimen_becomes_a_history_that_reads_as_a_recording() -> None:
 def test_a_pull_and_release() -> None:
     text = SPECIMEN + '[initial]\nbearing_displacement = "50 mm"\n'
     Path("building.toml").write_text(text)
-    told = rocking("simulate", "building.toml", "--duration", 5, "--out", "h.nc")
-    assert told.exit_code == 0, told.output
+    outcome = rocking("simulate", "building.toml", "--duration", 5, "--out", "h.nc")
+    assert outcome.exit_code == 0, outcome.output
     moved = read_recording("h.nc").channels["level_displacement_x"]
     np.testing.assert_array_equal(moved[:, 0], 0.05)
     Path("building.toml").write_text(text.replace("bearing_displacement", "rotation_1"))
-    told = rocking("simulate", "building.toml", "--duration", 5, "--out", "h.nc")
-    assert told.exit_code == 2 and "no state of model 'isolated'" in told.output
+    outcome = rocking("simulate", "building.toml", "--duration", 5, "--out", "h.nc")
+    assert outcome.exit_code == 2 and "no state of model 'isolated'" in outcome.output
 
 
 def test_a_law_that_acts_in_compression_only_is_refused() -> None:
     Path("plan.toml").write_text(PLAN.replace('"mullins.softening"', '"permanent_set.rate"'))
-    told = rocking("plan", "plan.toml")
-    assert told.exit_code == 2 and "'permanent_set' does not act on model 'isolated'" in " ".join(told.output.split())
+    outcome = rocking("plan", "plan.toml")
+    assert outcome.exit_code == 2 and "'permanent_set' does not act on model 'isolated'" in " ".join(
+        outcome.output.split()
+    )
 
 
 def test_a_law_axis() -> None:

@@ -5,9 +5,10 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from models.interface import modes, reference
-from models.interface.equation import Equation
+from models.interface import modes
 from models.interface.lanes import run as lanes
+from models.interface.reference import run as reference
+from models.interface.reference.equation import Equation
 from models.rubber import LAWS
 from models.shaking import Shaking
 from tests.models.interface.walls import SHORT, undamped, wall

@@ -5,9 +5,10 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from models.errors import InputError
-from models.interface import modes, reference
+from models.interface import modes
 from models.interface.fibres import Fibres
 from models.interface.lanes import run as lanes
+from models.interface.reference import run as reference
 from models.interface.strip import strip
 from models.rubber import LAWS
 from models.rubber.layer import Layer
@@ -62,8 +63,8 @@ def laden(name: str, rng: np.random.Generator, count: int) -> dict[str, np.ndarr
                MODEL.mechanisms[name].parameters}  # fmt: skip
     if name == "bouc_wen":
         numbers["exponent"] = rng.integers(1, 5, 4 * count).astype(float)
-    sunk = -modes.static_state(wall(values).with_law(name, numbers))[:, 2:] / 0.01
-    carried = np.max(sunk, axis=1) < numbers.get("strain_limit", 1.0)
+    compressed = -modes.static_state(wall(values).with_law(name, numbers))[:, 2:] / 0.01
+    carried = np.max(compressed, axis=1) < numbers.get("strain_limit", 1.0)
     kept = np.flatnonzero(carried)[:count]
     assert kept.size == count
     return {k: v[kept] for k, v in (values | {f"{name}.{k}": v for k, v in numbers.items()}).items()}

@@ -13,15 +13,15 @@ from scipy.integrate import solve_ivp
 
 from models.base import STATUS, FloatArray
 from models.ground import Piece, pieces
-from models.interface.account import Account
 from models.interface.declaration import CALM, STATES
 from models.interface.layered import LayeredWall
 from models.interface.modes import static_state
-from models.interface.reference import ReferenceResult
+from models.interface.reference.account import Account
+from models.interface.reference.run import ReferenceResult
 from models.interface_linear import equation
 from models.interface_linear.declaration import BRIEF
 from models.interface_linear.lanes.run import fastest_rate
-from models.interface_linear.plain import Equation, Joint
+from models.interface_linear.reference.plain import Equation, Joint
 from models.shaking import Shaking
 
 TOUCH = 1e-12
@@ -39,7 +39,7 @@ def run(
     rtol: float = 1e-10,
     brief: float = BRIEF,
 ) -> ReferenceResult:
-    """One wall under ``scale`` times the shaking; see `models.interface.reference.run`."""
+    """One wall under ``scale`` times the shaking; see `models.interface.reference.run.run`."""
     until = shaking.duration + tail if duration is None else duration
     grid = shaking.time_step * np.arange(round(until / shaking.time_step) + 1, dtype=np.float64)
     body = _Run(wall, grid, rtol, brief, may_rest=duration is None)
@@ -64,7 +64,7 @@ class _Run:
         self.time, self.calm_since, self.most = 0.0, math.nan, 0.0
         self.y, self.joints = np.zeros(10), (Joint(), Joint())
         fastest = math.sqrt(abs(float(equation.at_rest(wall).squares[0, 0])))
-        sizes = np.array([float(wall.slenderness[0]), float(wall.slenderness_2[0]), *self.equation.sunk])
+        sizes = np.array([float(wall.slenderness[0]), float(wall.slenderness_2[0]), *self.equation.compression])
         weight = float(wall.mass[0] * wall.gravity[0] * wall.base_half_width[0] * wall.slenderness[0])
         self.atol = rtol * np.concatenate([sizes, sizes * fastest, (weight, weight)])
         self.period = 2.0 * math.pi / fastest
@@ -98,8 +98,8 @@ class _Run:
         joints, solved = self.joints, self.equation
 
         def derivative(time: float, y: FloatArray) -> FloatArray:
-            q, v, felt = y[:4], y[4:8], piece.at(time)
-            second, mu = solved.motion(joints, q, v, felt)
+            q, v, ground = y[:4], y[4:8], piece.at(time)
+            second, mu = solved.motion(joints, q, v, ground)
             return np.concatenate([v, second, solved.power(joints, q, v, mu)])
 
         def watch(joint: int, which: int) -> Callable[[float, FloatArray], float]:
@@ -138,7 +138,7 @@ class _Run:
 
     def _switch(self, joint: int, second: bool, piece: Piece) -> None:
         """A joint changes its state, its watched value (the second one or the first) having become positive."""
-        state, felt = self.joints[joint], piece.at(self.time)
+        state, ground = self.joints[joint], piece.at(self.time)
         if state.held:
             self._settle(joint)
             self._set(joint, Joint(state.side) if second else Joint())
@@ -149,7 +149,9 @@ class _Run:
             q, v, opening = self.y[:4], self.y[4:8], []
             for trial in (Joint(), Joint(side)):
                 self._set(joint, trial)
-                opening.append(float(self.equation.gap(joint, side) @ self.equation.motion(self.joints, q, v, felt)[0]))
+                opening.append(
+                    float(self.equation.gap(joint, side) @ self.equation.motion(self.joints, q, v, ground)[0])
+                )
             rate = abs(float(self.equation.gap(joint, side) @ v))
             after = abs(opening[1] if state.side == 0 else opening[0])
             if opening[0] > 0.0 > opening[1] and 2.0 * rate <= self.brief * after:
@@ -157,7 +159,7 @@ class _Run:
                 self._settle(joint)
             else:
                 self._set(joint, Joint(side) if state.side == 0 else Joint())
-        self.account.sample(self.time, self.equation.read(self.joints, self.y[:4], self.y[4:8], felt))
+        self.account.sample(self.time, self.equation.read(self.joints, self.y[:4], self.y[4:8], ground))
 
     def _settle(self, joint: int) -> None:
         """Put the state on h = h' = 0 of a joint that is held, by an impulse of mu d."""

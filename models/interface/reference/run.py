@@ -11,11 +11,12 @@ from scipy.integrate import solve_ivp
 
 from models.base import Event, FloatArray
 from models.ground import Piece, pieces
-from models.interface import modes, watch
-from models.interface.account import Account
+from models.interface import modes
 from models.interface.declaration import CALM, STATES
-from models.interface.equation import Equation, power
 from models.interface.layered import LayeredWall
+from models.interface.reference import watch
+from models.interface.reference.account import Account
+from models.interface.reference.equation import Equation, power
 from models.shaking import Shaking
 
 

@@ -7,8 +7,8 @@ import operator
 from collections.abc import Sequence
 
 from models.base import FloatArray
-from models.interface.account import Pair, Reading
-from models.interface.equation import Equation
+from models.interface.reference.account import Pair, Reading
+from models.interface.reference.equation import Equation
 
 
 def read(
@@ -66,9 +66,9 @@ def friction(
 ) -> tuple[float, float]:
     """|H|/N along and across each joint's lower face; inf for N <= 0, 0 for a bonded joint."""
     wall, at = equation.wall, equation.kinematics(q, v)
-    felt = (a, gravity)
+    ground = (a, gravity)
     pull_1, pull_2 = (
-        [sum(map(operator.mul, row, second)) + b + f for row, b, f in zip(rows, bias, felt, strict=True)]
+        [sum(map(operator.mul, row, second)) + b + f for row, b, f in zip(rows, bias, ground, strict=True)]
         for rows, bias in ((at.jacobian_1, at.bias_1), (at.jacobian_2, at.bias_2))
     )
     total = [wall.mass_1 * p + wall.mass_2 * r for p, r in zip(pull_1, pull_2, strict=True)]

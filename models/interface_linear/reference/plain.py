@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from models.base import FloatArray
-from models.interface.account import Pair, Reading
 from models.interface.layered import FREE, LayeredWall
 from models.interface.modes import layer_matrix
+from models.interface.reference.account import Pair, Reading
 from models.interface_linear import equation
 
 
@@ -40,7 +40,7 @@ class Equation:
         self.lanes, self.wall = wall, wall.one()
         self.free = FREE[wall.joints]
         self.loads = equation.loads(wall)[0]
-        self.sunk, self.sigma = (size[0] for size in equation.sizes(wall))
+        self.compression, self.sigma = (size[0] for size in equation.sizes(wall))
         self.laid = [joint for joint, name in enumerate(("base", "top")) if wall.joints in ("both", name)]
         self.width = [float(equation.half_width(wall, joint)[0]) for joint in (0, 1)]
         self.damping = (self.wall.base_damping, self.wall.top_damping)
@@ -57,7 +57,7 @@ class Equation:
     def gap(self, joint: int, side: int) -> FloatArray:
         return np.asarray(equation.gap(self.lanes, joint, side)[0])
 
-    def motion(self, joints: Joints, q: FloatArray, v: FloatArray, felt: Pair) -> tuple[FloatArray, dict[int, float]]:
+    def motion(self, joints: Joints, q: FloatArray, v: FloatArray, ground: Pair) -> tuple[FloatArray, dict[int, float]]:
         """q'' (4,) under a, G, and mu of the joints that are held."""
         mass, damping, stiffness = self.matrices(joints)
         held = [joint for joint in self.laid if joints[joint].held]
@@ -68,22 +68,22 @@ class Equation:
         left[:count, :count] = free.T @ mass @ free
         left[:count, count:] = -free.T @ push.T
         left[count:, :count] = normal @ free
-        force = self.loads @ felt - damping @ v - stiffness @ q
+        force = self.loads @ ground - damping @ v - stiffness @ q
         found = np.linalg.solve(left, np.concatenate([free.T @ force, np.zeros(len(held))]))
         return free @ found[:count], dict(zip(held, found[count:].tolist(), strict=True))
 
-    def watched(self, joints: Joints, joint: int, q: FloatArray, v: FloatArray, felt: Pair) -> Pair:
+    def watched(self, joints: Joints, joint: int, q: FloatArray, v: FloatArray, ground: Pair) -> Pair:
         """The two values of a joint that are negative as long as it stays in its state."""
         state = joints[joint]
         turn = q[1] - q[0] if joint else q[0]
         rate = v[1] - v[0] if joint else v[0]
         if state.side == 0:
-            right, left = (float(self.gap(joint, side) @ q) / float(self.sunk[joint]) for side in (1, -1))
+            right, left = (float(self.gap(joint, side) @ q) / float(self.compression[joint]) for side in (1, -1))
             return right, left
         if not state.held:
-            rise = self.gap(joint, state.side) @ q
-            return -rise / self.sunk[joint], -state.side * self.width[joint] * turn / self.sunk[joint]
-        mu = self.motion(joints, q, v, felt)[1][joint]
+            gap = self.gap(joint, state.side) @ q
+            return -gap / self.compression[joint], -state.side * self.width[joint] * turn / self.compression[joint]
+        mu = self.motion(joints, q, v, ground)[1][joint]
         sigma = state.side * (self.stiffness[joint] * turn + self.damping[joint] * rate)
         return -mu / self.sigma[joint], (mu - sigma) / self.sigma[joint]
 
@@ -111,11 +111,11 @@ class Equation:
             self.layers[joint, side] = layer_matrix(self.lanes, *values, sides)[0]
         return self.layers[joint, side]
 
-    def read(self, joints: Joints, q: FloatArray, v: FloatArray, felt: Pair) -> Reading:
+    def read(self, joints: Joints, q: FloatArray, v: FloatArray, ground: Pair) -> Reading:
         """What the account of a run takes from a state."""
-        wall, (a, gravity) = self.wall, felt
-        second = self.motion(joints, q, v, felt)[0]
-        lever = wall.height_1 + wall.rise
+        wall, (a, gravity) = self.wall, ground
+        second = self.motion(joints, q, v, ground)[0]
+        lever = wall.height_1 + wall.top_thickness_in_height
         across = wall.mass_2 * (gravity + second[2] + second[3])
         along = wall.mass_2 * (a + lever * second[0] + wall.centre_2 * second[1])
         down = across + wall.mass_1 * (gravity + second[2])
@@ -142,7 +142,7 @@ class Equation:
     def toppled(self, q: FloatArray, v: FloatArray) -> tuple[bool, bool]:
         """Whether the mass centre over each joint is past its toe and moves outwards."""
         wall = self.wall
-        height = wall.height_1 + wall.rise
+        height = wall.height_1 + wall.top_thickness_in_height
         lever = np.array([wall.mass_1 * wall.centre_1 + wall.mass_2 * height, wall.mass_2 * wall.centre_2])
         side = math.copysign(1.0, q[0])
         toe = (wall.mass_1 + wall.mass_2) * wall.base_half_width

@@ -67,7 +67,7 @@ class Equation:
         h1, h2 = wall.centre_1, wall.centre_2
         s1, c1, s2, c2 = math.sin(t1), math.cos(t1), math.sin(t2), math.cos(t2)
         turn, turn_rate = t2 - t1, w2 - w1
-        height = wall.height_1 + wall.rise + z2
+        height = wall.height_1 + wall.top_thickness_in_height + z2
         b1 = math.copysign(wall.base_half_width, t1) if wall.toe_held else 0.0
         bt = math.copysign(wall.top_half_width, turn) if wall.toe_held else 0.0
         x1, x1_d, x1_dd = b1 * (1.0 - c1), b1 * s1, b1 * c1

@@ -128,7 +128,7 @@ class Account:
             **_both("residual_rotation", "12", left, max(left, key=abs)),
             **_both("dissipated_energy", "bt", lost, sum(lost)),
             **_both("peak_strain", "bt", strain, float(np.nanmax(strain))),
-            **_both("needed_friction", "bt", needed, float(np.nanmax(needed))),
+            **_both("friction_demand", "bt", needed, float(np.nanmax(needed))),
         }
         lifted = not all(math.isnan(t) for t in self.onset)
         word = "not_converged" if self.failed else "overturned" if any(over) else "rocking" if lifted else "rest"

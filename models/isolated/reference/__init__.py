@@ -1,0 +1,1 @@
+"""The slow plain route of an isolated building: scipy's DOP853 with dense events."""
