@@ -11,7 +11,14 @@ from diagnosis.fit.prediction import Predictor
 from diagnosis.fit.setup import base_fit, measure
 from diagnosis.fit.starts import start_of
 from diagnosis.fit.unknowns import fixed_values, of_specimen
-from diagnosis.fit.whitening import DISTURBANCE, DISTURBANCE_STEP, HAT, responses, sensor_noise_only, with_base_noise
+from diagnosis.fit.whitening import (
+    DISTURBANCE,
+    DISTURBANCE_STEP,
+    HALF_WIDTH,
+    responses,
+    sensor_noise_only,
+    with_base_noise,
+)
 from diagnosis.search.candidates import candidates
 from diagnosis.search.screen import at, score
 from tests.diagnosis.made import SPECIMEN, recording
@@ -92,7 +99,7 @@ def test_whitening_is_the_inverse_root_of_the_covariance(problem) -> None:
     n = measured.windows[w].samples
     recording_ = measured.recordings[0]
     floor = DISTURBANCE * np.max(np.abs(measured.shakings[0].horizontal))
-    variance = (measured.base_noise[0] ** 2 * recording_.time_step + floor**2 * DISTURBANCE_STEP) / HAT
+    variance = (measured.base_noise[0] ** 2 * recording_.time_step + floor**2 * DISTURBANCE_STEP) / HALF_WIDTH
     g = response.values[w, 0, :n]
     cover = measured.sigma[w, 0] ** 2 * np.eye(n) + variance * g @ g.T
     unit = np.zeros((n, *measured.values.shape))
