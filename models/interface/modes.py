@@ -105,9 +105,9 @@ class Modes:
             return np.sqrt(self.squares) / (2.0 * np.pi)
 
 
-def at_rest(wall: LayeredWall) -> Modes:
-    """Undamped modes in full contact, gravity included, with l as the wall stands at rest."""
-    rest = static_state(wall)
+def at_rest(wall: LayeredWall, rest: FloatArray | None = None) -> Modes:
+    """Undamped modes in full contact, gravity included, with l as at ``rest`` (the static state, if it is known)."""
+    rest = static_state(wall) if rest is None else rest
     lever = wall.height_1 + wall.top_thickness_in_height + rest[:, 3]
     stiffness = layer_matrix(wall, *tangents(wall, rest)) - gravity_matrix(wall, lever)
     return modes(wall, mass_matrix(wall, lever), stiffness)

@@ -43,8 +43,10 @@ class Layer:
 
     def softening(self, u: FloatArray, hidden: Hidden) -> FloatArray:
         """m."""
-        lost = self._of("softens", self.elastic(u, hidden), hidden)
-        return np.asarray(np.prod([np.ones_like(u), *(1.0 - share for share in lost)], axis=0))
+        kept = np.ones_like(u)
+        for lost in self._of("softens", self.elastic(u, hidden), hidden):
+            kept = kept * (1.0 - lost)
+        return kept
 
     def stress(self, u: FloatArray, hidden: Hidden) -> FloatArray:
         """s, without a dashpot."""

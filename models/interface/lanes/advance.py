@@ -149,7 +149,7 @@ def advance(
                 for slot in range(W):
                     was[0, slot], was[1, slot] = w[LIFT_B, slot], w[LIFT_T, slot]
             if laws is not None:
-                fibres_all(flat, rubber)
+                fibres_all(flat, rubber.base, rubber.top)
             flagged = step_all(w, mixed, laws)
             steps += active
             if flagged > 0:

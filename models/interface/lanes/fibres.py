@@ -139,27 +139,28 @@ base_fibres, top_fibres = (rubber.chosen([_joint(laws, joint) for laws in rubber
 
 
 @inlined
-def lengths(w: Table, i: int) -> None:
-    """From sums over [-1, 1] to integrals over both joints of one lane."""
-    for joint in range(2):
-        b = w[(r.B1 + joint) * W + i]
-        w[(r.FN_B + joint) * W + i] *= b
-        w[(r.FM_B + joint) * W + i] *= b * b
-        w[(r.F1_B + joint) * W + i] *= b
-        w[(r.F2_B + joint) * W + i] *= b * b
-        w[(r.F3_B + joint) * W + i] *= b * b * b
+def lengths(w: Table, joint: int, i: int) -> None:
+    """From sums over [-1, 1] to integrals over a joint of one lane."""
+    b = w[(r.B1 + joint) * W + i]
+    w[(r.FN_B + joint) * W + i] *= b
+    w[(r.FM_B + joint) * W + i] *= b * b
+    w[(r.F1_B + joint) * W + i] *= b
+    w[(r.F2_B + joint) * W + i] *= b * b
+    w[(r.F3_B + joint) * W + i] *= b * b * b
 
 
 @called
-def fibres_all(w: Table, laws: Rubber) -> None:
-    """The fibres of all lanes at the predictor of the coming step."""
+def fibres_all(w: Table, base: Any, top: Any) -> None:
+    """The fibres of all lanes at the predictor of the coming step, with the variants of a `Rubber`."""
     lanes = w.size // N_WORK_LAWS
     for i in range(lanes):
         predicted_strips(w, i)
-    base_fibres(w, laws.base)
-    top_fibres(w, laws.top)
+    base_fibres(w, base)
+    top_fibres(w, top)
     for i in range(lanes):
-        lengths(w, i)
+        # no loop over the joints: it would not become vector code
+        lengths(w, 0, i)
+        lengths(w, 1, i)
 
 
 @called
@@ -177,7 +178,7 @@ def fibres_at_start(w: Table, laws: Rubber, lane: int, slot: int) -> None:
                 w[LAST[joint] + ((row + 1) * COUNT + f) * W + slot] = laws.hidden[lane, joint, row, f]
     # in a table of its own, so that no history moves
     alone = w.copy()
-    fibres_all(alone, laws)
+    fibres_all(alone, laws.base, laws.top)
     for row in range(r.FN_B, r.FN_B + 10):
         w[row * W + slot] = alone[row * W + slot]
     w[r.STEP * W + slot] = kept

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from models.base import FloatArray
-from models.interface import modes
 from models.interface.fibres import COUNT, Fibres
 from models.interface.lanes.fibres import Rubber
 from models.interface.layered import LayeredWall
@@ -15,11 +14,10 @@ from models.rubber import lanes as rubber
 JOINTS = ("base", "top")
 
 
-def given_laws(wall: LayeredWall, step: FloatArray) -> Rubber | None:
-    """Relaxed layers of n walls for steps of ``step`` (n,) seconds; None without laws."""
+def given_laws(wall: LayeredWall, rest: FloatArray, step: FloatArray) -> Rubber | None:
+    """Layers of n walls, relaxed at ``rest`` (n, 4), for steps of ``step`` (n,) seconds; None without laws."""
     if not wall.laws:
         return None
-    rest = modes.static_state(wall)
     numbers = np.stack([rubber.number_table(wall.laws_at(joint), step) for joint in JOINTS], axis=1)
     hidden = np.zeros((wall.size, 2, rubber.N_HIDDEN, COUNT))
     for k, joint in enumerate(JOINTS):

@@ -35,9 +35,9 @@ class Lanes:
     steps: int
 
 
-def substeps(wall: LayeredWall, time_step: float) -> NDArray[np.int64]:
-    """Steps per sample of the record, lane by lane: never a matter of which lanes run together."""
-    omega = np.sqrt(np.maximum(modes.at_rest(wall).squares, 0.0))
+def substeps(wall: LayeredWall, squares: FloatArray, time_step: float) -> NDArray[np.int64]:
+    """Steps per sample of the record from omega^2 at rest, lane by lane: never a matter of which run together."""
+    omega = np.sqrt(np.maximum(squares, 0.0))
     needed = omega[:, 1] * time_step / LARGEST_PHASE[0]
     if wall.joints == "both":
         needed = np.maximum(needed, omega[:, 2] * time_step / LARGEST_PHASE[1])
@@ -54,8 +54,10 @@ def padded(shaking: Shaking, tail: float) -> FloatArray:
     return record
 
 
-def given_table(wall: LayeredWall, scale: FloatArray, initial: Mapping[str, FloatArray]) -> FloatArray:
-    """The constants, the state at the start and the first period of the lanes, a line a lane."""
+def given_table(
+    wall: LayeredWall, scale: FloatArray, initial: Mapping[str, FloatArray], rest: FloatArray
+) -> FloatArray:
+    """The constants and the state at the start of the lanes, a line a lane; ``rest`` (n, 4) is the static one."""
     table = np.zeros((wall.size, r.N_GIVEN))
     toe = 1.0 if wall.toe_held else 0.0
     clip = 1.0 if wall.clip else 0.0
@@ -72,10 +74,8 @@ def given_table(wall: LayeredWall, scale: FloatArray, initial: Mapping[str, Floa
     }  # fmt: skip
     for row, values in constants.items():
         table[:, row - r.SCALE] = values
-    rest = modes.static_state(wall)
     for k, name in enumerate(STATES):
         table[:, r.Q_STATE + k] = initial.get(name, rest[:, k] if k < 4 else 0.0)
-    table[:, r.Q_PERIOD] = 2.0 * np.pi / np.sqrt(np.abs(modes.at_rest(wall).squares[:, 0]))
     return table
 
 
@@ -102,9 +102,12 @@ def run(
     n = wall.size
     record = padded(shaking, tail)
     begun = {k: np.broadcast_to(np.asarray(v, float), (n,)) for k, v in (initial or {}).items()}
-    given = given_table(wall, scale, begun)
-    given[:, r.Q_STEPS] = substeps(wall, shaking.time_step) * refinement
-    laws = given_laws(wall, shaking.time_step / given[:, r.Q_STEPS])
+    rest = modes.static_state(wall)
+    squares = modes.at_rest(wall, rest).squares
+    given = given_table(wall, scale, begun, rest)
+    given[:, r.Q_PERIOD] = 2.0 * np.pi / np.sqrt(np.abs(squares[:, 0]))
+    given[:, r.Q_STEPS] = substeps(wall, squares, shaking.time_step) * refinement
+    laws = given_laws(wall, rest, shaking.time_step / given[:, r.Q_STEPS])
     result, trace = np.zeros((n, r.N_RESULT)), np.zeros((n, samples, 8))
     written, count = np.zeros((n, log, 2)), np.zeros(n, np.int64)
     steps = advance(
