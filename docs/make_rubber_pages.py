@@ -1,6 +1,7 @@
 """Figures and tables of the pages on the rubber study and the rubber laws, read from their cubes.
 
     rocking run studies/rubber_interface.toml
+    rocking run studies/rubber_locking.toml
     rocking run studies/rubber_laws.toml
     python docs/make_rubber_pages.py [RESULTS]
 
@@ -250,8 +251,77 @@ def rubber_laws(cube: xr.Dataset) -> None:
     )
 
 
+def overturned_share(cube: xr.Dataset, aspect: float) -> xr.DataArray:
+    """Share of the cells at one aspect ratio that overturn, over the layer modulus, in per cent."""
+    over = (cube["status"] == OVERTURNED).sel(aspect_ratio=aspect, method="nearest")
+    return 100 * over.mean([d for d in over.dims if d != "layer_modulus"])
+
+
+def plot_overturned_shares(cubes: dict[str, xr.Dataset]) -> Axes:
+    ax = plt.figure(figsize=(6.4, 4.0), layout="constrained").add_subplot()
+    for k, (name, cube) in enumerate(cubes.items()):
+        for aspect, style in ((0.4, "-"), (0.5, "--")):
+            share = overturned_share(cube, aspect)
+            label = f"{name} layers, aspect ratio {aspect}"
+            ax.plot(share["layer_modulus"] / 1e6, share, "os"[k] + style, color=COLOURS[k], label=label)
+    ax.set_xscale("log")
+    set_log_ticks(ax.xaxis)
+    ax.set_ylim(0.0)
+    ax.set_xlabel("unstressed layer modulus [MPa]")
+    ax.set_ylabel("cells that overturn [%]")
+    ax.legend(frameon=False)
+    ax.grid(alpha=0.3)
+    return ax
+
+
+def rubber_locking(linear: xr.Dataset, locking: xr.Dataset) -> None:
+    """The same study on linear and on locking layers."""
+    cubes = {"linear": linear, "locking": locking}
+    save_figure(partial(plot_overturned_shares, cubes), FIGURES / "rubber_locking.png")
+    fixed, aspect = read_plan(STUDIES / "rubber_locking.toml").fixed, {"aspect_ratio": 0.4}
+    moduli = linear["layer_modulus"].values
+    some = slice(None, None, 2)
+    wall = {**fixed, **aspect, **HEAVY, "layer_modulus": moduli}
+    lock = fixed["locking.lock_strain"]
+    rest = {}
+    for name in cubes:
+        own = {key: value for key, value in wall.items() if name == "locking" or "." not in key}
+        rest[name] = get("interface").derive(own)["static_compression_base"] / fixed["layer_thickness"]
+    tangent = moduli / (1.0 - rest["locking"] / lock) ** 2
+    rows: list[list[str]] = [
+        *([f"strain at rest, {name}", *(f"{v:.2f}" for v in rest[name][some])] for name in cubes),
+        ["tangent modulus at rest, locking [MPa]", *(f"{v / 1e6:.2f}" for v in tangent[some])],
+    ]
+    for name, cube in cubes.items():
+        onset = cube.rocking.onset_map(x="layer_modulus", y="aspect_ratio", **HEAVY)
+        lifts = onset.sel(aspect_ratio=0.4, method="nearest").values / GRAVITY
+        rows.append([f"PGA that lifts a joint, {name} [g]", *(f"{v:.2f}" for v in lifts[some])])
+    for ratio in (0.4, 0.5):
+        for name, cube in cubes.items():
+            shares = overturned_share(cube, ratio).values
+            rows.append([f"overturns, aspect ratio {ratio}, {name}", *(f"{v:.1f} %" for v in shares[some])])
+    both = xr.align(*(cube["peak_rotation"].where(cube["status"] == ROCKING) for cube in cubes.values()))
+    ratios = (both[1] / both[0]).transpose("layer_modulus", ...).values.reshape(moduli.size, -1)
+    low, middle, high = np.nanquantile(ratios, [0.1, 0.5, 0.9], axis=1)
+    spread = [f"{m:.2f} ({a:.2f} to {b:.2f})" for a, m, b in zip(low[some], middle[some], high[some], strict=True)]
+    rows.append(["peak rotation, locking over linear: median (10 to 90 %)", *spread])
+    edge = locking["peak_strain_base"].where(locking["status"] == ROCKING).transpose("layer_modulus", ...)
+    largest = np.nanmax(edge.values.reshape(moduli.size, -1), axis=1)
+    rows.append(["largest strain of the base's edge, locking", *(f"{v:.3f}" for v in largest[some])])
+    write("rubber_locking", table(["layer modulus, MPa", *(f"{e / 1e6:.3g}" for e in moduli[some])], rows))
+    counts = [
+        [name, int((c["status"] == OVERTURNED).sum()), int((c["status"] > OVERTURNED).sum())]
+        for name, c in cubes.items()
+    ]
+    write("rubber_locking_counts", table(["layers", "cells that overturn", "cells without an answer"], counts))
+
+
 def main(results: Path) -> None:
-    rubber_interface(open_study(results / "rubber_interface"))
+    interface = open_study(results / "rubber_interface")
+    rubber_interface(interface)
+    locking = open_study(results / "rubber_locking")
+    same = interface.sel(aspect_ratio=locking["aspect_ratio"], method="nearest")
+    rubber_locking(same.assign_coords(aspect_ratio=locking["aspect_ratio"]), locking)
     rubber_laws(open_study(results / "rubber_laws"))
 
 
