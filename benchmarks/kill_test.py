@@ -179,7 +179,7 @@ def _inspect(folder: Path, known: dict[str, str], finding: Finding) -> dict[str,
     digests = dict(known)
     for key in store.finished():
         try:
-            outputs = store.read(key)
+            _, outputs = store.read(key)
         except Exception as error:
             finding.damage.append(f"block {key}: {error}")
             continue

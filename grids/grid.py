@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
@@ -100,13 +100,9 @@ class Grid:
     def new_rectangles(self, done: Sequence[Rectangle], most_cells: int) -> list[Rectangle]:
         """The cells outside ``done``, each once, in rectangles of at most ``most_cells``.
 
-        ``done`` must be a whole grid: a partition of the product of some values of every axis of
-        this one. New cells are, for each axis, its new values with the old values of the axes
-        before it and all values of the axes after it. Raises InputError when ``done`` is none.
+        ``done``: any rectangles of this grid that share no cell. Raises InputError for others.
         """
-        if not done:
-            return self.rectangles(most_cells)
-        old = [np.zeros(size, dtype=bool) for size in self.shape]
+        covered: list[tuple[IndexArray, ...]] = []
         for rectangle in done:
             if tuple(rectangle.coordinates) != self.dims:
                 raise InputError(
@@ -114,24 +110,17 @@ class Grid:
                     f"{', '.join(self.dims)}; use another study name."
                 )
             try:
-                positions = self.positions(rectangle)
+                covered.append(self.positions(rectangle))
             except KeyError as error:
                 raise InputError(
                     f"the finished blocks hold the axis value {error.args[0]!r}, which the plan does not; "
                     "put it back or use another study name."
                 ) from None
-            for mask, index in zip(old, positions, strict=True):
-                mask[index] = True
-        if math.prod(int(mask.sum()) for mask in old) != sum(rectangle.size for rectangle in done):
-            raise InputError("the finished blocks are not the whole of a grid; start the study anew.")
-        every = [np.arange(size) for size in self.shape]
-        kept = [np.flatnonzero(mask) for mask in old]
-        added = [np.flatnonzero(~mask) for mask in old]
-        return [
-            rectangle
-            for d in range(len(self.axes))
-            for rectangle in self._split([*kept[:d], added[d], *every[d + 1 :]], most_cells)
-        ]
+        left = _outside(self.shape, covered)
+        cells = sum(math.prod(len(index) for index in product) for product in left)
+        if cells + sum(rectangle.size for rectangle in done) != self.size:
+            raise InputError("the finished blocks share cells; start the study anew.")
+        return [rectangle for product in left for rectangle in self._split(list(map(np.array, product)), most_cells)]
 
     @cached_property
     def _index(self) -> dict[str, dict[Any, int]]:
@@ -167,3 +156,33 @@ def _pieces(counts: list[int], most_cells: int, first: list[bool]) -> list[int]:
         pieces[d] = counts[d] if longest == 0 else -(-counts[d] // longest)
         rest *= -(-counts[d] // pieces[d])
     return pieces
+
+
+Product = tuple[tuple[int, ...], ...]
+"""Positions along each axis whose product is a set of cells."""
+
+
+def _outside(shape: tuple[int, ...], covered: Sequence[tuple[IndexArray, ...]]) -> list[Product]:
+    """The cells of ``shape`` in none of the products ``covered``, as few products as the order of axes gives.
+
+    Along the first axis positions are taken together after which the same cells of the other axes are left.
+    """
+    holders: list[dict[int, set[int]]] = [{} for _ in shape]
+    for number, product in enumerate(covered):
+        for along, index in zip(holders, product, strict=True):
+            for i in index.tolist():
+                along.setdefault(i, set()).add(number)
+
+    @cache
+    def left(axis: int, among: frozenset[int]) -> tuple[Product, ...]:
+        if axis == len(shape):
+            return () if among else ((),)
+        if not among:
+            return (tuple(tuple(range(size)) for size in shape[axis:]),)
+        positions: dict[tuple[Product, ...], list[int]] = {}
+        for i in range(shape[axis]):
+            rest = left(axis + 1, among.intersection(holders[axis].get(i, ())))
+            positions.setdefault(rest, []).append(i)
+        return tuple((tuple(own), *product) for rest, own in positions.items() for product in rest)
+
+    return list(left(0, frozenset(range(len(covered)))))

@@ -14,7 +14,9 @@ from study.evaluate import evaluate
 from study.keys import Setting, motions_by_name
 from study.manifest import Manifest
 from study.open import open_study
+from study.recovery import damaged_blocks
 from study.status import FAILED, NOT_RUN
+from study.store import BlockStore
 
 
 @dataclass(frozen=True)
@@ -75,6 +77,9 @@ def load_plan(folder: Path) -> Plan:
     manifest = Manifest.load(folder)
     if manifest is None:
         raise InputError(f"{folder} holds no study: give a folder under results/ that a run has written")
+    damaged = damaged_blocks(manifest, BlockStore(folder))
+    if damaged:
+        raise InputError(f"{folder} has damaged blocks: {len(damaged)}; run the plan again, they are computed anew")
     plan = parse_plan((folder / "study.toml").read_text("utf-8"), Path(manifest.plan_folder))
     differences = manifest.differences(plan)
     if differences:

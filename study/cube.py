@@ -23,8 +23,9 @@ from study.keys import Setting
 from study.labels import Coordinate, axis_coordinates, describe, motion_coordinates
 from study.manifest import Manifest
 from study.provenance import as_json, attribute, commit, machine, now, sha256, versions
+from study.seal import seal
 from study.status import FAILED, NOT_RUN
-from study.store import COMPRESSION, BlockStore, write_whole
+from study.store import COMPRESSION, BlockStore, DamagedBlock, write_whole
 
 CHUNK_CELLS = 1 << 17
 """Cells in a chunk of the file, whatever the blocks were."""
@@ -35,7 +36,7 @@ def write_cube(
 ) -> Path:
     """Write ``cube.nc`` from the finished blocks; cells of other blocks are flagged in ``status``.
 
-    Raises DamagedBlock when a block's file cannot be read.
+    The file is sealed as ``cube.nc``. Raises DamagedBlock when a block's file is not what was written.
     """
     path = store.folder / "cube.nc"
     attributes = _attributes(plan, setting, path, started, scheduler)
@@ -47,6 +48,7 @@ def write_cube(
             dataset.setncatts({name: attribute(value) for name, value in attributes.items()})
             outputs = _define(dataset, plan, setting)
             _fill(dataset, outputs, plan, setting, manifest, store)
+        seal(temporary, path.name)
 
     write_whole(path, write)
     return path
@@ -121,7 +123,9 @@ def _fill(
     finished, failed = store.finished(), store.failures().keys()
     for key, block in manifest.blocks.items():
         places = plan.grid.positions(block)
-        done = store.read(key) if key in finished else {}
+        axes, done = store.read(key) if key in finished else ({}, {})
+        if done and axes != dict(block.coordinates):
+            raise DamagedBlock(f"{store.folder}: block {key} holds other cells than manifest.json says: run again")
         for quantity in outputs:
             values = done.get(quantity.name)
             if values is None:

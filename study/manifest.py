@@ -16,10 +16,14 @@ from grids.grid import Rectangle
 from grids.plan import Plan
 from models.errors import InputError
 from study.keys import Setting, block_key
-from study.provenance import as_json
+from study.provenance import as_json, sha256
 from study.store import write_text
 
-FORMAT = 1
+FORMAT = 2
+
+
+class DamagedManifest(InputError):
+    """``manifest.json`` is not what a run wrote."""
 
 
 @dataclass(frozen=True)
@@ -34,9 +38,11 @@ class Manifest:
     plan_folder: str
 
     @classmethod
-    def start(cls, plan: Plan, most_cells: int, plan_folder: str) -> Manifest:
-        """The manifest of a study that has not run yet, in blocks of at most ``most_cells``."""
-        return cls(describe(plan), _keyed(plan, plan.grid.rectangles(most_cells)), plan_folder)
+    def start(
+        cls, plan: Plan, most_cells: int, plan_folder: str, finished: Mapping[str, Rectangle] | None = None
+    ) -> Manifest:
+        """The manifest of a study: ``finished`` blocks, the other cells in blocks of at most ``most_cells``."""
+        return cls({}, finished or {}, plan_folder).extended(plan, most_cells)
 
     def differences(self, plan: Plan) -> tuple[str, ...]:
         """What the plan changes beyond adding axis values; empty: the study can go on."""
@@ -59,33 +65,35 @@ class Manifest:
             "description": self.description,
             "blocks": {key: block.as_json() for key, block in self.blocks.items()},
         }
+        record["sha256"] = _checksum(record)
         write_text(folder / "manifest.json", as_json(record) + "\n")
 
     @classmethod
     def load(cls, folder: Path) -> Manifest | None:
-        """The manifest of a folder; None when no study was started there."""
+        """The manifest of a folder; None when it has none. Raises DamagedManifest."""
         path = folder / "manifest.json"
         if not path.exists():
             return None
         try:
             record = json.loads(path.read_text("utf-8"))
-            if record["format"] != FORMAT:
-                raise InputError(
-                    f"{path} has format {record['format']}, this version reads {FORMAT}: "
-                    "start the study under another name"
-                )
+            if record.pop("sha256") != _checksum(record) or record["format"] != FORMAT:
+                raise ValueError("its checksum or format is another")
             blocks = {key: Rectangle.from_json(block) for key, block in record["blocks"].items()}
             return cls(record["description"], blocks, record["plan_folder"])
-        except (KeyError, TypeError, AttributeError, json.JSONDecodeError) as error:
-            raise InputError(
-                f"{path} is not a manifest ({type(error).__name__}: {error}): "
-                "restore it, or start the study under another name"
+        except (KeyError, TypeError, AttributeError, RecursionError, ValueError) as error:
+            raise DamagedManifest(
+                f"{path} is damaged ({error}): run the plan again, it is made anew from the plan and the blocks"
             ) from None
 
 
 def _keyed(plan: Plan, blocks: Iterable[Rectangle]) -> dict[str, Rectangle]:
     setting = Setting.of(plan)
     return {block_key(plan, setting, block): block for block in blocks}
+
+
+def _checksum(record: Mapping[str, Any]) -> str:
+    """Of a manifest's content, by its keys in order."""
+    return sha256(as_json(record, sort_keys=True))
 
 
 def _through_json(description: Mapping[str, Any]) -> Any:

@@ -13,6 +13,10 @@ from grids.netcdf_lock import NETCDF_LOCK
 from models.base import STATUS
 from models.errors import InputError
 from study.labels import flags
+from study.seal import is_intact, is_sealed
+
+CUBE = "cube.nc"
+"""Name under which a run writes and seals the cube of a study."""
 
 
 def open_study(folder: str | Path, outputs: Collection[str] | None = None) -> xr.Dataset:
@@ -20,13 +24,15 @@ def open_study(folder: str | Path, outputs: Collection[str] | None = None) -> xr
     its outputs, or those named.
 
     Maps and slices hang on it: ``cube.rocking.overturning_map(x="aspect_ratio", y="top_mass")``.
-    Raises InputError when there is no cube yet.
+    Raises InputError when there is no cube yet, or when a byte of it has changed since it was written.
     """
     path = Path(folder)
     if path.is_dir() or not path.suffix:
-        path = path / "cube.nc"
+        path = path / CUBE
     if not path.exists():
         raise InputError(f"{path} does not exist: run the study first, or correct the folder")
+    if is_sealed(path) and not is_intact(path, CUBE):
+        raise InputError(f"{path} has changed since it was written: run the study again, it is made anew")
     try:
         with NETCDF_LOCK, xr.open_dataset(path, engine="netcdf4") as cube:
             return _of_today((cube if outputs is None else cube[list(outputs)]).load())

@@ -7,6 +7,7 @@ whole blocks; the next run computes the others and writes the cube.
 from __future__ import annotations
 
 import fcntl
+import os
 import time
 import traceback
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -23,6 +24,7 @@ from study.cube import write_cube
 from study.keys import Setting
 from study.manifest import Manifest
 from study.provenance import now
+from study.recovery import blocks_on_disk, damaged_blocks, sound_manifest
 from study.schedulers import check_scheduler, count_workers, open_executor
 from study.store import BlockStore, write_text
 from study.tally import tally, tally_line
@@ -59,7 +61,7 @@ class Progress:
 @dataclass(frozen=True)
 class Report:
     """What a run did. ``cube`` is the file; ``failed`` counts blocks whose cells are flagged; ``tally`` all cells
-    by what became of them."""
+    by what became of them; ``repaired`` says what in the folder was damaged and made anew."""
 
     folder: Path
     cube: Path
@@ -72,6 +74,7 @@ class Report:
     compute_seconds: float
     store_seconds: float
     tally: Mapping[str, int]
+    repaired: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         text = (
@@ -79,7 +82,7 @@ class Report:
             f"({self.computed} computed, {self.reused} reused) in {self.seconds:.1f} s"
         )
         text += f"; {self.failed} blocks failed, see {self.folder / 'failed'}" if self.failed else ""
-        return f"{text}\n{tally_line(self.tally)}"
+        return "\n".join([*self.repaired, text, tally_line(self.tally)])
 
 
 def run(
@@ -106,11 +109,15 @@ def run(
     setting = Setting.of(plan)
     with _alone(folder):
         started, clock = now(), time.perf_counter()
-        manifest = _manifest(plan, setting, folder, plan_folder, count_workers(scheduler, workers))
         store = BlockStore(folder)
         store.sweep()
+        repaired: list[str] = []
+        manifest = _manifest(plan, setting, store, plan_folder, count_workers(scheduler, workers), repaired)
         blocks = manifest.blocks
-        finished = store.finished()
+        damaged = damaged_blocks(manifest, store)
+        if damaged:
+            repaired.append(f"blocks not as they had been written, computed anew: {len(damaged)}")
+        finished = store.finished().difference(damaged)
         missing = {key: block for key, block in blocks.items() if key not in finished}
         tasks = (make_task(plan, setting, folder, key, block) for key, block in missing.items())
         counter = _Counter(blocks, missing, progress)
@@ -129,21 +136,21 @@ def run(
         compute_seconds=counter.compute_seconds,
         store_seconds=counter.store_seconds,
         tally=tally(cube),
+        repaired=tuple(repaired),
     )
 
 
-def _manifest(plan: Plan, setting: Setting, folder: Path, plan_folder: str, workers: int) -> Manifest:
+def _manifest(
+    plan: Plan, setting: Setting, store: BlockStore, plan_folder: str, workers: int, repaired: list[str]
+) -> Manifest:
     """The manifest that covers the plan, saved with the frozen plan before any block is computed."""
-    old = Manifest.load(folder)
-    if old is not None:
-        differences = old.differences(plan)
-        if differences:
-            raise InputError(
-                f"{folder} holds a study that this plan changes; give the plan a new name or undo: "
-                + "; ".join(differences)
-            )
-        if plan.grid.size == old.cells:
-            return old
+    folder = store.folder
+    old = sound_manifest(plan, setting, folder)
+    if old is not None and plan.grid.size == old.cells:
+        return old
+    kept = blocks_on_disk(plan, setting, store) if old is None else {}
+    if kept:
+        repaired.append(f"manifest.json was lost or damaged and is made anew; finished blocks kept: {len(kept)}")
     try:
         sample = time_sample(plan, setting)
     except InputError:
@@ -151,7 +158,7 @@ def _manifest(plan: Plan, setting: Setting, folder: Path, plan_folder: str, work
     except Exception:
         sample = None  # the blocks will say what fails
     most_cells = cells_per_block(plan, sample, workers)
-    new = Manifest.start(plan, most_cells, plan_folder) if old is None else old.extended(plan, most_cells)
+    new = Manifest.start(plan, most_cells, plan_folder, kept) if old is None else old.extended(plan, most_cells)
     write_text(folder / "study.toml", plan.text)
     new.save(folder)
     return new
@@ -229,7 +236,8 @@ def _outcome(future: Future[Outcome], task: Task, store: BlockStore) -> Outcome:
 def _alone(folder: Path) -> Iterator[None]:
     """Hold the study's lock; the system releases it when the process ends, however it ends."""
     folder.mkdir(parents=True, exist_ok=True)
-    with (folder / ".lock").open("w") as lock:
+    # a link in its place is refused: the file that it points to is none of ours
+    with os.fdopen(os.open(folder / ".lock", os.O_WRONLY | os.O_CREAT | os.O_NOFOLLOW, 0o644), "w") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:

@@ -8,19 +8,22 @@ from pathlib import Path
 
 from models.errors import InputError
 from study.manifest import Manifest
+from study.recovery import damaged_blocks
 from study.store import BlockStore
 from study.tally import tally, tally_line
 
 
 @dataclass(frozen=True)
 class State:
-    """``failures``: the reason by block key; ``tally``: cells of the cube by what became of them, None without one."""
+    """``damaged``: keys of blocks whose files have changed; ``failures``: the reason by block key; ``tally``:
+    cells of the cube by what became of them, None without one."""
 
     folder: Path
     cells: int
     cells_done: int
     blocks: int
     blocks_done: int
+    damaged: tuple[str, ...]
     failures: Mapping[str, str]
     tally: Mapping[str, int] | None
 
@@ -34,6 +37,8 @@ class State:
             if self.tally is None
             else f"cube.nc is written; {tally_line(self.tally)}",
         ]
+        if self.damaged:
+            lines.append(f"damaged blocks: {len(self.damaged)} ({', '.join(self.damaged[:3])}): run the plan again")
         lines += [f"  failed/{key}.txt: {text.strip().splitlines()[-1]}" for key, text in self.failures.items()]
         return "\n".join(lines)
 
@@ -45,13 +50,15 @@ def state(folder: str | Path) -> State:
     if manifest is None:
         raise InputError(f"{folder} holds no study: give a folder under results/ that a run has written")
     store = BlockStore(folder)
-    done = manifest.blocks.keys() & store.finished()
+    damaged = damaged_blocks(manifest, store)
+    done = (manifest.blocks.keys() & store.finished()).difference(damaged)
     return State(
         folder=folder,
         cells=manifest.cells,
         cells_done=sum(manifest.blocks[key].size for key in done),
         blocks=len(manifest.blocks),
         blocks_done=len(done),
+        damaged=tuple(damaged),
         failures=store.failures(),
         tally=tally(folder) if (folder / "cube.nc").exists() else None,
     )

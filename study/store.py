@@ -1,8 +1,9 @@
 """The block store: a block's file exists if and only if the block is finished.
 
 A file is written under a hidden random name, flushed to the disk, renamed onto its key, and the
-folder is flushed too; a kill at any moment leaves either no block or a whole one. The netCDF
-library is not safe between threads, so every open..close holds `NETCDF_LOCK`.
+folder is flushed too; a kill at any moment leaves either no block or a whole one. A file is sealed
+with its key (`study.seal`), so damage after that and files put under another key are found. The
+netCDF library is not safe between threads, so every open..close holds `NETCDF_LOCK`.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from numpy.typing import NDArray
 from grids.netcdf_lock import NETCDF_LOCK
 from models.errors import InputError
 from study.provenance import attribute
+from study.seal import is_intact, seal
 
 COMPRESSION: dict[str, Any] = {"compression": "zlib", "complevel": 1, "shuffle": True}
 
@@ -60,7 +62,7 @@ def _write_utf8(path: Path, text: str) -> None:
 
 
 class DamagedBlock(InputError):
-    """A block's file cannot be read (a failing disk, a half copied folder)."""
+    """A block's file is not what its task wrote (a failing disk, a half copied folder)."""
 
 
 @dataclass(frozen=True)
@@ -78,13 +80,17 @@ class BlockStore:
         return self.folder / "failed"
 
     def finished(self) -> set[str]:
-        """Keys of the finished blocks."""
+        """Keys of the blocks whose files are there, intact or not."""
         return {path.stem for path in self.blocks.glob("*.nc") if not path.name.startswith(".")}
+
+    def is_intact(self, key: str) -> bool:
+        """Whether a block's file holds what its task wrote."""
+        return is_intact(self._path(key), key)
 
     def failures(self) -> dict[str, str]:
         """Why blocks failed, by key; a block that a later attempt finished is none."""
         finished = self.finished()
-        reasons = {path.stem: path.read_text("utf-8") for path in sorted(self.failed.glob("*.txt"))}
+        reasons = {path.stem: path.read_text("utf-8", "replace") for path in sorted(self.failed.glob("*.txt"))}
         return {key: reason for key, reason in reasons.items() if key not in finished}
 
     def sweep(self) -> None:
@@ -105,28 +111,32 @@ class BlockStore:
         attributes: Mapping[str, Any],
     ) -> None:
         """Store a finished block; the dimensions of ``outputs`` are the names of ``coordinates``."""
-        write_whole(self.blocks / f"{key}.nc", lambda path: _write(path, coordinates, outputs, attributes))
+
+        def fill(temporary: Path) -> None:
+            _write(temporary, coordinates, outputs, attributes)
+            seal(temporary, key)
+
+        write_whole(self._path(key), fill)
         (self.failed / f"{key}.txt").unlink(missing_ok=True)
 
-    def read(self, key: str) -> dict[str, NDArray[Any]]:
-        """Outputs of a finished block by name, shaped as its axes."""
+    def read(self, key: str) -> tuple[dict[str, tuple[Any, ...]], dict[str, NDArray[Any]]]:
+        """Values along the axes of a finished block, and its outputs, shaped as its axes, by name.
+
+        Raises DamagedBlock when the file is not what was written.
+        """
         import netCDF4
 
-        path = self.blocks / f"{key}.nc"
-        try:
-            with NETCDF_LOCK, netCDF4.Dataset(path) as dataset:
-                dataset.set_auto_mask(False)
-                outputs = [name for name in dataset.variables if name not in dataset.dimensions]
-                return {name: dataset[name][...] for name in outputs}
-        except (OSError, RuntimeError) as error:
-            raise DamagedBlock(f"{path} cannot be read ({error}): delete it and run again") from None
+        path = self._path(key)
+        if not self.is_intact(key):
+            raise DamagedBlock(f"{path} is not what was written: run again, it is computed anew")
+        with NETCDF_LOCK, netCDF4.Dataset(path) as dataset:
+            dataset.set_auto_mask(False)
+            found = {name: dataset[name][...] for name in dataset.variables}
+            axes = {name: tuple(found.pop(name).tolist()) for name in dataset.dimensions}
+        return axes, found
 
-    def seconds(self, key: str) -> float:
-        """Computing time of a finished block, in s."""
-        import netCDF4
-
-        with NETCDF_LOCK, netCDF4.Dataset(self.blocks / f"{key}.nc") as dataset:
-            return float(dataset.seconds)
+    def _path(self, key: str) -> Path:
+        return self.blocks / f"{key}.nc"
 
     def fail(self, key: str, reason: str) -> None:
         """Record why a block failed; the next run tries it again."""

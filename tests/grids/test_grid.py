@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import random
 
 import numpy as np
 import pytest
@@ -77,6 +78,19 @@ def test_a_study_extended_again_and_again(steps: list[list[int]]) -> None:
         assert np.all(cover(grid, done) == 1)
 
 
+@given(SHAPES, st.integers(1, 40), st.integers(1, 500), st.randoms(use_true_random=False))
+def test_any_blocks_that_are_left_are_completed(shape: list[int], most: int, again: int, random: random.Random) -> None:
+    grid = make_grid(shape)
+    done = [r for r in grid.rectangles(most) if random.random() < 0.5]
+    assert np.all(cover(grid, [*done, *grid.new_rectangles(done, again)]) == 1)
+
+
+def test_an_extension_takes_cells_together() -> None:
+    """A finished grid cut in many blocks leaves one rectangle for each axis that grew, not one a block."""
+    old = make_grid([4, 5, 6]).rectangles(7)
+    assert len(make_grid([6, 5, 9]).new_rectangles(old, 1000)) == 2
+
+
 def test_coordinates_follow_numpy_order() -> None:
     grid = make_grid([3, 4])
     found = grid.coordinates([0, 5, 11])
@@ -117,7 +131,7 @@ def test_no_axes_is_one_cell() -> None:
     [
         ([Rectangle({"a0": (5.0,), "a1": (0.0,)})], "5.0"),
         ([Rectangle({"a0": (0.0,)})], "vary a0"),
-        ([Rectangle({"a0": (0.0,), "a1": (0.0,)}), Rectangle({"a0": (0.1,), "a1": (0.1,)})], "whole"),
+        ([Rectangle({"a0": (0.0, 0.1), "a1": (0.0,)}), Rectangle({"a0": (0.1,), "a1": (0.0, 0.1)})], "share cells"),
     ],
 )
 def test_blocks_of_another_grid_are_refused(done: list[Rectangle], words: str) -> None:

@@ -16,6 +16,7 @@ from models.errors import InputError
 from study.check import check
 from study.open import open_study
 from study.run import Progress, run
+from study.seal import seal
 from study.state import state
 from study.status import FAILED, REST
 from tests.study.cubes import assert_identical
@@ -225,6 +226,7 @@ def test_the_check_finds_one_wrong_bit(tmp_path: Path, block_size: Size) -> None
     with netCDF4.Dataset(report.folder / "cube.nc", "a") as dataset:
         old = float(dataset["peak_rotation"][6, 2, 7])
         dataset["peak_rotation"][6, 2, 7] = np.nextafter(old, 10.0)
+    seal(report.folder / "cube.nc", "cube.nc")
     found = check(report.folder, cells=168)
     assert len(found.differing) == 1 and "peak_rotation" in found.differing[0]
 
