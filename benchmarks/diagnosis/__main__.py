@@ -11,9 +11,9 @@ from benchmarks.diagnosis.suite import EVALUATION_SEED
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.diagnosis", description=__doc__)
     parser.add_argument(
-        "what", nargs="?", choices=("own", "concealed", "methods", "same"), default="own",
-        help="cases of our own (default), the block's of a folder, what other methods say of our own, or whether two "
-        "runs over our own answer the same",
+        "what", nargs="?", choices=("diagnosis", "laboratory", "concealed", "methods", "same"), default="diagnosis",
+        help="cases of our own with white noise (default) or with a laboratory's errors, the block's of a folder, what "
+        "other methods say of our own, or whether two runs over our own answer the same",
     )  # fmt: skip
     parser.add_argument("--out", type=Path, default=Path("results/bench"), help="folder of the results")
     parser.add_argument("--jobs", type=int, default=2, help="processes")
@@ -44,7 +44,7 @@ def main() -> None:
     else:
         from benchmarks.diagnosis.bench import bench
 
-        bench(given.out, seed=given.seed, cases=given.cases, **common)
+        bench(given.what, given.out, seed=given.seed, cases=given.cases, **common)
 
 
 def say(text: str) -> None:

@@ -2,9 +2,10 @@
 
 A case is a folder in the format of the concealed recordings (specimen.toml, train_1.nc, train_2.nc,
 test_1.nc) and, elsewhere, its key. The truth of a catalogue effect comes from the model's plain reference
-(`models.housner.reference.run`, DOP853); that of a law outside the catalogue from
-`truth`, a program of its own. Sizes follow `size`. A motion is scaled so that the block without the effect
-reaches .1-.5 alpha and impacts more than 8 times without overturning; with the effect it must still rock.
+(`models.housner.reference.run`, DOP853); that of a law outside the catalogue, and every one with a laboratory's
+`imperfections`, from `truth`, a program of its own. Sizes follow `size`. A motion is scaled so that the block
+without the effect reaches .1-.5 alpha and impacts more than 8 times without overturning; with the effect it
+must still rock.
 """
 
 from __future__ import annotations
@@ -16,11 +17,11 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.diagnosis import shakings, size, specimens, truth
+from benchmarks.diagnosis import imperfections, shakings, size, specimens, truth
 from benchmarks.diagnosis.effects import CATALOGUE, Hidden
 from benchmarks.diagnosis.open_laws import LAWS, Law
 from benchmarks.diagnosis.scene import FEWEST_IMPACTS, Effects, FloatArray, Scene, Track, Unsuitable
-from benchmarks.diagnosis.suite import Wish
+from benchmarks.diagnosis.suite import CaseDesign
 from benchmarks.diagnosis.unseen_laws import UNSEEN
 from models.housner.lanes import run as lanes
 from models.housner.model import MODEL
@@ -60,15 +61,15 @@ class Case:
     key: Mapping[str, Any]
 
 
-def make(wish: Wish, seed: int) -> Case:
-    """The case, the same for the same wish and seed. Raises RuntimeError when no draw was suitable."""
-    rng = np.random.default_rng([seed, wish.number])
+def make(design: CaseDesign, seed: int) -> Case:
+    """The case, the same for the same design and seed. Raises RuntimeError when no draw was suitable."""
+    rng = np.random.default_rng([seed, design.number])
     for _ in range(ATTEMPTS):
         try:
-            return _Draft(wish, rng).case(seed)
+            return _Draft(design, rng).case(seed)
         except Unsuitable:
             continue
-    raise RuntimeError(f"{wish.label} ({wish.kind} {wish.names}): no suitable draw in {ATTEMPTS}")
+    raise RuntimeError(f"{design.label} ({design.kind} {design.names}): no suitable draw in {ATTEMPTS}")
 
 
 def _alone(row: Hidden, value: float, shapes: Mapping[str, float]) -> Effects:
@@ -82,17 +83,21 @@ def _alone(row: Hidden, value: float, shapes: Mapping[str, float]) -> Effects:
 class _Draft:
     """One attempt at a case."""
 
-    def __init__(self, wish: Wish, rng: np.random.Generator) -> None:
-        self.wish, self.rng = wish, rng
+    def __init__(self, design: CaseDesign, rng: np.random.Generator) -> None:
+        self.design, self.rng = design, rng
         self.block = specimens.draw(rng)
         self.sampling_hz = float(rng.choice(list(LOW_PASS)))
-        left_out = "vertical_acceleration" in wish.names
-        acts = wish.kind != "open" and not left_out and rng.uniform() < VERTICAL_SHARE
+        left_out = "vertical_acceleration" in design.names
+        plain = design.kind != "open" and not design.imperfection and not left_out
+        acts = plain and rng.uniform() < VERTICAL_SHARE
         self.vertical_channel, self.vertical_acts = left_out or acts, acts
         tracks = [self._track() for _ in RECORDINGS]
-        if "saturation" in wish.names:  # its level refers to the first training recording, the largest one
+        if "saturation" in design.names:  # its level refers to the first training recording, the largest one
             tracks[:2] = sorted(tracks[:2], key=lambda track: -track.plain_peak)
-        self.scene = Scene(self.block, tuple(tracks), acts, self.sampling_hz, wish.noise)
+        errors = None
+        if design.imperfection:
+            errors = imperfections.draw(design.imperfection, design.names, self.sampling_hz, rng)
+        self.scene = Scene(self.block, tuple(tracks), acts, self.sampling_hz, design.noise, errors)
 
     def _track(self) -> Track:
         """A motion at a scale, drawn among those at which the block without effects rocks well."""
@@ -114,16 +119,22 @@ class _Draft:
     def case(self, seed: int) -> Case:
         peak = self.scene.tracks[0].plain_peak
         effects, described, weak = self._effects(peak)
-        motions = [self.scene.truth(k, effects, exact=True) for k in range(len(RECORDINGS))]
+        errors = self.scene.imperfections
+        scatters = errors is not None and errors.scatter > 0.0
+        kicks = [errors.kicks(truth.MOST_IMPACTS, self.rng) if errors else None for _ in RECORDINGS]
+        motions = [self.scene.truth(k, effects, exact=True, kicks=kicks[k]) for k in range(len(RECORDINGS))]
         channels: dict[str, Mapping[str, FloatArray]] = {}
         notes: dict[str, dict[str, Any]] = {}
         scale = self._sensor_peak(effects, peak, motions)
         for k, name in enumerate(RECORDINGS):
-            rotation, rate, impacts = motions[k]
+            rotation, _, impacts = motions[k]
             if not self.scene.rocks(rotation, impacts):
                 raise Unsuitable
             largest = float(np.max(np.abs(rotation))) / self.scene.alpha
-            strength = self.scene.strength(k, effects, rotation[:: shakings.FINE], rate[:: shakings.FINE], scale)
+            repeatable = self.scene.truth(k, effects, exact=True) if scatters else motions[k]
+            strength = self.scene.strength(
+                k, effects, repeatable[0][:: shakings.FINE], repeatable[1][:: shakings.FINE], scale
+            )
             channels[name], noise = self.scene.recorded(k, effects, rotation, scale, self.rng)
             track = self.scene.tracks[k]
             notes[name] = {
@@ -133,19 +144,21 @@ class _Draft:
             if effects.active:
                 notes[name]["active_interval"] = effects.active[k]
         exact = max(notes[name]["strength"] for name in RECORDINGS[:2])
-        if described and len(described) == 1 and not weak and self.wish.relative_size == 1.0:
+        if described and len(described) == 1 and not weak and self.design.relative_size == 1.0:
             if not abs(exact / size.NOMINAL - 1.0) < EXACT_WITHIN:
                 raise Unsuitable
         key = {
-            "kind": self.wish.kind, "model": "housner", "seed": seed, "number": self.wish.number,
-            "noise_fraction_of_peak": self.wish.noise, "relative_size": self.wish.relative_size,
+            "kind": self.design.kind, "model": "housner", "seed": seed, "number": self.design.number,
+            "noise_fraction_of_peak": self.design.noise, "relative_size": self.design.relative_size,
             "sampling_hz": self.sampling_hz, "weak": weak, "effects": described, "over_peak": scale,
             "true_parameters": dict(self.block.true), "recordings": notes,
         }  # fmt: skip
+        if errors is not None:
+            key |= {"imperfections": errors.described(), "named_rightly": errors.named_rightly}
         return Case(self._specimen(), self.sampling_hz, channels, key)
 
     def _specimen(self) -> str:
-        lines = [f'title = "{self.wish.label}"', 'model = "housner"', "", "[parameters]"]
+        lines = [f'title = "{self.design.label}"', 'model = "housner"', "", "[parameters]"]
         lines += [f"{name} = {value!r}" for name, value in self.block.nominal.items()]
         lines += ["", "[tolerance]", *(f"{name} = {value!r}" for name, value in specimens.TOLERANCE.items())]
         if self.vertical_acts:
@@ -156,10 +169,10 @@ class _Draft:
 
     def _effects(self, peak: float) -> tuple[Effects, list[dict[str, Any]], bool]:
         """The effects at their sizes, as the key tells them, and whether one could not reach its size."""
-        if self.wish.kind == "open":
-            return self._open({**LAWS, **UNSEEN}[self.wish.names[0]], peak)
+        if self.design.kind == "open":
+            return self._open({**LAWS, **UNSEEN}[self.design.names[0]], peak)
         both, described, weak = Effects({}, {}), [], False
-        for name in self.wish.names:
+        for name in self.design.names:
             row = CATALOGUE[name]
             end = float(self.rng.choice(row.ends))
             if name == "sliding":  # below the slope of the diagonal the block slides and does not rock
@@ -169,7 +182,7 @@ class _Draft:
             shares = SHARES[row.smallest <= SHARES]
             share, reached = self._nominal(lambda x: _alone(row, row.at(x, end), shapes), peak, shares)  # noqa: B023
             value = row.at(share, end)
-            if self.wish.relative_size == 0.5:
+            if self.design.relative_size == 0.5:
                 value = row.half(value)
             alone = _alone(row, value, shapes)
             both = Effects({**both.mechanisms, **alone.mechanisms}, {**both.sensors, **alone.sensors})
@@ -193,7 +206,7 @@ class _Draft:
             return Effects({}, {}, truth.Applied(law, share * end, numbers, active[0], peak), tuple(active))
 
         share, reached = self._nominal(with_size, peak, SHARES)
-        share *= self.wish.relative_size
+        share *= self.design.relative_size
         return with_size(share), [{"name": law.name, "class": "open", "parameters": {"size": share * end}}], not reached
 
     def _nominal(self, effects_at: Callable[[float], Effects], peak: float, shares: FloatArray) -> tuple[float, bool]:
@@ -222,7 +235,7 @@ class _Draft:
             if jumps == MOST_JUMPS:
                 raise Unsuitable
         # the largest share at which the block still rocks is too small
-        if size_below > min(WEAKEST, WEAKEST_OF_PEAK / self.wish.noise) and jumps == 0:
+        if size_below > min(WEAKEST, WEAKEST_OF_PEAK / self.design.noise) and jumps == 0:
             return below, False
         raise Unsuitable
 

@@ -35,17 +35,17 @@ def compare(
     Only cases that all methods answered count. Writes ``out``/diagnosis_methods.json.
     """
     here = place(out, seed)
-    wishes = suite(seed)[:cases]
+    designs = suite(seed)[:cases]
     folders = {"windows, score test, refit (diagnosis)": here / run}
     for method, answering in METHODS.items():
         folders[method] = here / answering.__module__.rpartition(".")[2]
         say(f"{method}:")
         runner.run_all(
-            wishes, seed, here / "cases", folders[method],
+            designs, seed, here / "cases", folders[method],
             jobs=jobs, minutes=minutes / len(METHODS), say=say, answering=answering,
         )  # fmt: skip
     answered = {
-        method: {wish.label: scored for wish, scored in runner.answered(wishes, here / "cases", folder)}
+        method: {design.label: scored for design, scored in runner.answered(designs, here / "cases", folder)}
         for method, folder in folders.items()
     }
     answered = {method: found for method, found in answered.items() if found}

@@ -108,7 +108,7 @@ def _slosh(t, u, v, second, a, p):  # type: ignore[no-untyped-def]
 
 
 @njit
-def _breathing_ratio(t, landing, p):  # type: ignore[no-untyped-def]
+def _periodic_ratio(t, landing, p):  # type: ignore[no-untyped-def]
     return 1.0 - p[0] * math.sin(math.pi * t / p[1]) ** 2
 
 
@@ -123,12 +123,12 @@ def _on_foundation(t, theta, rate, u, v, a, p, g):  # type: ignore[no-untyped-de
 
 
 @njit
-def _gust(t, theta, rate, u, v, a, p, g):  # type: ignore[no-untyped-def]
+def _passing_couple(t, theta, rate, u, v, a, p, g):  # type: ignore[no-untyped-def]
     return p[0] * g[0] * g[1] if p[4] < t < p[5] else 0.0
 
 
 @njit
-def _grinding(t, theta, rate, u, v, a, p, g):  # type: ignore[no-untyped-def]
+def _upright_damping(t, theta, rate, u, v, a, p, g):  # type: ignore[no-untyped-def]
     return -p[0] * rate if abs(theta) < p[1] * g[4] else 0.0
 
 
@@ -161,12 +161,12 @@ LAWS = {
         Law("magnet", "an attraction near the upright position", 0.8, uniform(0.1, 0.3), _magnet),
         Law("right_stop", "a spring stop on one side", 6.0, uniform(0.2, 0.45), _right_stop),
         Law("sloshing", "a mass swings on top", 0.3, _sloshing, _slosh_force, _slosh, lever=2),
-        Law("breathing_restitution", "restitution comes and goes", 0.5, uniform(4.0, 8.0),
-            ratio=_breathing_ratio),
+        Law("periodic_restitution", "restitution comes and goes", 0.5, uniform(4.0, 8.0),
+            ratio=_periodic_ratio),
         Law("foundation", "the foundation rocks with a frequency of its own", 6.0, _soil, _on_foundation,
             _foundation, either=True),
-        Law("gust", "a steady couple for part of the time", 0.6, no_numbers, _gust, either=True),
-        Law("grinding", "damping only near the upright position", 8.0, uniform(0.15, 0.35), _grinding),
+        Law("passing_couple", "a steady couple for part of the time", 0.6, no_numbers, _passing_couple, either=True),
+        Law("upright_damping", "damping only near the upright position", 8.0, uniform(0.15, 0.35), _upright_damping),
         Law("late_damping", "a dashpot from some instant on", 4.0, no_numbers, _late_damping),
         Law("snubber", "damping on the way out beyond a gap", 10.0, uniform(0.25, 0.5), _snubber),
     )

@@ -62,6 +62,30 @@ def grouped(cases: Sequence[Scored]) -> dict[str, Any]:
     return {
         **figures(cases),
         "by_model": {model: figures([c for c in cases if c.key["model"] == model]) for model in models},
+        **provenance(cases),
+    }
+
+
+def by_imperfection(cases: Sequence[Scored]) -> dict[str, Any]:
+    """The figures of cases with a laboratory's errors: all, and counts by imperfection."""
+    figures = summary(cases)
+    parts = {}
+    for name in sorted({name for case in cases for name in _imperfections(case)}):
+        found = summary([case for case in cases if name in _imperfections(case)])
+        counts = {key: [part["count"], part["of"]] for key, part in found["intervals"].items() if part["of"]}
+        parts[name] = {"cases": found["cases"], "counts": counts}
+    return {**figures, "by_imperfection": parts, **provenance(cases)}
+
+
+def _imperfections(case: Scored) -> list[str]:
+    """By name; of a mixture also ``mixture``."""
+    names = list(case.key["imperfections"]["names"])
+    return [*names, "mixture"] if len(names) > 1 else names
+
+
+def provenance(cases: Sequence[Scored]) -> dict[str, Any]:
+    """Cases by the sources that answered them, and those that failed."""
+    return {
         "sources": dict(Counter(str(case.answer.get("sources")) for case in cases)),
         "failed": [case.case for case in cases if case.verdict == "failed"],
     }
@@ -94,16 +118,38 @@ def wrong(cases: Sequence[Scored]) -> str:
             "null": not case.detected,
             "mismatch": not case.detected,
             "single": case.first_class in case.truth and case.verdict != "not_in_library",
-            "pair": set(case.truth) <= {effect["class"] for effect in case.answer["effects"]},
+            "pair": set(case.truth) <= {effect["class"] for effect in case.effects},
             "open": case.verdict == "not_in_library",
         }[case.kind]
         if not right:
             hidden = hidden if case.kind != "open" else "outside the catalogue"
+            beside = ", ".join(["weak"] * case.weak + list(case.key.get("imperfections", {}).get("names", ())))
+            kind = f"{case.kind} ({beside})" if beside else case.kind
             lines.append(
-                f"{case.case} {case.kind}{' (weak)' if case.weak else ''}: {hidden}; said {case.verdict}: {said}"
-                + (f"; rivals {rivals}" if rivals else "")
+                f"{case.case} {kind}: {hidden}; said {case.verdict}: {said}" + (f"; rivals {rivals}" if rivals else "")
             )
     return "\n".join(lines)
+
+
+def tables(figures: Mapping[str, Any]) -> str:
+    """All tables of `grouped` or of `by_imperfection`."""
+    if "by_imperfection" in figures:
+        lines = [table(figures, "with a laboratory's errors")]
+        for name, part in figures["by_imperfection"].items():
+            counts = ", ".join(
+                f"{key} {count} of {of}" for key, (count, of) in part["counts"].items() if key in FIGURES
+            )
+            lines.append(f"  {name:14s} {counts}")
+        return "\n".join(lines)
+    found = [table(figures, "1 % noise, nominal size")]
+    for title, name in (("3 % noise, half size", "half_size_3_percent"), ("0.5 % noise", "nominal_size_half_percent")):
+        part = figures[name]
+        suffix = "_half" if name.startswith("half") else ""
+        bare = {key.removesuffix("_half"): number for key, number in part.items() if key != "intervals"}
+        bare["intervals"] = {key.removesuffix("_half"): share for key, share in part["intervals"].items()}
+        if bare["cases"]:
+            found.append(table(bare, f"{title} (keys end with {suffix!r})" if suffix else title))
+    return "\n".join(found)
 
 
 def draw_confusion(cases: Sequence[Scored], path: Path) -> None:

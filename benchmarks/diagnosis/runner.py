@@ -13,7 +13,7 @@ from benchmarks.diagnosis.answers import Answering, answer, diagnosed
 from benchmarks.diagnosis.cases import make
 from benchmarks.diagnosis.files import read_json, write_case
 from benchmarks.diagnosis.scores import Scored
-from benchmarks.diagnosis.suite import Wish
+from benchmarks.diagnosis.suite import CaseDesign
 
 
 def one_thread() -> None:
@@ -22,16 +22,16 @@ def one_thread() -> None:
         os.environ[name] = "1"
 
 
-def run_case(wish: Wish, seed: int, cases: Path, answers: Path, answering: Answering = diagnosed) -> str:
+def run_case(design: CaseDesign, seed: int, cases: Path, answers: Path, answering: Answering = diagnosed) -> str:
     """Make the case unless it is there, answer it unless that is done; the answer's verdict."""
-    folder, key = cases / wish.label, cases / "keys" / f"{wish.label}.json"
+    folder, key = cases / design.label, cases / "keys" / f"{design.label}.json"
     if not key.is_file():
-        write_case(make(wish, seed), folder, key)
-    return str(answer(folder, answers / f"{wish.label}.json", answering)["verdict"])
+        write_case(make(design, seed), folder, key)
+    return str(answer(folder, answers / f"{design.label}.json", answering)["verdict"])
 
 
 def run_all(
-    wishes: Sequence[Wish],
+    designs: Sequence[CaseDesign],
     seed: int,
     cases: Path,
     answers: Path,
@@ -43,21 +43,21 @@ def run_all(
 ) -> None:
     """Run the cases in order; none is begun after ``minutes``. ``answering`` must be a module's function."""
     end = time.monotonic() + 60.0 * minutes
-    waiting = [w for w in wishes if not (answers / f"{w.label}.json").is_file()]
-    say(f"{len(wishes) - len(waiting)} of {len(wishes)} cases were answered before")
+    waiting = [w for w in designs if not (answers / f"{w.label}.json").is_file()]
+    say(f"{len(designs) - len(waiting)} of {len(designs)} cases were answered before")
     context = multiprocessing.get_context("spawn")
     one_thread()
     with ProcessPoolExecutor(jobs, mp_context=context) as pool:
-        running: dict[Future[str], Wish] = {}
+        running: dict[Future[str], CaseDesign] = {}
         while waiting or running:
             while waiting and len(running) < jobs and time.monotonic() < end:
-                wish = waiting.pop(0)
-                running[pool.submit(run_case, wish, seed, cases, answers, answering)] = wish
+                design = waiting.pop(0)
+                running[pool.submit(run_case, design, seed, cases, answers, answering)] = design
             if not running:
                 return
             for done in wait(running, return_when=FIRST_COMPLETED).done:
-                wish = running.pop(done)
-                say(f"{wish.label} {wish.kind} {' + '.join(wish.names)}: {_outcome(done)}")
+                design = running.pop(done)
+                say(f"{design.label} {design.kind} {' + '.join(design.names)}: {_outcome(done)}")
 
 
 def _outcome(done: Future[str]) -> str:
@@ -67,12 +67,12 @@ def _outcome(done: Future[str]) -> str:
         return f"not made: {type(error).__name__}: {error}"
 
 
-def answered(wishes: Sequence[Wish], cases: Path, answers: Path) -> list[tuple[Wish, Scored]]:
+def answered(designs: Sequence[CaseDesign], cases: Path, answers: Path) -> list[tuple[CaseDesign, Scored]]:
     """Every case that has an answer, beside its key."""
     found = []
-    for wish in wishes:
-        path = answers / f"{wish.label}.json"
+    for design in designs:
+        path = answers / f"{design.label}.json"
         if path.is_file():
-            key = read_json(cases / "keys" / f"{wish.label}.json")
-            found.append((wish, Scored(wish.label, read_json(path), key)))
+            key = read_json(cases / "keys" / f"{design.label}.json")
+            found.append((design, Scored(design.label, read_json(path), key)))
     return found

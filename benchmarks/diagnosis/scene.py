@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.diagnosis import instruments, shakings, size, specimens, truth
+from benchmarks.diagnosis.imperfections import Imperfections
 from models.housner.lanes import run as lanes
 from models.housner.model import MODEL
 from models.housner.reference import run as reference
@@ -51,7 +52,8 @@ class Scene:
     """A block under its base motions; ``vertical_acts``: the vertical one acts and the specimen says so.
 
     ``noise``: standard deviation of the rotation's noise over its peak. ``tracks`` in the order of the
-    recordings, the two for training first.
+    recordings, the two for training first. ``imperfections``: errors of a laboratory; with them (None: none) every
+    motion comes from `truth`, which shares nothing with the models.
     """
 
     block: specimens.Block
@@ -59,6 +61,7 @@ class Scene:
     vertical_acts: bool
     sampling_hz: float
     noise: float
+    imperfections: Imperfections | None = None
 
     @property
     def alpha(self) -> float:
@@ -70,15 +73,22 @@ class Scene:
         ratio = float(np.max(np.abs(rotation))) / self.alpha
         return PEAK_WITH_EFFECT[0] < ratio < PEAK_WITH_EFFECT[1] and impacts > FEWEST_IMPACTS
 
-    def truth(self, k: int, effects: Effects, exact: bool) -> tuple[FloatArray, FloatArray, int]:
-        """Rotation, rate and impacts: on the fine grid by the slow route, else on that of the shaking."""
+    def truth(
+        self, k: int, effects: Effects, exact: bool, kicks: FloatArray | None = None
+    ) -> tuple[FloatArray, FloatArray, int]:
+        """Rotation, rate and impacts: on the fine grid by the slow route, else on that of the shaking.
+
+        ``kicks``: scatter of the impacts (see `truth`), of a laboratory alone.
+        """
         shaking = self.tracks[k].shaking
         true = self.block.true
-        if effects.law is not None:
-            law = replace(effects.law, active=effects.active[k])
+        if effects.law is not None or self.imperfections is not None:
+            law = None if effects.law is None else replace(effects.law, active=effects.active[k])
             fine = shakings.fine(shaking.horizontal)
             step = shaking.time_step / shakings.FINE
-            ran = truth.run(true["width"], true["height"], specimens.GRAVITY, fine, step, law)
+            ran = truth.run(
+                true["width"], true["height"], specimens.GRAVITY, fine, step, law, effects.mechanisms, kicks=kicks
+            )
             every = 1 if exact else shakings.FINE
             return ran.rotation[::every], ran.rate[::every], ran.impacts
         block = MODEL.build({**true, **effects.mechanisms}, vertical=self.vertical_acts)
@@ -98,7 +108,7 @@ class Scene:
         noise = self.noise * float(np.max(np.abs(recorded)))
         measured = Shaking(
             step,
-            instruments.base(shaking.horizontal, effects.sensors),
+            instruments.base(shaking.horizontal, step, effects.sensors),
             shaking.vertical if self.vertical_acts else None,
         )
         windows = size.windows(rotation, rate, step, noise)
@@ -118,9 +128,11 @@ class Scene:
         shaking = self.tracks[k].shaking
         step = shaking.time_step / shakings.FINE
         base = shakings.fine(shaking.horizontal)
+        errors = self.imperfections or Imperfections()
+        sensors = {**effects.sensors, **errors.sensors}
         signals = {
-            "base_acceleration_x": instruments.base(base, effects.sensors),
-            "rotation_1": instruments.response(rotation, base, step, effects.sensors, peak),
+            "base_acceleration_x": instruments.base(base, step, sensors),
+            "rotation_1": instruments.response(rotation, base, step, sensors, peak),
         }
         if shaking.vertical is not None:
             signals["base_acceleration_z"] = shakings.fine(shaking.vertical)
@@ -129,8 +141,12 @@ class Scene:
         for name, signal in signals.items():
             sampled = instruments.logged(signal, step, self.sampling_hz, shaking.duration)
             if name == "rotation_1":
-                sampled = instruments.clip(sampled, effects.sensors, peak)
+                sampled = instruments.clip(sampled, sensors, peak)
             share = self.noise if name == "rotation_1" else fraction
-            noise[name] = share * float(np.max(np.abs(signal)))
-            channels[name] = sampled + noise[name] * rng.normal(size=sampled.size)
+            largest = float(np.max(np.abs(signal)))
+            noise[name] = share * largest
+            if name == "rotation_1":
+                channels[name] = sampled + errors.noise(sampled, 1.0 / self.sampling_hz, share, largest, rng)
+            else:
+                channels[name] = sampled + noise[name] * rng.normal(size=sampled.size)
         return channels, noise

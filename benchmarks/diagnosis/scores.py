@@ -33,7 +33,16 @@ class Scored:
         return str(self.answer["verdict"])
 
     @property
+    def effects(self) -> list[Mapping[str, Any]]:
+        """Effects of the answer, without instruments that the key calls rightly named beside what is hidden."""
+        known = set(self.key.get("named_rightly", ())) - {effect["name"] for effect in self.key["effects"]}
+        return [effect for effect in self.answer["effects"] if effect["name"] not in known]
+
+    @property
     def detected(self) -> bool:
+        """Whether the answer says that anything is missing beyond such instruments."""
+        if self.verdict in ("missing", "cannot_tell_apart") and self.answer["effects"]:
+            return bool(self.effects)
         return self.verdict != "nothing_missing"
 
     @property
@@ -47,19 +56,20 @@ class Scored:
 
     @property
     def first_class(self) -> str:
-        """Class of the strongest effect named; the verdict where none is."""
-        effects = self.answer["effects"]
-        return str(effects[0]["class"]) if self.detected and effects else self.verdict
+        """Class of the strongest effect named; the verdict where none is, or no other than such instruments."""
+        if not self.detected:
+            return "nothing_missing"
+        return str(self.effects[0]["class"]) if self.effects else self.verdict
 
     @property
     def named(self) -> set[str]:
         """Classes of all effects and rivals of the answer."""
-        return {entry["class"] for entry in [*self.answer["effects"], *self.answer["rivals"]]}
+        return {entry["class"] for entry in [*self.effects, *self.answer["rivals"]]}
 
     @property
     def names(self) -> set[str]:
         """Names of all effects and rivals of the answer."""
-        return {entry["name"] for entry in [*self.answer["effects"], *self.answer["rivals"]]}
+        return {entry["name"] for entry in [*self.effects, *self.answer["rivals"]]}
 
 
 @dataclass(frozen=True)
@@ -145,9 +155,7 @@ def score(cases: Sequence[Scored], *, weak_too: bool = False) -> dict[str, Any]:
         "rivals_cover": share(full, among),
         "rivals_cover_detected": share(seen, among),
         "rivals_mean": float(np.mean([len(case.names) for case in seen])) if seen else float("nan"),
-        "pairs_both": share(
-            pairs, lambda case: set(case.truth) <= {effect["class"] for effect in case.answer["effects"]}
-        ),
+        "pairs_both": share(pairs, lambda case: set(case.truth) <= {effect["class"] for effect in case.effects}),
         "pairs_one": share(pairs, among),
         "interval_coverage": asdict(Share.of_flags(flag for case in cases for flag in covered(case))),
         "base_coverage": asdict(Share.of_flags(flag for case in nulls for flag in base_covered(case))),

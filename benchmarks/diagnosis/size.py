@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +28,8 @@ WINDOW = 0.7
 """Seconds."""
 ABOVE_NOISE = 8.0
 STEP_OF_SENSITIVITY = 1e-3
-"""Relative change of width and height."""
+"""Relative change of a base parameter."""
+REFITTED = ("width", "height")
 
 
 @dataclass(frozen=True)
@@ -73,29 +75,41 @@ def over_noise(
     count = found.first.size
     if count == 0:
         return 0.0
-    start = {
-        "rotation_1": found.rotation,
-        "rotation_rate_1": found.rate,
-        "peak_rotation_1": found.largest,
-        "impacts": found.impacts,
-    }
+    # the base parameters as they are, then each of two a little larger and smaller, side by side
+    changes = np.ones((1 + 2 * len(REFITTED), len(REFITTED)))
+    for k in range(len(REFITTED)):
+        changes[1 + 2 * k : 3 + 2 * k, k] += [STEP_OF_SENSITIVITY, -STEP_OF_SENSITIVITY]
+    sets = changes.shape[0]
 
-    def predicted(values: Mapping[str, float]) -> FloatArray:
-        block = MODEL.build(values, vertical=measured.vertical is not None, size=count)
-        request = Request(
-            measured, np.ones(count), initial=start, first=found.first, last=found.first + found.samples - 1,
-            samples=found.samples,
-        )  # fmt: skip
-        return lanes.run(block, request).samples[..., 0].ravel()
+    def beside(values: NDArray[Any]) -> NDArray[Any]:
+        return np.tile(values, sets)
+
+    varied = {name: base[name] * np.repeat(changes[:, k], count) for k, name in enumerate(REFITTED)}
+    start = {
+        "rotation_1": beside(found.rotation),
+        "rotation_rate_1": beside(found.rate),
+        "peak_rotation_1": beside(found.largest),
+        "impacts": beside(found.impacts),
+    }
+    first = beside(found.first)
+    block = MODEL.build({**base, **varied}, vertical=measured.vertical is not None, size=sets * count)
+    request = Request(
+        measured,
+        np.ones(sets * count),
+        initial=start,
+        first=first,
+        last=first + found.samples - 1,
+        samples=found.samples,
+    )
+    predicted = lanes.run(block, request).samples[..., 0].reshape(sets, -1)
 
     index = found.first[:, None] + np.arange(found.samples)
-    difference = (recorded[index].ravel() - predicted(base)) / noise
-    columns, priors = [], []
-    for name in ("width", "height"):
-        step = STEP_OF_SENSITIVITY
-        up, down = (predicted({**base, name: base[name] * (1.0 + s)}) for s in (step, -step))
-        columns.append((up - down) / (2.0 * step * noise))
-        priors.append(1.0 / tolerance[name])
+    difference = (recorded[index].ravel() - predicted[0]) / noise
+    columns = [
+        (up - down) / (2.0 * STEP_OF_SENSITIVITY * noise)
+        for up, down in zip(predicted[1::2], predicted[2::2], strict=True)
+    ]
+    priors = [1.0 / tolerance[name] for name in REFITTED]
     design = np.vstack([np.column_stack(columns), np.diag(priors)])
     wanted = np.concatenate([difference, np.zeros(len(priors))])
     change = np.linalg.lstsq(design, wanted, rcond=None)[0]

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Literal, TypeVar
 
 import numpy as np
 
@@ -15,9 +16,8 @@ from benchmarks.diagnosis.unseen_laws import UNSEEN
 
 Kind = Literal["null", "single", "pair", "open"]
 
-DEVELOPMENT_SEED = 20_000
-"""Seeds of cases looked at while developing; the evaluation's own is never one of them."""
 EVALUATION_SEED = 4_620_815
+"""Of the published figures; cases of this seed are not looked at one by one while developing."""
 
 TOO_SMALL = ("bounce",)
 """A bouncing corner keeps the angular momentum about itself, so at the end of its range it moves the response
@@ -27,14 +27,18 @@ NOT_HALVED = ("sliding",)
 
 
 @dataclass(frozen=True)
-class Wish:
-    """What case ``number`` is to hold: catalogue names (or one law's), at which noise and size."""
+class CaseDesign:
+    """What case ``number`` is to hold: catalogue names (or one law's), at which noise and size.
+
+    ``imperfection``: one of `imperfections.NAMES`, or none.
+    """
 
     number: int
     kind: Kind
     names: tuple[str, ...]
     noise: float
     relative_size: float
+    imperfection: str = ""
 
     @property
     def label(self) -> str:
@@ -58,47 +62,53 @@ GROUPS = (
 
 
 MAKERS = (
-    "cases", "effects", "instruments", "open_laws", "scene", "shakings", "size", "specimens", "suite", "truth",
-    "unseen_laws",
+    "cases", "effects", "imperfections", "instruments", "laboratory", "open_laws", "scene", "shakings", "size",
+    "specimens", "suite", "truth", "unseen_laws",
 )  # fmt: skip
 """Files that the cases of a seed depend on."""
 
+Item = TypeVar("Item")
 
-def place(folder: Path, seed: int) -> Path:
+
+def place(folder: Path, seed: int, name: str = "diagnosis") -> Path:
     """Where the cases of ``seed`` and their answers lie: another place when what makes them changes."""
     digest = hashlib.sha256()
-    for name in MAKERS:
-        digest.update(Path(__file__).with_name(f"{name}.py").read_bytes())
-    return folder / "diagnosis" / f"{seed}-{digest.hexdigest()[:8]}"
+    for maker in MAKERS:
+        digest.update(Path(__file__).with_name(f"{maker}.py").read_bytes())
+    return folder / name / f"{seed}-{digest.hexdigest()[:8]}"
 
 
-def suite(seed: int) -> list[Wish]:
+def suite(seed: int) -> list[CaseDesign]:
     """All cases, numbered in the order in which they are run; ``seed`` draws the pairs and the order.
 
     Laws outside the catalogue are those kept for the evaluation at its seed, the others at any other.
     """
     laws = list(UNSEEN if seed == EVALUATION_SEED else LAWS)
     rng = np.random.default_rng(seed)
-    placed: list[tuple[float, Kind, tuple[str, ...], Group]] = []
+    groups: list[list[tuple[Kind, tuple[str, ...], Group]]] = []
     for group in GROUPS:
+        without = TOO_SMALL if group.relative_size == 1.0 else TOO_SMALL + NOT_HALVED
+        known = [name for name in CATALOGUE if name not in without]
         for kind, count in group.counts.items():
-            for k, names in enumerate(_names(kind, count, group.relative_size, laws, rng)):
-                placed.append(((k + float(rng.uniform())) / count, kind, names, group))
-    placed.sort(key=lambda item: item[0])
+            groups.append([(kind, names, group) for names in names_of(kind, count, known, laws, rng)])
     return [
-        Wish(number, kind, names, group.noise, group.relative_size)
-        for number, (_, kind, names, group) in enumerate(placed)
+        CaseDesign(number, kind, names, group.noise, group.relative_size)
+        for number, (kind, names, group) in enumerate(in_mixed_order(groups, rng))
     ]
 
 
-def _names(
-    kind: Kind, count: int, relative_size: float, laws: list[str], rng: np.random.Generator
+def in_mixed_order(groups: Sequence[Sequence[Item]], rng: np.random.Generator) -> list[Item]:
+    """All items, each group spread evenly over the whole."""
+    placed = [((k + float(rng.uniform())) / len(group), item) for group in groups for k, item in enumerate(group)]
+    return [item for _, item in sorted(placed, key=lambda pair: pair[0])]
+
+
+def names_of(
+    kind: Kind, count: int, known: Sequence[str], laws: Sequence[str], rng: np.random.Generator
 ) -> list[tuple[str, ...]]:
     """Every effect as often as every other one; pairs of two classes at random."""
     if kind == "null":
         return [()] * count
-    without = TOO_SMALL if relative_size == 1.0 else TOO_SMALL + NOT_HALVED
-    known = [name for name in CATALOGUE if name not in without]
     if kind == "pair":
         pairs: list[tuple[str, ...]] = []
         while len(pairs) < count:
@@ -106,8 +116,8 @@ def _names(
             if CATALOGUE[first].effect_class != CATALOGUE[second].effect_class:
                 pairs.append((first, second))
         return pairs
-    known = known if kind == "single" else laws
+    drawn_from = known if kind == "single" else laws
     drawn: list[tuple[str, ...]] = []
     while len(drawn) < count:
-        drawn += [(known[i],) for i in rng.permutation(len(known))]
+        drawn += [(drawn_from[i],) for i in rng.permutation(len(drawn_from))]
     return drawn[:count]

@@ -54,12 +54,12 @@ def _left_magnet(t, theta, rate, u, v, a, p, g):  # type: ignore[no-untyped-def]
 
 
 @njit
-def _spell_of_loss(t, landing, p):  # type: ignore[no-untyped-def]
+def _passing_loss(t, landing, p):  # type: ignore[no-untyped-def]
     return 1.0 - p[0] if p[4] < t < p[5] else 1.0
 
 
 @njit
-def _rubbing_belt(t, theta, rate, u, v, a, p, g):  # type: ignore[no-untyped-def]
+def _friction_band(t, theta, rate, u, v, a, p, g):  # type: ignore[no-untyped-def]
     inside = p[1] * g[4] < abs(theta) < (p[1] + 0.25) * g[4]
     return -p[0] * g[0] * g[1] * math.tanh(rate / SLIDES) if inside else 0.0
 
@@ -71,12 +71,12 @@ def _fading_stop(t, theta, rate, u, v, a, p, g):  # type: ignore[no-untyped-def]
 
 
 @njit
-def _lamp(t, u, v, second, a, p):  # type: ignore[no-untyped-def]
+def _pendulum(t, u, v, second, a, p):  # type: ignore[no-untyped-def]
     return -p[1] * p[1] * u - 0.1 * p[1] * v - a
 
 
 @njit
-def _under_a_lamp(t, theta, rate, u, v, a, p, g):  # type: ignore[no-untyped-def]
+def _under_a_pendulum(t, theta, rate, u, v, a, p, g):  # type: ignore[no-untyped-def]
     return p[0] * g[0] * p[1] * p[1] * u / g[2]
 
 
@@ -104,10 +104,11 @@ UNSEEN = {
         Law("humming", "a machine shakes the block at its own frequency", 0.5, uniform(0.8, 3.0), _humming),
         Law("pushing_table", "the table pushes more than it pulls", 0.5, no_numbers, _pushing, either=True),
         Law("left_magnet", "an attraction to the upright position on the left", 0.8, uniform(0.1, 0.3), _left_magnet),
-        Law("spell_of_loss", "impacts lose more for part of the time", 0.5, no_numbers, ratio=_spell_of_loss),
-        Law("rubbing_belt", "dry friction within a band of rotations", 0.5, uniform(0.1, 0.4), _rubbing_belt),
+        Law("passing_loss", "impacts lose more for part of the time", 0.5, no_numbers, ratio=_passing_loss),
+        Law("friction_band", "dry friction within a band of rotations", 0.5, uniform(0.1, 0.4), _friction_band),
         Law("fading_stop", "spring stops that wear out", 8.0, uniform(0.2, 0.4), _fading_stop),
-        Law("swinging_lamp", "a slow pendulum pulls at the block", 1.0, _slow, _under_a_lamp, _lamp, either=True),
+        Law("slow_pendulum", "a slow pendulum pulls at the block", 1.0, _slow, _under_a_pendulum, _pendulum,
+            either=True),
         Law("late_prop", "a spring on the right from some instant on", 0.8, no_numbers, _late_prop),
         Law("shaken_guide", "damping while the base accelerates", 10.0, no_numbers, _shaken_guide),
     )

@@ -19,7 +19,17 @@ def test_two_cases_from_making_to_figures(tmp_path: Path) -> None:
     assert {first.kind, second.kind} == {"null", "single"} and first.noise == second.noise == 0.01
 
     def run(said: list[str], answering: Answering) -> dict:
-        return bench(tmp_path, seed=SEED, cases=2, minutes=10.0, jobs=2, run="a", say=said.append, answering=answering)
+        return bench(
+            "diagnosis",
+            tmp_path,
+            seed=SEED,
+            cases=2,
+            minutes=10.0,
+            jobs=2,
+            run="a",
+            say=said.append,
+            answering=answering,
+        )
 
     said: list[str] = []
     figures = run(said, diagnosed)
