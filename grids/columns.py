@@ -115,7 +115,7 @@ def _rows(path: Path, layout: Layout) -> tuple[list[str], list[tuple[int, list[s
     if layout.delimiter.isspace() and layout.delimiter != "\t":
         split = [line.split() for _, line in numbered]
     else:
-        split = list(csv.reader((line for _, line in numbered), delimiter=layout.delimiter))
+        split = _split(path, [line for _, line in numbered], layout.delimiter)
     rows = [(i, [cell.strip() for cell in cells]) for (i, _), cells in zip(numbered, split, strict=True)]
     while rows and not any(rows[-1][1]):
         rows.pop()
@@ -132,6 +132,17 @@ def _rows(path: Path, layout: Layout) -> tuple[list[str], list[tuple[int, list[s
             "header = false (columns by number), or skip the lines above the names"
         )
     return names, rows[1:]
+
+
+def _split(path: Path, lines: list[str], delimiter: str) -> list[list[str]]:
+    """The cells of each line; a quote that is left open would take the lines after it into one cell."""
+    try:
+        split = list(csv.reader(lines, delimiter=delimiter, strict=True))
+    except csv.Error as error:
+        raise InputError(f"{path.name}: is no table ({error}); is a quote left open?") from None
+    if len(split) != len(lines):
+        raise InputError(f"{path.name}: a quote is left open or holds a line break; every row needs a line of its own.")
+    return split
 
 
 def _values(
@@ -178,6 +189,6 @@ def _number(cell: str, decimal: str) -> float | None:
     if decimal == "," and "." in cell:
         return None
     try:
-        return float(cell.replace(decimal, "."))
+        return float(cell.replace(decimal, ".")) if "_" not in cell else None
     except ValueError:
         return None

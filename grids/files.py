@@ -46,6 +46,10 @@ def parse_toml(text: str) -> dict[str, Any]:
         shown = text.splitlines()[int(line[1]) - 1].strip() if line else ""
         quoted = f" '{shown}'" if shown else ""
         raise InputError(f"not valid TOML{quoted}: {error}; correct that line.") from None
+    except RecursionError:
+        raise InputError("not valid TOML: brackets lie thousands deep; is the file damaged?") from None
+    except ValueError as error:  # of Python's own numbers: thousands of digits
+        raise InputError(f"not valid TOML: {error}; shorten that number.") from None
 
 
 def check(schema: type[SchemaT], table: dict[str, Any]) -> SchemaT:

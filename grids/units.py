@@ -17,7 +17,9 @@ from models.errors import InputError
 if TYPE_CHECKING:
     import pint
 
-_NUMBER = re.compile(r"\s*([+-]?(?:inf|nan|(?:\d[\d_]*\.?\d*|\.\d+)(?:[eE][+-]?\d+)?))\s*(.*?)\s*")
+_NUMBER = re.compile(r"\s*([+-]?(?:inf|nan|(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?))\s*(.*?)\s*")
+SMALLEST, LARGEST = 1e-290, 1e290
+"""Sizes beyond which a number is a mistake, and its products with units would leave floating point."""
 _EXPONENT = re.compile(r"(?<=[A-Za-zµμ])\s*(?:\^|\*\*)?\s*\(?([+-]?\d+)\)?")
 _PRODUCT = re.compile(r"(?<=[\w)])\s+(?=[A-Za-zµμ(])")
 _ANGLES = ("radian", "degree", "arcminute", "arcsecond", "turn", "revolution")
@@ -51,7 +53,7 @@ def _factor(unit: str, si_unit: str) -> float | None:
     """How many ``si_unit`` one ``unit`` is; None where the dimensions differ."""
     wanted = _quantity(si_unit, False)
     given = _quantity(unit, bool(wanted.check("[acceleration]")))
-    if not given._is_multiplicative or given.dimensionality != wanted.dimensionality:
+    if not getattr(given, "_is_multiplicative", False) or given.dimensionality != wanted.dimensionality:
         return None
     # A radian is dimensionless for pint; a slope written as an angle is a mistake all the same.
     angle = any(str(name).endswith(_ANGLES) for name, _ in given.unit_items())
@@ -98,9 +100,15 @@ def to_si(value: object, si_unit: str, where: str) -> float:
             )
         number *= factor_to_si(unit, si_unit, f"{where} = '{value}'")
     else:
-        number = float(value)
+        try:
+            number = float(value)
+        except OverflowError:
+            raise InputError(f"{where} is a whole number of hundreds of digits; give a value{_in(si_unit)}.") from None
     if math.isnan(number):
         raise InputError(f"{where} = {value} is not a number; give a value{_in(si_unit)} or leave it out.")
+    infinite = math.isinf(number) and "inf" in str(value)
+    if not infinite and number and not SMALLEST < abs(number) < LARGEST:
+        raise InputError(f"{where} = {value!s:.40} is beyond any size; give a value{_in(si_unit)} within {LARGEST:g}.")
     return number
 
 

@@ -85,7 +85,7 @@ def _shaking(specimen: Specimen, motion: Motion | Recording | str | Path, compon
 
 def is_recording(path: Path) -> bool:
     """Whether a file holds the measured base motion under its standard name."""
-    from grids.netcdf_lock import NETCDF_LOCK
+    from grids.netcdf_file import read_netcdf
     from grids.recordings.base import REQUIRED
 
     if path.suffix in (".csv", ".toml"):
@@ -93,10 +93,7 @@ def is_recording(path: Path) -> bool:
         return beside.is_file() and REQUIRED in beside.read_text("utf-8")
     if path.suffix != ".nc" or not path.is_file():
         return False
-    import netCDF4
-
     try:
-        with NETCDF_LOCK, netCDF4.Dataset(path) as dataset:
-            return REQUIRED in dataset.variables
-    except OSError:
+        return REQUIRED in read_netcdf(path).variables
+    except InputError:
         return False  # the motion reader says what is wrong with the file

@@ -26,7 +26,7 @@ from grids.sampling import check_step, parse_numbers
 from models.errors import InputError
 
 _NUMBER = r"([-+]?\d*\.?\d+(?:[eE][-+]?\d+)?)"
-_NPTS = (re.compile(r"NPTS\s*=\s*(\d+)", re.I), re.compile(rf"^\s*(\d+)\s+{_NUMBER}\s*,?\s*NPTS", re.I))
+_NPTS = (re.compile(r"NPTS\s*=\s*(\d{1,9})\b", re.I), re.compile(rf"^\s*(\d{{1,9}})\s+{_NUMBER}\s*,?\s*NPTS", re.I))
 _DT = (re.compile(rf"DT\s*=\s*{_NUMBER}", re.I), re.compile(rf"^\s*\d+\s+{_NUMBER}\s*,?\s*NPTS", re.I))
 _RSN = re.compile(r"RSN\d+_", re.I)
 

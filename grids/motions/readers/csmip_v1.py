@@ -27,8 +27,8 @@ from models.errors import InputError
 
 _CHANNEL = re.compile(r"^Chan\s+\d+:\s*(\S+)", re.I)
 _POINTS = re.compile(
-    r"^\s*(\d+)\s+Accel\S*\s+points.*?at\s+([\d.]+)\s*pts/sec.*?in\s+units\s+of\s+(\S+?)\.?\s+"
-    r"Format:\s*\(\s*(\d+)\s*[fF]\s*(\d+)\.\d+\s*\)",
+    r"^\s*(\d{1,9})\s+Accel\S*\s+points.*?at\s+(\d+\.?\d*)\s*pts/sec.*?in\s+units\s+of\s+(\S+?)\.?\s+"
+    r"Format:\s*\(\s*(\d{1,3})\s*[fF]\s*(\d{1,3})\.\d+\s*\)",
     re.I,
 )
 
@@ -43,6 +43,8 @@ def _read(path: Path, key: str | None, statement: Mapping[str, Any]) -> Record:
         elif (points := _POINTS.match(line)) is not None:
             where = f"{path.name}: channel {name or len(components) + 1}"
             count, a_line, width = int(points[1]), int(points[4]), int(points[5])
+            if a_line == 0 or width == 0:
+                raise InputError(f"{where}: header says columns of {width} characters, {a_line} a line: damaged")
             block = lines[number + 1 : number + 1 - (-count // a_line)]
             end = next((i for i, row in enumerate(block) if row.startswith("/&")), len(block))
             values = fixed_width(block[:end], width, where)

@@ -27,6 +27,7 @@ from grids.sampling import check_step
 from models.errors import InputError
 
 _TEXT, _HEADER, _WIDTH, _A_LINE = 16, 26, 8, 10
+LARGEST_COUNT = 1e8
 _COMPONENT = re.compile(r"Component\s+(\S+)", re.I)
 _PEAK = re.compile(r"Acceleration:\s+peak\s+([-+.\d]+)\s*mm/s/s", re.I)
 
@@ -49,6 +50,8 @@ def _read_component(lines: list[str], path: Path, number: int) -> tuple[str, flo
     reals = fixed_width(lines[_TEXT + 4 : _HEADER], _WIDTH, where)
     if integers.size != 40 or reals.size != 60:
         raise InputError(f"{where}: header has {integers.size} and {reals.size} numbers, not 40 and 60: damaged")
+    if not np.all((integers[33:36] >= 1.0) & (integers[33:36] <= LARGEST_COUNT)):
+        raise InputError(f"{where}: header counts {integers[33:36].tolist()} samples: the file is damaged")
     counts = [int(c) for c in integers[33:36]]
     block = lines[_HEADER : _HEADER + _lines_of(counts[0])]
     values = fixed_width(block, _WIDTH, where)

@@ -10,7 +10,9 @@ states no unit: arrays are taken in m s-2, and a peak that is not the table's PG
 from __future__ import annotations
 
 import csv
+import math
 import zipfile
+import zlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -21,7 +23,8 @@ from grids.files import Schema, check, parse_toml
 from grids.files import read_text as read_utf8
 from grids.motions.readers.base import FloatArray, Reader, Record, assemble, check_samples, vertical_sign
 from grids.motions.units import STANDARD_GRAVITY, acceleration_factor
-from grids.sampling import check_step
+from grids.netcdf_file import MORE_BYTES, TIMES_THE_FILE
+from grids.sampling import check_step, parse_numbers
 from grids.units import to_si
 from models.errors import InputError, nearest
 
@@ -89,8 +92,10 @@ def _index_line(path: Path, record: str) -> Mapping[str, str] | None:
     beside = path.with_suffix(".csv")
     if not beside.is_file():
         return None
-    with beside.open(encoding="utf-8", newline="") as file:
-        lines = list(csv.DictReader(file))
+    try:
+        lines = list(csv.DictReader(read_utf8(beside, "the table").splitlines()))
+    except csv.Error as error:
+        raise InputError(f"{beside.name}: is no table ({error}): fetch it again") from None
     line = next((line for line in lines if line.get("id") == record), None)
     if line is None or not line.get("dt_s"):
         raise InputError(f"{beside.name}: has no line with id {record!r} and dt_s: add it, or a TOML with time_step")
@@ -98,14 +103,15 @@ def _index_line(path: Path, record: str) -> Mapping[str, str] | None:
 
 
 def _check_index(where: str, line: Mapping[str, str], component: str, values: FloatArray) -> None:
-    if line.get("npts") and int(line["npts"]) != values.size:
+    if line.get("npts") and line["npts"].strip() != str(values.size):
         raise InputError(f"{where}: has {values.size} samples, the table says npts {line['npts']}: damaged")
     role = next((h for h in ("H1", "H2") if line.get(h) == component), "UD")
     stated = line.get(f"PGA_{role}_g")
     if not stated:
         raise InputError(f"{where}: the table has no PGA_{role}_g to show the unit: add a TOML with time_step and unit")
     peak = float(np.max(np.abs(values))) / STANDARD_GRAVITY
-    if abs(peak - float(stated)) > PGA_TOLERANCE * float(stated):
+    pga = float(parse_numbers([stated], f"{where}: PGA_{role}_g of the table")[0])
+    if not abs(peak - pga) <= PGA_TOLERANCE * pga:
         raise InputError(
             f"{where}: peak is {peak:.4g} g as m s-2, the table says {stated} g: "
             "state the unit in a TOML beside the file"
@@ -114,10 +120,27 @@ def _check_index(where: str, line: Mapping[str, str], component: str, values: Fl
 
 def _load(path: Path, keys: list[str]) -> dict[str, Any]:
     try:
+        most = TIMES_THE_FILE * path.stat().st_size + MORE_BYTES
         with np.load(path, allow_pickle=False) as archive:
+            sizes = {key: _stated_size(archive.zip, key) for key in keys}
+            if sum(sizes.values()) > most:
+                raise ValueError(f"its arrays take {sum(sizes.values()):.3g} bytes, far more than a file of its size")
             return {key: archive[key] for key in keys}
-    except (zipfile.BadZipFile, OSError, EOFError, ValueError) as error:
+    except (zipfile.BadZipFile, zlib.error, OSError, EOFError, ValueError, NotImplementedError, MemoryError) as error:
         raise InputError(f"{path.name}: cannot be read ({error}): it is cut short or damaged") from None
+
+
+def _stated_size(archive: zipfile.ZipFile, key: str) -> int:
+    """Bytes that an array takes by its own header. ValueError when the archive holds fewer or more."""
+    info = archive.getinfo(f"{key}.npy")
+    with archive.open(info) as member:
+        version = np.lib.format.read_magic(member)
+        read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+        shape, _, dtype = read(member)
+        size = math.prod(shape) * dtype.itemsize
+        if size != info.file_size - member.tell():
+            raise ValueError(f"array {key} has {info.file_size - member.tell()} bytes, its header says {size}")
+    return size
 
 
 def _read(path: Path, key: str | None, statement: Mapping[str, Any]) -> Record:

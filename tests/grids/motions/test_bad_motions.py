@@ -202,7 +202,7 @@ def v1_other_content(files):
     return files.text("x.V1", "a line\n" * 60)
 
 
-@case("x.nc", "cannot be read as netCDF", "cut short")
+@case("x.nc", "not a readable netCDF file", "cut short")
 def netcdf_truncated(files):
     path = files.netcdf()
     path.write_bytes(path.read_bytes()[:3000])

@@ -1,0 +1,83 @@
+"""The process that reads netCDF files of others: ``python -m grids.netcdf_child``, one request a line.
+
+The library under netCDF4 trusts what a file says of itself: a few wrong bytes make it take all memory, run for
+ever or end the process. So it works here, under limits of memory and computing time, and the process that asks
+survives it (`grids.netcdf_file`). A request is JSON with ``path`` and ``bytes`` (the most that may be taken); the
+answer is one line of JSON, then the numbers of the variables that have any, one after another.
+"""
+
+from __future__ import annotations
+
+import json
+import resource
+import sys
+from pathlib import Path
+from typing import Any
+
+import netCDF4
+import numpy as np
+
+SECONDS = 5
+"""Of computing time that one file may take."""
+
+
+def main() -> None:
+    answers = sys.stdout.buffer
+    answers.write(b"ready\n")
+    answers.flush()
+    for line in sys.stdin:
+        request = json.loads(line)
+        _limit(int(request["bytes"]))
+        arrays: list[np.ndarray] = []
+        try:
+            answer = _read(Path(request["path"]), int(request["bytes"]), arrays)
+        except MemoryError:
+            answer = {"error": "it wants more memory than a file of its size can hold"}
+        except Exception as error:
+            answer = {"error": str(error) or type(error).__name__}
+        answers.write(json.dumps(answer).encode() + b"\n")
+        for array in arrays:
+            answers.write(array.tobytes())
+        answers.flush()
+
+
+def _limit(more_bytes: int) -> None:
+    """Let this process take so much more memory, and `SECONDS` more of computing time."""
+    now = 1024 * int(Path("/proc/self/status").read_text().split("VmSize:")[1].split()[0])
+    resource.setrlimit(resource.RLIMIT_AS, (now + more_bytes, resource.RLIM_INFINITY))
+    used = resource.getrusage(resource.RUSAGE_SELF)
+    spent = int(used.ru_utime + used.ru_stime)
+    resource.setrlimit(resource.RLIMIT_CPU, (spent + SECONDS + 1, resource.RLIM_INFINITY))
+
+
+def _read(path: Path, most_bytes: int, arrays: list[np.ndarray]) -> dict[str, Any]:
+    """Attributes and variables of a file; numbers (float64, nan where there is none) go into ``arrays``."""
+    described = []
+    with netCDF4.Dataset(path) as data:
+        sizes = {name: variable.size * 8 for name, variable in data.variables.items()}
+        if sum(sizes.values()) > most_bytes:
+            raise ValueError(f"it says that it holds {sum(sizes.values()):.3g} bytes, far more than a file of its size")
+        for name, variable in data.variables.items():
+            one: dict[str, Any] = {
+                "name": name,
+                "dimensions": variable.dimensions,
+                "shape": variable.shape,
+                "type": str(variable.dtype if variable.dtype is not str else "text"),
+                "attributes": _attributes(variable),
+            }
+            if isinstance(variable.dtype, np.dtype) and variable.dtype.kind in "fiu":
+                values = np.ma.filled(np.ma.asarray(variable[...], dtype=np.float64), np.nan)
+                arrays.append(np.ascontiguousarray(values))
+                one["numbers"] = True
+            elif variable.dtype is str:
+                one["text"] = [str(value) for value in np.ravel(variable[...])]
+            described.append(one)
+        return {"attributes": _attributes(data), "variables": described}
+
+
+def _attributes(owner: Any) -> dict[str, str]:
+    return {name: str(owner.getncattr(name)) for name in owner.ncattrs()}
+
+
+if __name__ == "__main__":
+    main()
