@@ -93,6 +93,8 @@ ROWS = (
     Hidden("clock", "clock", "rate", (-0.02, 0.02), sensor=True),
     Hidden("filter", "filter", "corner_hz", (0.5,), math.inf, inverse=True, sensor=True, shapes=_order),
     Hidden("base_gain", "base_gain", "gain", (-0.15, 0.15), sensor=True),
+    Hidden("base_filter", "base_filter", "high_pass_hz", (1.0,), sensor=True),
+    Hidden("drift", "drift", "rate", (-0.005, 0.005), sensor=True),
     Hidden("saturation", "saturation", "level_over_peak", (0.3,), 1.0, sensor=True),
     Hidden("cross_axis", "cross_axis", "rotation_per_acceleration", (-0.01, 0.01), sensor=True),
 )

@@ -99,7 +99,8 @@ class Predictor:
         ran = m.model.trajectories(values, shaking, first=first, samples=samples, initial=initial, options=self.options)
         found = {c: _held(ran[c].reshape(count, n, samples), shaking, m.first[windows]) for c in m.channels}
         base = np.pad(m.base[windows][:, :compared], ((0, 0), (0, samples - compared)))
-        around = Surroundings(time_step, base, m.reference_peak)
+        start = np.asarray(time_step * m.first[windows, None], float)
+        around = Surroundings(time_step, base, m.reference_peak, start)
         for k, p in enumerate(members):
             recorded = recorded_in_windows({c: found[c][k] for c in m.channels}, instruments[p], around)
             for c, channel in enumerate(m.channels):

@@ -80,7 +80,7 @@ def candidates(measured: Measured, specimen: Specimen) -> tuple[Candidate, ...]:
     for name, mechanism in library(measured.model).items():
         if name in specimen.mechanisms or not _usable(name, measured):
             continue
-        if name == "filter":
+        if name in ("filter", "base_filter"):
             found += _filters(mechanism)
             continue
         plain = mechanism.parameters
@@ -109,9 +109,13 @@ def _unknown(mechanism: Mechanism, parameter: MechanismParameter, measured: Meas
 
 
 def _filters(mechanism: Mechanism) -> list[Candidate]:
-    """A low-pass of each order, and a high-pass: the order is no continuous unknown."""
+    """A low-pass and a high-pass, each of every order: the order is no continuous unknown."""
+    ordered = "order" in mechanism.nulls
     found = []
-    for parameter, orders in (("corner_hz", ORDERS), ("high_pass_hz", (1.0, 2.0))):
-        unknown = of_parameter(mechanism, mechanism.parameter(parameter))
-        found += [Candidate(mechanism, (unknown,), {f"{mechanism.name}.order": order}) for order in orders]
+    for parameter in mechanism.parameters:
+        if parameter.unit != "Hz":
+            continue
+        orders = ORDERS if parameter.fit_inverse else ORDERS[:2]
+        held = [{f"{mechanism.name}.order": order} for order in orders] if ordered else [{}]
+        found += [Candidate(mechanism, (of_parameter(mechanism, parameter),), one) for one in held]
     return found

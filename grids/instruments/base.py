@@ -14,6 +14,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from models.base import FloatArray, MechanismParameter
 
 Channels = Mapping[str, FloatArray]
@@ -30,11 +32,18 @@ class Surroundings:
 
     ``base_acceleration`` (..., samples): the measured horizontal one, at the samples of the channels, in m s-2.
     ``reference_peak``: the rotation (rad) over which levels are given; None: the largest of the run itself.
+    ``start`` (..., 1): time (s) of the first sample since the start of the recording.
     """
 
     time_step: float
     base_acceleration: FloatArray
     reference_peak: float | None = None
+    start: FloatArray | float = 0.0
+
+    @property
+    def time(self) -> FloatArray:
+        """Times (..., samples) since the start of the recording, in s."""
+        return np.asarray(self.start + self.time_step * np.arange(self.base_acceleration.shape[-1]))
 
     def peak(self, channels: Channels) -> float:
         """The rotation (rad) over which levels are given; without one, the largest of the first rotation channel."""

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from grids.instruments import (
     accelerometer_offset,
+    base_filter,
     base_gain,
     clock,
     cross_axis,
     delay,
+    drift,
     filter,
     gain,
     offset,
@@ -19,7 +21,7 @@ from models.base import Mechanism
 INSTRUMENTS: dict[str, Mechanism] = {
     module.MECHANISM.name: module.MECHANISM
     for module in (
-        accelerometer_offset, base_gain, delay, clock, cross_axis, gain, offset, filter, saturation
+        accelerometer_offset, base_filter, base_gain, delay, clock, cross_axis, gain, offset, drift, filter, saturation
     )
 }  # fmt: skip
 """In the order in which they act on a signal."""

@@ -102,6 +102,9 @@ def test_instruments_do_what_they_say() -> None:
     assert np.max(np.abs(read("saturation", level_over_peak=0.5))) == pytest.approx(0.01)
     slow = read("filter", corner_hz=1.5, order=1.0)
     assert np.max(np.abs(slow[2000:])) == pytest.approx(0.02 / math.sqrt(2.0), rel=0.01)
+    np.testing.assert_allclose(read("drift", rate=0.001), wave + 0.001 * time)
+    coupled = instruments.base(ground, step, {"base_filter": {"high_pass_hz": 3.0}})
+    assert np.max(np.abs(coupled[2000:])) == pytest.approx(1.0 / math.sqrt(2.0), rel=0.01)
     np.testing.assert_allclose(instruments.base(ground, step, {"base_gain": {"gain": 0.25}}), 0.8 * ground)
     np.testing.assert_allclose(instruments.base(ground, step, {"accelerometer_offset": {"offset": 0.3}}), ground + 0.3)
 

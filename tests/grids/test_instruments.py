@@ -6,10 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.signal import butter, sosfilt
 
 from grids.instruments import INSTRUMENTS, moved, recorded
 from grids.instruments.base import Surroundings
-from grids.instruments.windowed import read_at
+from grids.instruments.windowed import read_at, recorded_in_windows
 from models.shaking import Shaking
 
 STEP = 0.002
@@ -62,6 +63,58 @@ def test_base_sensors_tell_what_the_base_did() -> None:
     shaking = Shaking(STEP, BASE)
     np.testing.assert_allclose(moved(shaking, {"base_gain": {"gain": 0.1}}).horizontal, 1.1 * BASE)
     np.testing.assert_allclose(moved(shaking, {"accelerometer_offset": {"offset": 0.2}}).horizontal, BASE - 0.2)
+
+
+def filtered(signal: np.ndarray, step: float, order: int, corner_hz: float, kind: str) -> np.ndarray:
+    return sosfilt(butter(order, corner_hz, kind, fs=1.0 / step, output="sos"), signal)
+
+
+FINE = 16
+"""Steps of the true motion in a step of the recording."""
+FINE_TIME = np.arange(FINE * 4000 + 1) * STEP / FINE
+TRUE_BASE = np.sin(2 * np.pi * 2.1 * FINE_TIME) * np.sin(np.pi * FINE_TIME / FINE_TIME[-1]) ** 2
+
+
+def base_read(measured: np.ndarray, **values: float) -> np.ndarray:
+    nulls = INSTRUMENTS["base_filter"].nulls
+    return moved(Shaking(STEP, measured), {"base_filter": {**nulls, **values}}).horizontal
+
+
+def test_an_ac_coupled_base_is_read_back_exactly() -> None:
+    measured = filtered(TRUE_BASE, STEP / FINE, 1, 0.2, "highpass")[::FINE]
+    assert np.max(np.abs(measured - TRUE_BASE[::FINE])) > 0.08
+    np.testing.assert_allclose(base_read(measured, high_pass_hz=0.2), TRUE_BASE[::FINE], atol=2e-4)
+
+
+def test_a_low_passed_base_is_read_back_and_its_noise_stays_bounded() -> None:
+    measured = filtered(TRUE_BASE, STEP / FINE, 2, 8.0, "lowpass")[::FINE]
+    assert np.max(np.abs(measured - TRUE_BASE[::FINE])) > 0.3
+    np.testing.assert_allclose(base_read(measured, low_pass_hz=8.0), TRUE_BASE[::FINE], atol=3e-3)
+    noise = np.random.default_rng(0).normal(size=8000)
+    assert np.std(base_read(noise, low_pass_hz=5.0)) < 10.5
+
+
+@pytest.mark.parametrize("values", [{"high_pass_hz": 1e-5}, {"low_pass_hz": 1e5}])
+def test_a_filter_of_the_base_goes_to_nothing_smoothly(values: dict[str, float]) -> None:
+    base = TRUE_BASE[::FINE]
+    change, twice = (
+        base_read(base, **{k: v * s if k == "high_pass_hz" else v / s for k, v in values.items()}) - base
+        for s in (1.0, 2.0)
+    )
+    assert 0.0 < np.max(np.abs(change)) < 1e-3
+    np.testing.assert_allclose(twice, 2.0 * change, atol=1e-3 * np.max(np.abs(change)))
+
+
+def test_drift_counts_from_the_start_of_the_recording() -> None:
+    drift = {"drift": {"rate": 1e-3}}
+    found = recorded(TRUE, drift, AROUND)
+    np.testing.assert_allclose(found["rotation_1"] - TRUE["rotation_1"], 1e-3 * TIME, atol=1e-15)
+    np.testing.assert_array_equal(found["rotation_rate_1"], TRUE["rotation_rate_1"])
+    first = np.array([[100], [700]])
+    index = first + np.arange(50)
+    windows = replace(AROUND, base_acceleration=BASE[index], start=first * STEP)
+    seen = recorded_in_windows({"rotation_1": TRUE["rotation_1"][index]}, drift, windows)["rotation_1"]
+    np.testing.assert_allclose(seen, found["rotation_1"][index], atol=1e-15)
 
 
 def test_delay_and_clock_shift_time() -> None:

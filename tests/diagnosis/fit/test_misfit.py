@@ -56,7 +56,8 @@ def test_score_directions_are_finite_differences(problem) -> None:
     opened = linearise_about(fitted)
     base = fitted.point
     smooth = ("restitution", "viscous_damping", "velocity_restitution", "tilt", "pivot_inset", "gain", "offset",
-              "base_gain", "accelerometer_offset", "cross_axis", "delay", "clock", "degradation")  # fmt: skip
+              "base_gain", "accelerometer_offset", "cross_axis", "delay", "clock", "drift",
+              "degradation")  # fmt: skip
     found = {s.candidate.name: s for s in score(opened, candidates(measured, SPECIMEN))}
     for name in smooth:
         candidate = found[name].candidate

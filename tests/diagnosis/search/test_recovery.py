@@ -41,7 +41,9 @@ EFFECTS: dict[str, dict[str, float]] = {
     "delay": {"delay": 0.006},
     "clock": {"rate": 0.002},
     "filter": {"corner_hz": 8.0, "order": 2.0},
+    "base_filter": {"high_pass_hz": 0.1},
     "base_gain": {"gain": 0.04},
+    "drift": {"rate": 0.0004},
     "saturation": {"level_over_peak": 0.75},
     "cross_axis": {"rotation_per_acceleration": 0.0006},
 }
