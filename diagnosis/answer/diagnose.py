@@ -11,9 +11,10 @@ import numpy as np
 from diagnosis.answer.experiment import next_experiment
 from diagnosis.answer.heldout import Shown, compare, fit_figures, horizons, traces_of, windows_of
 from diagnosis.answer.judgement import explains, p_of_effects, p_of_missing, undecided, verdict_of
-from diagnosis.answer.locate import locate
+from diagnosis.answer.located import located
 from diagnosis.answer.rescale import over_peak, true_peak
 from diagnosis.answer.result import Diagnosis, Effect, Located, Rival, Screened
+from diagnosis.answer.shows import shows
 from diagnosis.answer.statement import statement
 from diagnosis.answer.whole_runs import with_runs_from_rest
 from diagnosis.data.measured import Measured
@@ -28,7 +29,6 @@ from diagnosis.search.candidates import candidates
 from diagnosis.search.found import Search, evidence, misfit_per_sample, rivals
 from diagnosis.search.refit import Explanation
 from diagnosis.search.select import search, take_best_single
-from grids.instruments import INSTRUMENTS
 from grids.recordings.base import Recording
 from grids.specimen import Specimen
 
@@ -120,11 +120,11 @@ def _assemble(
     train = fit_figures(shown[0], missing)
     held_fit = fit_figures(held, missing) if held else None
 
-    def where() -> tuple[Located, ...]:
-        at_base = tests(forces(found.base.fitted)) if found.best is not None else tested
-        sensors_only = bool(effects) and all(e.name in INSTRUMENTS for e in effects)
-        explained = found.best is not None and verdict != "not_in_library"
-        return locate(shown[0], at_base, sensors_only, explained, seed) if missing else ()
+    explained = found.best is not None and verdict != "not_in_library"
+
+    def places() -> tuple[Located, ...]:
+        progress("where it acts", 0.97)
+        return located(found.base, chosen if explained else None, seed) if missing else ()
 
     experiment, force = None, None
     if finished and verdict == "cannot_tell_apart":
@@ -136,7 +136,8 @@ def _assemble(
         statement="",
         effects=effects,
         rivals=tuple(Rival(c.name, c.effect_class, gap) for _, c, gap in near),
-        located=stages.needed(where),
+        located=stages.optional("where it acts", places, tuple),
+        shows=shows(shown[0], explained, seed) if missing else (),
         constancy=flagged,
         train=train,
         holdout=held_fit,

@@ -54,7 +54,11 @@ class Undecided:
 
 @dataclass(frozen=True)
 class Located:
-    """An interval of a recording in which the residual exceeds the noise; ``share`` of the excess misfit."""
+    """An interval (s) of a recording in which something acts or shows, and in which phases of the motion.
+
+    ``share`` of the whole action or excess misfit. Where a named ``effect`` acts, ``amplitude`` is the largest value
+    of its force, impulse or error there, in ``unit``; of a residual, and of what has no name, both are empty.
+    """
 
     recording: str
     channel: str
@@ -62,6 +66,9 @@ class Located:
     end: float
     where: tuple[str, ...]
     share: float
+    effect: str = ""
+    amplitude: float | None = None
+    unit: str = ""
 
 
 @dataclass(frozen=True)
@@ -131,6 +138,9 @@ class Diagnosis:
     effects: tuple[Effect, ...]
     rivals: tuple[Rival, ...]
     located: tuple[Located, ...]
+    """Where what is missing acts: of named effects along the fitted motion, else where something must be added."""
+    shows: tuple[Located, ...]
+    """Where the residual of the base model lies."""
     constancy: tuple[Constancy, ...]
     train: Fit
     holdout: Fit | None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from string import Formatter
 
-from diagnosis.answer.locate import words_of
+from diagnosis.answer.phases import words_of
 from diagnosis.answer.result import Diagnosis, Effect, Fit, Located
 from diagnosis.data.measured import identification_of
 from diagnosis.fit.unknowns import library
@@ -34,8 +34,7 @@ def statement(found: Diagnosis, model: Model) -> str:
         parts += [_nothing(found), *_untested(declared)]
         return " ".join([*parts, *_skipped(found)])
     parts.append(f"The model leaves something out ({_beyond_chance(found.p_value)}).")
-    if found.located:
-        parts.append(_where(found.located, words_of(declared)))
+    parts += _shows(found.shows, words_of(declared))
     if found.unexplained:
         parts.append(
             "Even the best model of the library leaves most of the motion unexplained, so a name would mean nothing: "
@@ -45,6 +44,7 @@ def statement(found: Diagnosis, model: Model) -> str:
         said = [effect_text(effect, known[effect.name]) for effect in found.effects]
         opening = "What the library can say" if found.verdict == "not_in_library" else "Best explanation"
         parts.append(f"{opening}: {'; and '.join(said)}.")
+    parts += _acts(found.located, words_of(declared))
     if found.verdict == "not_in_library" and not found.unexplained:
         parts.append("That does not settle it: what is missing is not in the library of mechanisms.")
         parts += [_flag(flag, declared) for flag in _distinct(found.constancy)[:2]]
@@ -130,13 +130,39 @@ def _flag(found: Constancy, declared: Identification) -> str:
     return f"{what} that depends on the {found.depends_on}{stronger}."
 
 
-def _where(located: Sequence[Located], words: Mapping[str, str]) -> str:
-    first = located[0]
-    phases = " and ".join(words[word] for word in first.where)
-    return (
-        f"The residual lies {phases}, most of all in {first.recording} from {first.start:.1f} s to {first.end:.1f} s "
-        f"({first.channel}, {first.share:.0%} of the excess misfit)."
-    )
+def _shows(places: Sequence[Located], words: Mapping[str, str]) -> list[str]:
+    """Where the residual of the base model lies, which is not where its cause acts."""
+    if not places:
+        return []
+    first = places[0]
+    return [
+        f"The residual shows {_phases(first, words)}, most of all in {first.recording} from {first.start:.1f} s to "
+        f"{first.end:.1f} s ({first.channel}, {first.share:.0%} of the excess misfit)."
+    ]
+
+
+def _acts(places: Sequence[Located], words: Mapping[str, str]) -> list[str]:
+    """Where each effect acts, or, without a name, where something must be added."""
+    said = []
+    for name in dict.fromkeys(place.effect for place in places):
+        own = [place for place in places if place.effect == name]
+        what = f"{name.replace('_', ' ').capitalize()} acts" if name else "Something must be added"
+        where = [
+            _in_recording(r, [p for p in own if p.recording == r]) for r in dict.fromkeys(p.recording for p in own)
+        ]
+        said.append(f"{what} {_phases(own[0], words)}: {' and '.join(where)}.")
+    return said
+
+
+def _in_recording(recording: str, places: Sequence[Located]) -> str:
+    spells = len({(place.start, place.end) for place in places})
+    start, end = min(place.start for place in places), max(place.end for place in places)
+    often = f", {spells} times" if spells > 1 else ""
+    return f"in {recording} from {start:.1f} s to {end:.1f} s{often} ({sum(p.share for p in places):.0%} of it)"
+
+
+def _phases(place: Located, words: Mapping[str, str]) -> str:
+    return " and ".join(words[word] for word in place.where)
 
 
 def effect_text(effect: Effect, mechanism: Mechanism) -> str:

@@ -23,6 +23,7 @@ def as_mapping(diagnosis: Diagnosis) -> dict[str, Any]:
         "effects": _entries(diagnosis.effects),
         "rivals": _entries(diagnosis.rivals),
         "located": _entries(diagnosis.located),
+        "shows": [_without_effect(place) for place in _entries(diagnosis.shows)],
         "constancy": _entries(diagnosis.constancy),
         "undecided": None if diagnosis.undecided is None else _entry(asdict(diagnosis.undecided)),
         "suspicions": [
@@ -49,6 +50,11 @@ def _entry(value: Any) -> Any:
     if isinstance(value, dict):
         return {"class" if key == "effect_class" else key: _entry(item) for key, item in value.items()}
     return list(value) if isinstance(value, tuple) else None if value == "" else value
+
+
+def _without_effect(place: dict[str, Any]) -> dict[str, Any]:
+    """A residual belongs to no effect and has no amplitude of its own."""
+    return {key: value for key, value in place.items() if key not in ("effect", "amplitude", "unit")}
 
 
 def _fit(fit: Fit) -> dict[str, Any]:

@@ -10,7 +10,7 @@ import numpy as np
 
 import models
 from diagnosis.answer.heldout import HORIZON
-from diagnosis.answer.locate import words_of
+from diagnosis.answer.phases import words_of
 from diagnosis.answer.result import Diagnosis, Rival, Windows
 from diagnosis.data.measured import identification_of
 from diagnosis.fit.unknowns import library
@@ -30,6 +30,8 @@ HEADLINES = {
     "not_in_library": "Something is missing that is not in the library",
     "nothing_missing": "Nothing is missing from the model",
 }
+MOST_PLACES = 8
+"""Intervals that the page lists."""
 
 
 def headline(found: Diagnosis) -> str:
@@ -82,6 +84,7 @@ def report_page(
             windows=_window_counts(diagnosis.windows),
             parameters=_parameters(diagnosis, specimen),
             pictures={name: picture.page() for name, picture in drawn.items()},
+            most_places=MOST_PLACES,
             held_out_names={trace.recording for trace in diagnosis.traces if trace.held_out},
         )
     )
@@ -101,7 +104,7 @@ def _environment() -> Environment:
     environment.filters |= {
         "plain": words.plain, "number": words.number, "percent": words.percent, "chance": words.chance,
         "unit": words.unit_text, "listed": words.listed, "named": words.named, "estimate": words.estimate_texts,
-        "stated": words.stated,
+        "stated": words.stated, "quantity": words.quantity,
     }  # fmt: skip
     return environment
 

@@ -34,7 +34,7 @@ def drawings(diagnosis: Diagnosis, specimen: Specimen, recordings: Sequence[Reco
     for recording in recordings:
         found[f"read_{recording.name}"] = partial(plot_recording, recording)
     if diagnosis.windows:
-        found["raster"] = partial(plot_raster, diagnosis.windows, diagnosis.located)
+        found["raster"] = partial(plot_raster, diagnosis.windows, diagnosis.shows)
     lead = identification_of(models.get(specimen.model)).leads[0].channel
     if any(trace.channel == lead for trace in diagnosis.traces):
         found["phase_plane"] = partial(plot_phase_plane, diagnosis.traces, diagnosis.windows, channel=lead)

@@ -19,12 +19,12 @@ GAP = 0.02
 
 def plot_raster(
     windows: Sequence[Windows],
-    located: Sequence[Located] = (),
+    shows: Sequence[Located] = (),
     *,
     width: float = WIDE,
     palette: Palette = PAPER,
 ) -> tuple[Axes, ...]:
-    """Draw the rms residual of every window over the noise, with the located intervals as brackets.
+    """Draw the rms residual of every window over the noise, with the intervals in which it ``shows`` as brackets.
 
     Each of ``windows`` is one recording and channel; the upper half of its strip is the base model,
     the lower half the extended one. Times in s, one scale for all strips.
@@ -35,7 +35,7 @@ def plot_raster(
     gap = GAP / width * end
     for ax, strip in zip(panels, windows, strict=True):
         _draw_strip(ax, strip, gap, palette)
-        for place in located:
+        for place in shows:
             if (place.recording, place.channel) == (strip.recording, strip.channel):
                 _bracket(ax, place, palette)
     panels[-1].set_xlim(0.0, end)

@@ -42,7 +42,8 @@ def test_restitution_is_named_and_recovered() -> None:
     assert found.p_value == found.effects[0].p_value == LEAST_P and found.effects[0].evidence > 50
     assert found.holdout is not None and found.holdout.share_of_achievable is not None
     assert found.holdout.share_of_achievable > 0.8
-    assert found.located and "impact" in found.located[0].where
+    assert found.located[0].effect == "restitution" and found.located[0].where == ("impact",)
+    assert found.shows and found.shows[0].where[0] == "between_impacts"
     assert "restitution" in found.statement
 
 

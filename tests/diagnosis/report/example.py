@@ -155,6 +155,7 @@ def diagnosis(verdict: Verdict = "missing") -> Diagnosis:
     )
     missing = verdict in ("missing", "cannot_tell_apart")
     nothing = verdict == "nothing_missing"
+    acting = effect.name if missing else ""
     sentence = {
         "missing": (
             "The block rocks on points 12.0 % (11.6 to 12.5 %) of the half width inside its corners. With this the "
@@ -181,6 +182,21 @@ def diagnosis(verdict: Verdict = "missing") -> Diagnosis:
         effects=(effect,) if missing else (),
         rivals=(Rival("base_gain", "base_gain", 4.1),) if verdict == "cannot_tell_apart" else (),
         located=()
+        if nothing
+        else (
+            Located(
+                "train_1",
+                CHANNEL,
+                3.1,
+                11.2,
+                ("impact", "between_impacts"),
+                0.61,
+                acting,
+                0.42 if acting else None,
+                "rad s-2" if acting else "",
+            ),
+        ),
+        shows=()
         if nothing
         else (
             Located("train_1", CHANNEL, 4.9, 9.1, ("between_impacts", "small_rotation"), 0.71),

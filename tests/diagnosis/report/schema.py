@@ -38,13 +38,19 @@ class RivalPart(Part):
     evidence_gap: float
 
 
-class LocatedPart(Part):
+class ShowsPart(Part):
     recording: str
     channel: str
     start: float
     end: float
     where: list[Where]
-    share: float = Field(ge=0.0, le=1.0)
+    share: float = Field(ge=0.0, le=1.0 + 1e-9)
+
+
+class LocatedPart(ShowsPart):
+    effect: str | None
+    amplitude: float | None
+    unit: str | None
 
 
 class ConstancyPart(Part):
@@ -86,6 +92,7 @@ class AnswerFile(Part):
     effects: list[EffectPart]
     rivals: list[RivalPart]
     located: list[LocatedPart]
+    shows: list[ShowsPart]
     constancy: list[ConstancyPart]
     undecided: UndecidedPart | None
     suspicions: list[SuspicionPart]

@@ -45,7 +45,7 @@ def test_levels_part_at_their_borders() -> None:
 
 def test_raster_draws_a_cell_for_every_window_before_and_after() -> None:
     found = diagnosis()
-    for ax, strip in zip(plot_raster(found.windows, found.located), found.windows, strict=True):
+    for ax, strip in zip(plot_raster(found.windows, found.shows), found.windows, strict=True):
         drawn = sum(len(p.get_path().vertices) // 5 for p in ax.patches if isinstance(p, PathPatch))
         assert drawn == 2 * strip.start.size
 

@@ -1,4 +1,6 @@
-"""Where the residual exceeds the noise: intervals of the recordings, and in which phase of the motion.
+"""Where a missing effect shows: intervals of the recordings in which the residual exceeds the noise.
+
+Not where it acts: a jump at an event shows in every instant after it (see `diagnosis.answer.acts`).
 
 The excess of a window is what the extended model takes off its squared misfit; where no model of the
 library is adequate, what the base model leaves over that of the noise. Runs of neighbouring
@@ -15,39 +17,28 @@ from collections.abc import Iterator
 import numpy as np
 
 from diagnosis.answer.heldout import Shown
+from diagnosis.answer.phases import ABOVE_10_HZ, phases
 from diagnosis.answer.result import Located
-from diagnosis.forces.constancy import FLAG, TIME, Tested
+from diagnosis.data.measured import Measured
 from models.base import FloatArray
-from models.identification import Identification
+from models.identification import Motion
 
 SHUFFLES = 1000
 LEVEL = 0.05
 """Probability that any scan of an answer finds an interval by chance."""
 FEWEST = 4
 """Windows from which on a run of them can stand out."""
-SHARE_OF_PLAIN = 0.3
-"""A dependence is named when it is beyond chance and its statistic this share of that of the plain force."""
 HIGH_HZ = 10.0
-EVERYWHERE, LATE, ABOVE_10_HZ = "everywhere", "late", "above_10_hz"
-WORDS = {EVERYWHERE: "throughout", LATE: "more so late in the recording", ABOVE_10_HZ: "above 10 Hz"}
-"""Phase words that every model shares, in plain English."""
 
 
-def words_of(declared: Identification) -> dict[str, str]:
-    """Every phase word of a model's motion in plain English."""
-    return {**declared.phases, **WORDS}
-
-
-def locate(
-    shown: Shown, tested: list[Tested], sensors_only: bool, explained: bool = True, seed: int = 0
-) -> tuple[Located, ...]:
+def shows(shown: Shown, explained: bool = True, seed: int = 0) -> tuple[Located, ...]:
     """Intervals by recording and channel, the largest share first; ``explained``: by a model that is adequate."""
     m = shown.measured
     excess = _taken_off(shown) if explained else _over_noise(shown)
     total = float(np.maximum(excess, 0.0).sum())
     if total <= 0.0:
         return ()
-    words = (EVERYWHERE,) if sensors_only else phases(m.identification, tested)
+    words = _words(shown, explained)
     if _above_10_hz(shown):
         words = (*words, ABOVE_10_HZ)
     rng = np.random.default_rng(seed)
@@ -65,6 +56,27 @@ def locate(
                 end = (last.first + last.samples) * recording.time_step
                 found.append(Located(recording.name, channel, float(start), float(end), words, part))
     return tuple(sorted(found, key=lambda f: -f.share))
+
+
+def _words(shown: Shown, explained: bool) -> tuple[str, ...]:
+    """The phases of the measured motion in which the squared residual lies."""
+    m = shown.measured
+    rest = np.where(m.mask, shown.before - (shown.after if explained else m.values), 0.0) / m.sigma[..., None]
+    motion = _measured_motion(m)
+    separation = m.identification.separation
+    event = np.zeros(motion.coordinate.shape, bool)
+    if separation is not None:
+        signal = separation.signal(motion)
+        event[:, :-1] = signal[:, 1:] * signal[:, :-1] <= 0.0
+    return phases(m, (rest**2).sum(axis=1), motion, event)
+
+
+def _measured_motion(m: Measured) -> Motion:
+    """The leading channel along the windows as measured."""
+    lead = m.channels.index(m.identification.leads[0].channel)
+    step = np.array([m.recordings[w.recording].time_step for w in m.windows])[:, None]
+    coordinate = m.values[:, lead]
+    return Motion(coordinate, np.gradient(coordinate, axis=1) / step, m.base, float(np.max(np.abs(coordinate))))
 
 
 def _taken_off(shown: Shown) -> FloatArray:
@@ -113,24 +125,6 @@ def _runs(sizes: FloatArray) -> FloatArray:
     length = np.arange(n + 1)[None, :] - np.arange(n + 1)[:, None]
     spread = np.sqrt(np.maximum(length * (1.0 - length / n), 1e-9))
     return np.where((length > 0) & (length < n), sums / spread, -np.inf)
-
-
-def phases(declared: Identification, tested: list[Tested]) -> tuple[str, ...]:
-    """In which phase of the motion the missing force acts, from the tests on the base fit."""
-    plain = [t for t in tested if not t.depends_on]
-    if not plain:
-        return (EVERYWHERE,)
-    leader = max(plain, key=lambda t: t.statistic)
-    at = next(kind.event for kind in declared.forces if kind.name == leader.kind)
-    words = [at or (declared.separation.between if declared.separation else EVERYWHERE)]
-    ends = {TIME: ("", LATE), **{d.name: d.phases for d in declared.dependences}}
-    least = max(FLAG, SHARE_OF_PLAIN * leader.statistic)
-    for test in tested:
-        if test.kind == leader.kind and test.depends_on in ends and test.statistic > least:
-            word = ends[test.depends_on][1 if test.sign > 0.0 else 0]
-            if word and word not in words:
-                words.append(word)
-    return tuple(words)
 
 
 def _above_10_hz(shown: Shown) -> bool:

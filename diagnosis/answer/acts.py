@@ -1,0 +1,119 @@
+"""Where a named effect acts: intervals, channels, phase and side of its force, impulse or error along the motion.
+
+An interval is a stretch in which the action exceeds LEAST of its largest value. Of an effect that acts through
+impulses alone an interval runs from its first to its last one, as long as it leaves out no two events in a row.
+Between windows nothing moves or nothing was compared: an interval goes on there if it does behind.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.answer.phases import MOSTLY, phases, share_at_events
+from diagnosis.answer.result import Located
+from diagnosis.data.measured import Measured
+from diagnosis.forces.action import Action
+from models.base import FloatArray
+
+LEAST = 0.01
+"""Share of its largest value under which an action counts as none."""
+ROUNDING = 1e-9
+"""Share of the largest rate under which an impulse is rounding."""
+PAUSE = 0.1
+"""s that an action may pass through zero within one interval."""
+
+
+def acts(measured: Measured, action: Action) -> tuple[Located, ...]:
+    """The intervals in which the effect acts, those with the largest share of its action first."""
+    size = _relative(measured, action)
+    total = float(size.sum())
+    if total <= 0.0:
+        return ()
+    whole, event = size.sum(axis=1), action.event if action.kind == "force" else None
+    at_events = event is not None and share_at_events(whole, event) >= MOSTLY
+    words = phases(measured, whole, action.motion, event)
+    unit = _unit(measured, action, at_events)
+    found = []
+    for r, recording in enumerate(measured.recordings):
+        own = np.flatnonzero(measured.recording_of == r)
+        for c, channel in enumerate(measured.channels):
+            level = LEAST * float(size[:, c].max())
+            if not own.size or float(size[own, c].max()) <= 0.0:
+                continue
+            line, compared, happens = (
+                _along(measured, own, recording.time.size, values)
+                for values in (size[own, c], measured.mask[own, c].astype(float), action.event[own].astype(float))
+            )
+            if at_events:
+                rate = _along(measured, own, recording.time.size, np.abs(action.motion.rate[own]))
+                ratio = np.where((happens > 0.0) & (compared > 0.0), line / np.maximum(rate, 1e-12), 0.0)
+                stretches = _chains(np.flatnonzero((happens > 0.0) & (compared > 0.0)), ratio > LEAST * ratio.max())
+            else:
+                stretches = _runs(line > level, compared > 0.0, recording.time_step)
+            for low, high in stretches:
+                inside = slice(low, high + 1)
+                amount = np.abs(_along(measured, own, recording.time.size, action.amount[own, c])[inside]).max()
+                per_time = 1.0 if at_events or action.kind == "error" else recording.time_step
+                found.append(
+                    Located(
+                        recording.name, channel, low * recording.time_step, (high + 1) * recording.time_step, words,
+                        float(line[inside].sum()) / total, action.effect, float(amount) / per_time, unit,
+                    )
+                )  # fmt: skip
+    return tuple(sorted(found, key=lambda place: -place.share))
+
+
+def _relative(measured: Measured, action: Action) -> FloatArray:
+    """The size of the action (W, C, N): of impulses as they are, less rounding; of errors over the noise."""
+    size = np.abs(action.amount)
+    if action.kind == "error":
+        size = size / measured.sigma[..., None]
+    else:
+        size = np.where(size > ROUNDING * float(np.max(np.abs(action.motion.rate))), size, 0.0)
+    return np.where(measured.mask, size, 0.0)
+
+
+def _unit(measured: Measured, action: Action, at_events: bool) -> str:
+    unit = next(q.unit for q in measured.model.observables if q.name == measured.identification.leads[0].channel)
+    return unit if action.kind == "error" else f"{unit} s-1" if at_events else f"{unit} s-2"
+
+
+def _along(measured: Measured, own: NDArray[np.intp], samples: int, values: FloatArray) -> FloatArray:
+    """Values (n, N) of the windows ``own`` along their recording (samples,), zero outside of them."""
+    line = np.zeros(samples)
+    for k, w in enumerate(own):
+        window = measured.windows[w]
+        line[window.first : window.first + window.samples] = values[k, : window.samples]
+    return line
+
+
+def _runs(acting: NDArray[np.bool_], compared: NDArray[np.bool_], time_step: float) -> Sequence[tuple[int, int]]:
+    """First and last sample of every stretch, over short pauses and gaps between windows."""
+    found: list[tuple[int, int]] = []
+    for k in np.flatnonzero(acting).tolist():
+        if found:
+            pause = compared[found[-1][1] + 1 : k]
+            if pause.sum() * time_step <= PAUSE:
+                found[-1] = (found[-1][0], k)
+                continue
+        found.append((k, k))
+    return found
+
+
+def _chains(events: NDArray[np.intp], acting: NDArray[np.bool_]) -> Sequence[tuple[int, int]]:
+    """First and last sample of every chain of acting events that leaves out no two events in a row."""
+    found: list[tuple[int, int]] = []
+    missed = 0
+    for k in events.tolist():
+        if not acting[k]:
+            missed += 1
+            continue
+        if found and missed < 2:
+            found[-1] = (found[-1][0], k)
+        else:
+            found.append((k, k))
+        missed = 0
+    return found

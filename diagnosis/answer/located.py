@@ -1,0 +1,50 @@
+"""Where what is missing acts: named effects along the fitted motion; without a name, where something must be added."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from diagnosis.answer.acts import acts
+from diagnosis.answer.phases import EVERYWHERE
+from diagnosis.answer.result import Located
+from diagnosis.fit.solver import Fitted
+from diagnosis.forces.action import action
+from diagnosis.forces.columns import forces
+from diagnosis.forces.scan import Missing, missing
+from diagnosis.search.refit import Explanation
+
+
+def located(base: Explanation, explained: Explanation | None, seed: int = 0) -> tuple[Located, ...]:
+    """Intervals by effect, recording and channel, the largest share first; ``explained``: an adequate model."""
+    if explained is not None:
+        fitted = explained.fitted
+        return tuple(
+            place
+            for name in explained.names
+            for place in acts(fitted.measured, action(fitted.misfit.predictor, fitted.point, name))
+        )
+    if not base.measured.identification.forces:
+        return ()
+    found = missing(forces(base.fitted), seed)
+    return () if found is None else _without_a_name(base.fitted, found)
+
+
+def _without_a_name(fitted: Fitted, found: Missing) -> tuple[Located, ...]:
+    """The windows in which a force, an impulse or an error must be added; a share by their number."""
+    m = fitted.measured
+    declared = m.identification
+    at = next((kind.event for kind in declared.forces if kind.name == found.kind), "")
+    between = declared.separation.between if declared.separation is not None else EVERYWHERE
+    words = [at or between] if found.kind else [] if found.word else [EVERYWHERE]
+    words += [found.word] if found.word else []
+    low, high = found.windows or (0, len(m.windows) - 1)
+    chosen = np.arange(low, high + 1)
+    places = []
+    for r, recording in enumerate(m.recordings):
+        own = chosen[m.recording_of[chosen] == r]
+        if own.size:
+            first, last = m.windows[own[0]], m.windows[own[-1]]
+            start, end = first.first * recording.time_step, (last.first + last.samples) * recording.time_step
+            channel = declared.leads[0].channel
+            places.append(Located(recording.name, channel, start, end, tuple(words), own.size / chosen.size))
+    return tuple(sorted(places, key=lambda place: -place.share))

@@ -1,0 +1,107 @@
+"""Where a named effect acts: intervals, phase and side of its action, held against what its law says."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import pytest
+
+from diagnosis.answer.acts import acts
+from diagnosis.answer.result import Located
+from diagnosis.data.measured import Measured
+from diagnosis.fit.prediction import Point, Predictor
+from diagnosis.fit.setup import measure
+from diagnosis.forces.action import Action, action
+from tests.diagnosis.made import SPECIMEN, TRUE, recording
+
+SAMPLE = 0.005
+
+
+def at(effect: Mapping[str, float]) -> tuple[Measured, Action]:
+    """An effect's action along the motion from the measured states of two recordings."""
+    measured = measure(SPECIMEN, [recording("a", 1), recording("b", 2)])
+    point = Point({**TRUE, **effect}, measured.states)
+    return measured, action(Predictor(measured), point, next(iter(effect)).partition(".")[0])
+
+
+def overlap(measured: Measured, places: tuple[Located, ...], r: int, inside: np.ndarray) -> float:
+    """Intersection over union, among compared samples, of recording r's intervals and of where ``inside`` (W, N)."""
+    found = np.zeros(measured.recordings[r].time.size, bool)
+    for place in places:
+        if place.recording == measured.recordings[r].name:
+            found[round(place.start / SAMPLE) : round(place.end / SAMPLE)] = True
+    found, truth = found & samples(measured, r, measured.mask[:, 0]), samples(measured, r, inside)
+    return float(np.sum(found & truth) / max(np.sum(found | truth), 1))
+
+
+def samples(measured: Measured, recording: int, inside: np.ndarray) -> np.ndarray:
+    """Samples of a recording for which ``inside`` (W, N) holds in a window."""
+    found = np.zeros(measured.recordings[recording].time.size, bool)
+    for w, window in enumerate(measured.windows):
+        if window.recording == recording:
+            found[window.first : window.first + window.samples] |= inside[w, : window.samples]
+    return found
+
+
+@pytest.mark.parametrize(
+    ("effect", "words"),
+    [
+        ({"restitution.factor_on_housner": 0.94}, ("impact",)),
+        ({"velocity_restitution.beta": 0.1}, ("impact",)),
+        ({"viscous_damping.rate": 0.3}, ("between_impacts",)),
+        ({"coulomb_damping.over_m_g_b": 0.02}, ("between_impacts",)),
+        ({"tilt.tilt": 0.005}, ("between_impacts",)),
+        ({"base_gain.gain": 0.05}, ("between_impacts",)),
+        ({"gain.gain": 0.05}, ("everywhere",)),
+        ({"delay.delay": 0.01}, ("everywhere",)),
+    ],
+)  # fmt: skip
+def test_the_phase_is_that_of_the_law(effect: Mapping[str, float], words: tuple[str, ...]) -> None:
+    places = acts(*at(effect))
+    assert {place.recording for place in places} == {"a", "b"}
+    assert all(place.where == words for place in places)
+    assert sum(place.share for place in places) == pytest.approx(1.0, abs=0.02)
+
+
+def test_a_dashpot_is_found_with_its_force() -> None:
+    measured, found = at({"viscous_damping.rate": 0.3})
+    inside = measured.mask[:, 0] & ~found.event
+    inside[:, :-1] &= inside[:, 1:]
+    inside[:, -1] = False
+    force = found.amount[:, 0] / SAMPLE
+    rate = 0.5 * (found.motion.rate + np.roll(found.motion.rate, -1, axis=1))
+    assert np.max(np.abs(force + 0.3 * rate)[inside]) < 0.02 * np.max(np.abs(0.3 * rate)[inside])
+
+
+def test_a_spring_beyond_a_gap_acts_beyond_it_only() -> None:
+    measured, found = at({"added_stiffness.over_m_g_R": 0.2, "added_stiffness.gap": 0.04})
+    beyond = np.abs(found.motion.coordinate) > 0.04
+    places = acts(measured, found)
+    assert all("large_rotation" in place.where for place in places)
+    assert all(overlap(measured, places, r, beyond) > 0.7 for r in range(2))
+
+
+@pytest.mark.parametrize("at_impacts", [True, False])
+@pytest.mark.parametrize("part", ["one recording", "after an instant", "one side"])
+def test_intervals_are_as_long_as_the_action(at_impacts: bool, part: str) -> None:
+    measured, found = at({"restitution.factor_on_housner": 0.94} if at_impacts else {"viscous_damping.rate": 0.3})
+    time = (measured.first[:, None] + np.arange(found.amount.shape[2])) * SAMPLE
+    there = {
+        "one recording": np.broadcast_to(measured.recording_of[:, None] == 1, time.shape),
+        "after an instant": time > 4.0,
+        "one side": found.motion.coordinate > 0.0,
+    }[part]
+    places = acts(measured, Action(found.effect, found.kind, found.amount * there[:, None], found.event, found.motion))
+    if part == "one side":
+        assert all("right" in place.where for place in places)
+    else:
+        assert all({"left", "right"}.isdisjoint(place.where) for place in places)
+    if not (at_impacts and part == "one side"):  # between two landings on a side nothing tells that it is the side
+        for r, one in enumerate(measured.recordings):
+            own = (measured.recording_of == r)[:, None] & there & measured.mask[:, 0]
+            if own.any():
+                happens = time[own & found.event] if at_impacts else time[own]
+                assert overlap(measured, places, r, own & (time >= happens.min()) & (time <= happens.max())) > 0.7
+            else:
+                assert one.name not in {place.recording for place in places}

@@ -1,0 +1,64 @@
+"""Where something must be added, without a name: right kind and phase, right recording and stretch, quiet on nulls."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diagnosis.data.measured import Measured
+from diagnosis.fit.misfit import Misfit
+from diagnosis.fit.prediction import Point, Predictor
+from diagnosis.fit.setup import measure
+from diagnosis.fit.solver import Fitted
+from diagnosis.fit.unknowns import of_specimen
+from diagnosis.fit.whitening import sensor_noise_only
+from diagnosis.forces.columns import Forces, forces
+from diagnosis.forces.scan import missing
+from tests.diagnosis.made import SPECIMEN, TRUE, recording
+
+
+def about(effect: Mapping[str, float], there: slice, seed: int) -> Forces:
+    """A base fit at the truth to noise, and to the response to ``effect`` in the windows ``there``."""
+    measured = measure(SPECIMEN, [recording("a", 1), recording("b", 2)])
+    predictor = Predictor(measured)
+    plain, with_effect = predictor.predict([Point(TRUE, measured.states), Point({**TRUE, **effect}, measured.states)])
+    noise = np.random.default_rng(seed).normal(size=plain.shape) * measured.sigma[..., None]
+    values = plain + noise
+    values[there] += (with_effect - plain)[there]
+    return forces(_fitted(measured, values))
+
+
+def _fitted(measured: Measured, values: np.ndarray) -> Fitted:
+    predictor = Predictor(replace(measured, values=values))
+    unknowns = of_specimen(SPECIMEN, measured.model)
+    misfit = Misfit(predictor, sensor_noise_only(predictor), unknowns, {"mass": TRUE["mass"]})
+    u = np.array([x.coordinate(TRUE[x.name]) for x in unknowns])
+    each = misfit.losses(misfit.residuals([misfit.point(u, measured.states)]))[0]
+    return Fitted(misfit, u, measured.states, each, float(each.sum()))
+
+
+@pytest.mark.parametrize(
+    ("effect", "kind"),
+    [({"restitution.factor_on_housner": 0.93}, "restitution"), ({"viscous_damping.rate": 0.3}, "viscous_damping")],
+)
+def test_an_effect_in_one_recording_is_found_there(effect: Mapping[str, float], kind: str) -> None:
+    measured = measure(SPECIMEN, [recording("a", 1), recording("b", 2)])
+    first = int(np.argmax(measured.recording_of == 1))
+    found = missing(about(effect, slice(first, None), 0))
+    assert found is not None and found.kind == kind
+    assert found.windows is not None and measured.recording_of[found.windows[0]] == 1
+    low, high = found.windows
+    assert (high - low + 1) / (len(measured.windows) - first) > 0.7
+
+
+def test_an_effect_throughout_is_found_in_all_windows() -> None:
+    found = missing(about({"coulomb_damping.over_m_g_b": 0.02}, slice(None), 0))
+    assert found is not None and found.kind in ("coulomb_damping", "viscous_damping") and found.windows is None
+
+
+def test_noise_alone_is_rarely_anything() -> None:
+    alarms = sum(missing(about({}, slice(0, 0), seed), seed) is not None for seed in range(12))
+    assert alarms <= 3  # .05 of 12 is .6, with probability .997 at most 3
