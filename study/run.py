@@ -20,6 +20,7 @@ from pathlib import Path
 from grids.grid import Rectangle
 from grids.plan import Plan, read_plan
 from models.errors import InputError
+from study.capacity import check_axes, check_capacity
 from study.cube import write_cube
 from study.keys import Setting
 from study.manifest import Manifest
@@ -106,6 +107,7 @@ def run(
     plan_folder = "" if isinstance(plan, Plan) else str(Path(plan).resolve().parent)
     plan = plan if isinstance(plan, Plan) else read_plan(plan)
     folder = Path(results).resolve() / plan.name
+    check_axes(plan)
     setting = Setting.of(plan)
     with _alone(folder):
         started, clock = now(), time.perf_counter()
@@ -158,6 +160,8 @@ def _manifest(
     except Exception:
         sample = None  # the blocks will say what fails
     most_cells = cells_per_block(plan, sample, workers)
+    if sample is not None:
+        check_capacity(plan, folder, sample, most_cells)
     new = Manifest.start(plan, most_cells, plan_folder, kept) if old is None else old.extended(plan, most_cells)
     write_text(folder / "study.toml", plan.text)
     new.save(folder)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 import tracemalloc
+import zlib
 from dataclasses import dataclass
 from math import ceil
 
@@ -26,11 +27,13 @@ SHORTEST_BLOCK = 1.0
 
 @dataclass(frozen=True)
 class Sample:
-    """``cells`` computed in ``seconds`` on one core, after compilation took ``compile_seconds``."""
+    """``cells`` computed in ``seconds`` on one core, after compilation took ``compile_seconds``; a cell takes
+    ``stored_bytes_per_cell`` in a compressed file."""
 
     cells: int
     seconds: float
     compile_seconds: float
+    stored_bytes_per_cell: float
 
     @property
     def seconds_per_cell(self) -> float:
@@ -41,10 +44,12 @@ def time_sample(plan: Plan, setting: Setting) -> Sample:
     """Compute random cells of a few motions and option words, twice as many until the time is long enough."""
     grid, motions = plan.grid, motions_by_name(plan)
 
+    outputs: dict[str, np.ndarray] = {}
+
     def seconds(cells: int) -> float:
         chosen = grid.coordinates(_choose(plan, grid.shape, cells))
         begun = time.perf_counter()
-        evaluate(setting, motions, chosen)
+        outputs.update(evaluate(setting, motions, chosen))
         return time.perf_counter() - begun
 
     first = seconds(cells := FIRST_SAMPLE)
@@ -53,7 +58,8 @@ def time_sample(plan: Plan, setting: Setting) -> Sample:
     while spent < SAMPLE_SECONDS and cells < min(LARGEST_SAMPLE, grid.size):
         cells *= 2
         spent = seconds(cells)
-    return Sample(cells, spent, compile_seconds)
+    stored = sum(len(zlib.compress(np.ascontiguousarray(values).data, 1)) for values in outputs.values())
+    return Sample(cells, spent, compile_seconds, stored / cells)
 
 
 def bytes_per_cell(plan: Plan, setting: Setting, cells: int = 512) -> float:

@@ -22,6 +22,7 @@ def plan(
     from grids.entering import entering
     from grids.plan import read_plan
     from grids.plausibility import suspicions_of_plan
+    from study.capacity import check_axes
     from study.keys import Setting
     from study.schedulers import check_scheduler, count_workers
     from study.timing import bytes_per_cell, cells_per_block, output_bytes, time_sample
@@ -29,11 +30,12 @@ def plan(
     check_scheduler("threads", workers)
     checked = read_plan(plan)
     warn(suspicions_of_plan(checked), strict)
+    check_axes(checked)
     setting = Setting.of(checked)
     sample = time_sample(checked, setting)
     n = count_workers("threads", workers)
     most = cells_per_block(checked, sample, n)
-    blocks = checked.grid.rectangles(most)
+    blocks, _ = checked.grid.count_blocks(most)
     table = Table("axis", "points", "from", "to", "unit", title=f"{checked.name}: model {checked.model}")
     for axis in checked.axes:
         ends = [f"{v:.6g}" if isinstance(v, float) else str(v) for v in axis.values[[0, -1]].tolist()]
@@ -41,13 +43,12 @@ def plan(
     console = Console()
     console.print(table)
     total = sample.seconds_per_cell * checked.grid.size
-    largest = max(block.size for block in blocks)
     rows = {
         "motions": ", ".join(motion.name for motion in checked.motions),
         "cells": f"{checked.grid.size:,}",
-        "blocks": f"{len(blocks):,} of at most {largest:,} cells",
+        "blocks": f"{blocks:,} of at most {most:,} cells",
         "cube": f"{human_bytes(checked.grid.size * output_bytes(setting))} before compression",
-        "memory a task": human_bytes(largest * bytes_per_cell(checked, setting)),
+        "memory a task": human_bytes(min(most, checked.grid.size) * bytes_per_cell(checked, setting)),
         "time": f"{human_time(total)} on one core, {human_time(total / n)} on {n} "
         f"({sample.cells} cells in {sample.seconds:.3f} s; compiling {human_time(sample.compile_seconds)})",
     }

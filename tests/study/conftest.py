@@ -15,7 +15,7 @@ def block_size(monkeypatch: pytest.MonkeyPatch) -> Callable[[int], None]:
     """Set how many cells a block may have, in place of the timed sample."""
 
     def set_size(cells: int) -> None:
-        monkeypatch.setattr(study.run, "time_sample", lambda plan, setting: Sample(1, 1.0, 0.0))
+        monkeypatch.setattr(study.run, "time_sample", lambda plan, setting: Sample(1, 1.0, 0.0, 8.0))
         monkeypatch.setattr(study.run, "cells_per_block", lambda plan, sample, workers: cells)
 
     return set_size
