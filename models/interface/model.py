@@ -38,6 +38,7 @@ class Interface(Model[LayeredWall]):
     states = declaration.STATES
     identification = IDENTIFICATION
     vertical_by_default = True
+    resumes_with: tuple[str, ...] | None = ("vertical_acceleration", "pivot_inset", "hardening", "locking")
 
     def assemble(self, values: Values, options: Mapping[str, str], *, vertical: bool, size: int) -> LayeredWall:
         return assemble(values, options, vertical, size)

@@ -29,6 +29,7 @@ class InterfaceLinear(Interface):
     options = declaration.OPTIONS
     outputs = declaration.OUTPUTS
     identification = IDENTIFICATION
+    resumes_with = ("vertical_acceleration", "pivot_inset")
 
     def resolve_options(self, options: Mapping[str, str] | None) -> dict[str, str]:
         """Every option of `interface` with its word: `joints` as chosen, the others as the paper has them."""
