@@ -6,9 +6,9 @@ import json
 from pathlib import Path
 
 from benchmarks.diagnosis import weak_form
-from benchmarks.diagnosis.answers import Answering, diagnosed
 from benchmarks.diagnosis.bench import bench
 from benchmarks.diagnosis.suite import place, suite
+from diagnosis.prove.answers import Answering, diagnosed
 
 SEED = 29
 """Its suite begins with a null and a hidden restitution, both at 1 % noise."""
