@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from typing_extensions import TypeVar  # typing has no default of a parameter before Python 3.13
 
-from models.answers import answers
+from models.answers import among, answers, unanswered
 from models.base import FloatArray, History, Mechanism, Parameter, Quantity, Values
 from models.errors import InputError, nearest
 from models.identification import Identification
@@ -97,8 +97,31 @@ class Model(ABC, Generic[C]):
     def derive(self, values: Values, options: Mapping[str, str] | None = None) -> dict[str, FloatArray]:
         """Auxiliary constants (alpha, R, p ...) under ``options``, arrays ``(n,)`` by the names of `derived`."""
 
+    def cannot_stand(self, coefficients: C) -> Sequence[tuple[NDArray[np.bool_], str]]:
+        """Lanes (n,) without a state of rest under their own load, by why, with a sentence about the worst of each.
+
+        Default: all stand.
+        """
+        return []
+
+    def refused(self, coefficients: C) -> list[str]:
+        """Why not one lane can stand; empty where one can."""
+        found = self.cannot_stand(coefficients)
+        return [said for unable, said in found if np.any(unable)] if np.all(_any_of(found)) else []
+
     def run(self, integrator: str, coefficients: C, request: Request) -> Run:
-        """All lanes by the integrator of that name."""
+        """All lanes by the integrator of that name; what cannot stand is not_converged, all else of it nan."""
+        unable = _any_of(self.cannot_stand(coefficients))
+        if not np.any(unable):
+            return self._integrated(integrator, coefficients, request)
+        outputs = [quantity for quantity in self.outputs if not quantity.peak_of]
+        whole = unanswered(outputs, unable.size, request.samples, len(self.states))
+        able = np.flatnonzero(~unable)
+        if not able.size:
+            return whole
+        return among(whole, able, self._integrated(integrator, coefficients.take(able), request.take(able)))
+
+    def _integrated(self, integrator: str, coefficients: C, request: Request) -> Run:
         if integrator == "lanes":
             return self.run_lanes(coefficients, request)
         lanes = [slice(k, k + 1) for k in range(coefficients.size)]
@@ -113,9 +136,10 @@ class Model(ABC, Generic[C]):
     ) -> dict[str, FloatArray]:
         """What a run goes on from, arrays (n,) as for ``initial``: states (n, k) as the integrators return them.
 
-        ``outputs`` and ``initial``: of the run that ends there; default: `states` in their order.
+        ``outputs`` and ``initial``: of the run that ends there; default: `states` in their order, nothing of a model
+        that no run goes on in (`resumes_with`).
         """
-        return dict(zip(self.states, states.T, strict=True))
+        return {} if self.resumes_with is None else dict(zip(self.states, states.T, strict=True))
 
     # --- the same for all
 
@@ -255,6 +279,8 @@ class Model(ABC, Generic[C]):
     ) -> tuple[History, dict[str, FloatArray]]:
         """A history of so many ``samples`` after the first, and what it would go on from (`resume`)."""
         coefficients = self._shaken(values, options, shaking, 1, integrator)
+        for sentence in self.refused(coefficients):
+            raise InputError(sentence)
         step = shaking.time_step
         request = Request(
             shaking, np.array([scale], dtype=np.float64), self.resolve_options(options),
@@ -290,3 +316,8 @@ class Model(ABC, Generic[C]):
         if coefficients.size != size:
             raise ValueError(f"values broadcast to {coefficients.size} lanes, {size} are asked for")
         return coefficients
+
+
+def _any_of(found: Sequence[tuple[NDArray[np.bool_], str]]) -> NDArray[np.bool_]:
+    """Lanes (n,) that any of the reasons holds for; one False without reasons."""
+    return np.any([unable for unable, _ in found], axis=0) if found else np.zeros(1, np.bool_)
