@@ -13,7 +13,7 @@ Without stages it always acts. The order of stages is that of the tests.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -73,14 +73,29 @@ def intervals(stages: Sequence[Stage], recording: str | None) -> tuple[tuple[flo
     return ALWAYS if not stages or stages[-1].ends == math.inf else ()
 
 
-def stretches(specimen: Specimen, recording: str | None) -> list[tuple[float, Mechanisms]]:
-    """From which time (s, the first 0) on which mechanisms act in a recording."""
-    acting = {name: intervals(specimen.stages.get(name, ()), recording) for name in specimen.mechanisms}
+def changes(
+    names: Collection[str], stages: Mapping[str, Sequence[Stage]], recording: str | None
+) -> list[tuple[float, frozenset[str]]]:
+    """From which time (s, the first 0) on which mechanisms of ``names`` act in a recording."""
+    acting = {name: intervals(stages.get(name, ()), recording) for name in names}
     ends = {end for spans in acting.values() for span in spans for end in span if 0.0 < end < math.inf}
     return [
-        (time, {n: v for n, v in specimen.mechanisms.items() if any(a <= time < b for a, b in acting[n])})
+        (time, frozenset(name for name, spans in acting.items() if any(a <= time < b for a, b in spans)))
         for time in (0.0, *sorted(ends))
     ]
+
+
+def stretches(specimen: Specimen, recording: str | None) -> list[tuple[float, Mechanisms]]:
+    """From which time (s, the first 0) on which mechanisms of a specimen act in a recording, with their values."""
+    return [
+        (time, {name: values for name, values in specimen.mechanisms.items() if name in acting})
+        for time, acting in changes(specimen.mechanisms.keys(), specimen.stages, recording)
+    ]
+
+
+def first_sample(time: float, time_step: float) -> int:
+    """The first sample at or after an instant (s)."""
+    return math.ceil(time / time_step - 1e-9)
 
 
 def after_the_last(specimen: Specimen) -> Specimen:

@@ -187,10 +187,12 @@ def trajectories(
 
     The change may lie before or after the lane's window, which then is of one part.
     """
-    if len(parts) > 1:
-        check(model, parts)
+    if len(parts) == 1:
+        return model.trajectories(parts[0], shaking, first=first, samples=samples, initial=initial, options=options)
     n, end = first.size, first + samples - 1
     edges = [first, *(np.clip(changes[:, j], first, end) for j in range(len(parts) - 1)), end]
+    if np.any(np.count_nonzero(np.diff(edges, axis=0) > 0, axis=0) > 1):
+        check(model, parts)
     state = {name: np.broadcast_to(np.asarray(v, float), (n,)).copy() for name, v in initial.items()}
     found: dict[str, FloatArray] = {}
     for values, start, stop in zip(parts, edges[:-1], edges[1:], strict=True):

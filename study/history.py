@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -17,7 +16,7 @@ from grids.instruments.base import Surroundings
 from grids.netcdf_lock import NETCDF_LOCK
 from grids.recordings.base import SHARE
 from grids.specimen import Specimen
-from grids.stages import Mechanisms, stretches
+from grids.stages import Mechanisms, first_sample, stretches
 from models.base import Event, FloatArray, History
 from models.errors import InputError, nearest
 from models.model import Model
@@ -57,7 +56,7 @@ def simulate_specimen(
     if integrator not in model.integrators:
         raise InputError(f"integrator '{integrator}' is not known: {nearest(integrator, model.integrators)}")
     read = shaking.scaled(scale)
-    ways = [(math.ceil(begin / read.time_step - 1e-9), acting) for begin, acting in stretches(specimen, recording)]
+    ways = [(first_sample(begin, read.time_step), acting) for begin, acting in stretches(specimen, recording)]
     instruments = {name: given for name, given in specimen.mechanisms.items() if name in INSTRUMENTS}
     history = simulate(
         model,
