@@ -149,13 +149,26 @@ class Separation:
 
 
 @dataclass(frozen=True)
+class Scatter:
+    """Events that do not repeat exactly: the ``rate`` after one is random about the law's.
+
+    The event is a change of sign of ``coordinate``; both are states that are observables too. ``events``: what they
+    are called, in the plural.
+    """
+
+    events: str
+    coordinate: str
+    rate: str
+
+
+@dataclass(frozen=True)
 class Identification:
     """The declaration of one model.
 
     ``chaotic``: neighbouring trajectories diverge quickly, so that runs from rest show little. ``windows`` None: each
     recording is one window. ``forces`` empty: laws outside the library are not tested for. ``phases``: every phase
-    word in plain English. ``not_carried``: what else a window would have to inherit and does not yet; with it, or
-    with a latent state, calibration and diagnosis are refused.
+    word in plain English. ``scatter`` None: events are taken to repeat exactly. ``not_carried``: what else a window
+    would have to inherit and does not yet; with it, or with a latent state, calibration and diagnosis are refused.
     """
 
     leads: tuple[Lead, ...]
@@ -166,6 +179,7 @@ class Identification:
     forces: tuple[Force, ...] = ()
     dependences: tuple[Dependence, ...] = ()
     separation: Separation | None = None
+    scatter: Scatter | None = None
     phases: Mapping[str, str] = field(default_factory=dict)
     not_carried: tuple[str, ...] = ()
 

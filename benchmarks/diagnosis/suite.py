@@ -30,7 +30,7 @@ NOT_HALVED = ("sliding",)
 class CaseDesign:
     """What case ``number`` is to hold: catalogue names (or one law's), at which noise and size.
 
-    ``imperfection``: one of `imperfections.NAMES`, or none; ``beginning``: one of `beginnings.BEGINNINGS`, or none.
+    ``imperfection``: one of `imperfections.NAMES`, or none.
     """
 
     number: int
@@ -39,7 +39,6 @@ class CaseDesign:
     noise: float
     relative_size: float
     imperfection: str = ""
-    beginning: str = ""
 
     @property
     def label(self) -> str:
@@ -63,8 +62,8 @@ GROUPS = (
 
 
 MAKERS = (
-    "beginnings", "cases", "effects", "imperfections", "instruments", "laboratory", "open_laws", "scene", "shakings",
-    "size", "specimens", "suite", "truth", "unseen_laws",
+    "cases", "effects", "imperfections", "instruments", "laboratory", "open_laws", "scene", "shakings", "size",
+    "specimens", "suite", "truth", "unseen_laws",
 )  # fmt: skip
 """Files that the cases of a seed depend on."""
 

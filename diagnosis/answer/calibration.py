@@ -9,8 +9,9 @@ import numpy as np
 
 from diagnosis.answer.heldout import frozen, relative_misfit
 from diagnosis.data.measured import Measured
+from diagnosis.errors.model import calibrated
 from diagnosis.fit.intervals import Estimate, correlation, estimates, profile_rise
-from diagnosis.fit.setup import base_fit, measure
+from diagnosis.fit.setup import measure
 from diagnosis.fit.solver import Fitted
 from diagnosis.progress import Progress, silent
 from diagnosis.search.refit import Explanation
@@ -79,12 +80,12 @@ def calibrate(
     profiles = len(specimen.tolerance) + len(specimen.calibrate) if profile else 0
     steps = _steps(progress, 1 + len(alone) + 2 * profiles)
     steps("fitting all recordings together")
-    fitted = base_fit(specimen, measured, seed)
+    fitted, _ = calibrated(specimen, measured, seed)
     by_recording = {}
     for recording in alone:
         steps(f"fitting {recording.name} alone")
         by_recording[recording.name] = estimates(
-            base_fit(specimen, measure(specimen, [recording], measured.reference_peak), seed)
+            calibrated(specimen, measure(specimen, [recording], measured.reference_peak), seed)[0]
         )
     return _summary(fitted, measured, profile, by_recording, steps)
 

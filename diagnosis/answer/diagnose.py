@@ -18,17 +18,20 @@ from diagnosis.answer.shows import shows
 from diagnosis.answer.statement import statement
 from diagnosis.answer.whole_runs import with_runs_from_rest
 from diagnosis.data.measured import Measured
+from diagnosis.errors.model import calibrated
+from diagnosis.errors.summary import summary
 from diagnosis.fit.intervals import Estimate, estimates
-from diagnosis.fit.setup import base_fit, measure
+from diagnosis.fit.setup import measure
 from diagnosis.forces.columns import Forces, forces
 from diagnosis.forces.constancy import Tested, flags, tests
 from diagnosis.forces.missing_force import missing_force
 from diagnosis.progress import Progress, Stages, silent
 from diagnosis.search import bootstrap as bootstrapping
 from diagnosis.search.candidates import candidates
-from diagnosis.search.found import Search, evidence, misfit_per_sample, rivals
+from diagnosis.search.found import Search, misfit_per_sample, rivals
 from diagnosis.search.refit import Explanation
 from diagnosis.search.select import search, take_best_single
+from diagnosis.search.weighing import evidence
 from grids.recordings.base import Recording
 from grids.specimen import Specimen
 
@@ -49,14 +52,14 @@ def diagnose(
     ends it: the answer holds what was found so far and has ``finished`` false. One after the search leaves
     out what the answer can do without (``skipped``); a second one is raised. Raises InputError.
     """
-    progress("calibrating the base model", 0.02)
+    progress("calibrating the base model and the errors of the recordings", 0.02)
     measured = measure(specimen, training)
     held = measure(specimen, holdout, measured.reference_peak) if holdout else None  # refused before the search
-    base = Explanation((), base_fit(specimen, measured, seed))
-    found = Search(base, candidates(measured, specimen))
+    fitted, errors = calibrated(specimen, measured, seed)
+    found = Search(Explanation((), fitted), candidates(measured, specimen), errors)
     finished = True
     try:
-        for stage in search(base, found.candidates, progress):
+        for stage in search(found, progress):
             found = stage
     except KeyboardInterrupt:
         finished = False
@@ -93,9 +96,11 @@ def _assemble(
     if found.outside is not None:
         flagged = (found.outside, *(f for f in flagged if f.parameter != found.outside.parameter))
     near = rivals(found)
-    verdict = verdict_of(found, near, bool(flagged), not unexplained, finished)
-    gains = stages.needed(lambda: evidence(found).tolist())
-    p_value = p_of_missing(found, gains, finished)
+    progress("stating the errors", 0.87)
+    errors = stages.needed(lambda: summary(found.errors, measured))
+    verdict = verdict_of(found, near, bool(flagged) or errors.inadequacy.large, not unexplained, finished)
+    gains = stages.needed(lambda: evidence(found))
+    p_value = p_of_missing(found, gains, errors.inadequacy, finished)
     if draws and finished:
         score_p = p_value
         p_value = stages.optional(
@@ -154,6 +159,7 @@ def _assemble(
         ),
         prediction_horizon=stages.optional("prediction horizons", lambda: _horizons(shown, specimen), dict),
         missing_force=force,
+        errors=errors,
         reference_peak=true_peak(chosen),
         provenance=_provenance(specimen, found, tested, seed),
         finished=finished,

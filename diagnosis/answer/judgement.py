@@ -8,13 +8,12 @@ import numpy as np
 
 from diagnosis.answer.heldout import Shown
 from diagnosis.answer.result import Undecided, Verdict
+from diagnosis.errors.adequacy import Inadequacy
 from diagnosis.search.candidates import Candidate
-from diagnosis.search.found import MISSING, PER_SHAPE, Search, adjusted, misfit_per_sample
+from diagnosis.search.found import MISSING, PER_SHAPE, Search, adjusted
 from diagnosis.search.null import LEAST_P
 from diagnosis.search.refit import Explanation, gain_by_window
 
-INADEQUATE = 1.35
-"""Misfit per sample of the final model beyond which no mechanism of the library is adequate."""
 UNEXPLAINED = 0.5
 """Share of the squared motion in the windows that, left over by the best model, makes any name meaningless."""
 CHANCE = 0.05
@@ -32,10 +31,10 @@ def explains(shown: Shown) -> bool:
 def verdict_of(
     found: Search, near: Sequence[tuple[Explanation, Candidate, float]], flagged: bool, explained: bool, finished: bool
 ) -> Verdict:
-    """One of the four. ``near``: the rivals; ``flagged``: something is not constant."""
+    """One of the four. ``near``: the rivals; ``flagged``: something is not constant, or the model errs."""
     if not finished:  # what was not tried may explain it as well
         return "cannot_tell_apart"
-    if flagged or not explained or misfit_per_sample(found.chosen) >= INADEQUATE:
+    if flagged or not explained:
         return "not_in_library"
     if found.best is None:
         return "nothing_missing"
@@ -54,13 +53,17 @@ def p_of_effects(found: Search, gains: Sequence[float]) -> list[float]:
     return [p_value(found, gain - cost) for gain, cost in zip(gains, price, strict=True)]
 
 
-def p_of_missing(found: Search, gains: Sequence[float], finished: bool) -> float | None:
-    """p-value of "something is missing": of the strongest effect, else suspect; None if a search was stopped early."""
+def p_of_missing(found: Search, gains: Sequence[float], left: Inadequacy, finished: bool) -> float | None:
+    """p-value of "something is missing"; None if a search was stopped early.
+
+    Of the strongest effect, else of the strongest suspect, or where the model's own error is large, of that.
+    """
+    least = [max(left.p_value, LEAST_P)] if left.large else []
     if gains:
-        return min(p_of_effects(found, gains))
+        return min([*p_of_effects(found, gains), *least])
     if found.null is None or not finished:
         return None
-    return p_value(found, max((found.gain(e) for e in found.singles), default=0.0))
+    return min([p_value(found, max((found.gain(e) for e in found.singles), default=0.0)), *least])
 
 
 def undecided(found: Search, p_missing: float | None) -> Undecided | None:

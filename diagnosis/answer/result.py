@@ -9,6 +9,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis.errors.summary import ErrorModel
 from diagnosis.fit.intervals import Estimate
 from diagnosis.forces.constancy import Constancy
 
@@ -160,6 +161,10 @@ class Diagnosis:
     """Shape of the force that is not in the library: terms along the motion and curves."""
     reference_peak: float | None = None
     """Rotation (rad) over which levels of instruments among the effects are given; None without such an effect."""
+    errors: ErrorModel | None = None
+    """The errors of the recordings, estimated with what was found; None where a stopped search has none."""
+    not_tried: Mapping[str, str] = field(default_factory=dict)
+    """By mechanism: why it was not tried."""
     provenance: Mapping[str, Any] = field(default_factory=dict)
     finished: bool = True
     """False when the user stopped the search: what stands is what was found so far."""

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis.data.averaging import averaged, stride
 from diagnosis.data.noise import base_noise, response_noise, smooth
 from diagnosis.data.windows import ABOVE_NOISE, Window, cut, over_noise
 from grids.recordings.base import CHANNELS, REQUIRED, SHARE, FloatArray, Recording
@@ -60,10 +62,24 @@ class Measured:
     def first(self) -> NDArray[np.int64]:
         return np.array([w.first for w in self.windows], np.int64)
 
-    @property
+    @cached_property
+    def strides(self) -> NDArray[np.int64]:
+        """Samples of each window (W,) that are averaged to one that is compared."""
+        return np.array([stride(self.recordings[w.recording].time_step) for w in self.windows], np.int64)
+
+    def averaged(self, values: FloatArray) -> FloatArray:
+        """Samples (..., W, C, n) that are compared, of samples (..., W, C, N) as recorded."""
+        return averaged(values, self.strides)
+
+    @cached_property
+    def compared(self) -> NDArray[np.bool_]:
+        """Which of the averaged samples are compared (W, C, n)."""
+        return np.asarray(self.averaged(self.mask.astype(np.float64)) == 1.0)
+
+    @cached_property
     def count(self) -> FloatArray:
-        """Samples compared in each window, all channels together (W,)."""
-        return np.asarray(self.mask.sum(axis=(1, 2)), np.float64)
+        """Averaged samples compared in each window, all channels together (W,)."""
+        return np.asarray(self.compared.sum(axis=(1, 2)), np.float64)
 
     def cut_again(self, windows: tuple[Window, ...]) -> Measured:
         """The same starts with other lengths."""

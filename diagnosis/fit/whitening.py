@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from diagnosis.data.measured import Measured
 from diagnosis.fit.prediction import Point, Predictor
 from models.base import FloatArray
 
@@ -29,34 +30,47 @@ DISTURBANCE_STEP = 0.005
 
 @dataclass(frozen=True)
 class Whitening:
-    """``scale`` (W, C, N) is mask over sigma; ``basis`` (W, M, K) and ``shrink`` (W, K) as above, M = C N."""
+    """Averages of ``measured`` in units of what is expected.
 
-    scale: FloatArray
+    ``sensor``: one over the deviation (W, C, n) of independent errors, 0 where nothing is compared, or (W, C, n, n),
+    the inverse of the lower Cholesky factor of their covariance; ``basis`` (W, M, K) and ``shrink`` (W, K) as above, M
+    = C n.
+    """
+
+    measured: Measured
+    sensor: FloatArray
     basis: FloatArray | None = None
     shrink: FloatArray | None = None
 
     def __call__(self, difference: FloatArray) -> FloatArray:
         """Whitened residuals (..., W, M) of differences (..., W, C, N)."""
-        scaled = difference * self.scale
-        flat = scaled.reshape(*scaled.shape[:-2], -1)
+        flat = self.of_sensors(self.measured.averaged(difference))
         if self.basis is None or self.shrink is None:
             return flat
-        inside = np.einsum("wmk,...wm->...wk", self.basis, flat, optimize=True)
-        return np.asarray(flat - np.einsum("wmk,...wk->...wm", self.basis, inside * self.shrink, optimize=True))
+        rows = np.moveaxis(flat.reshape(-1, *flat.shape[-2:]), 0, -1)
+        inside = np.swapaxes(self.basis, 1, 2) @ rows
+        rows = rows - self.basis @ (self.shrink[:, :, None] * inside)
+        return np.ascontiguousarray(np.moveaxis(rows, -1, 0)).reshape(flat.shape)
 
-    def draw(self, rng: np.random.Generator) -> FloatArray:
-        """Noise (W, C, N) of the covariance C, in units of sigma."""
-        white = rng.normal(size=self.scale.shape)
-        if self.basis is None or self.shrink is None:
-            return white
-        s = np.sqrt(np.maximum((1.0 - self.shrink) ** -2 - 1.0, 0.0))
-        inside = s * rng.normal(size=s.shape)
-        return np.asarray(white + np.einsum("wmk,wk->wm", self.basis, inside).reshape(white.shape))
+    def of_sensors(self, averages: FloatArray) -> FloatArray:
+        """Averages (..., W, C, n) in units of the sensors' errors, flat (..., W, M)."""
+        if self.sensor.ndim == 3:
+            found = averages * self.sensor
+        else:
+            rows = np.moveaxis(averages.reshape(-1, *averages.shape[-3:]), 0, -1)
+            found = np.moveaxis(self.sensor @ rows, -1, 0)
+        return np.ascontiguousarray(found).reshape(*averages.shape[:-2], -1)
+
+    def with_columns(self, columns: FloatArray) -> Whitening:
+        """The whitening of the sensors' errors and of independent normal numbers times ``columns`` (W, C, N, K)."""
+        each = self.of_sensors(self.measured.averaged(np.moveaxis(columns, -1, 0)))
+        u, s, _ = np.linalg.svd(np.moveaxis(each, 0, -1), full_matrices=False)
+        return replace(self, basis=u, shrink=1.0 - 1.0 / np.sqrt(1.0 + s**2))
 
 
 def sensor_noise_only(predictor: Predictor) -> Whitening:
     m = predictor.measured
-    return Whitening(m.mask / m.sigma[:, :, None])
+    return Whitening(m, m.compared * np.sqrt(m.strides)[:, None, None] / m.sigma[:, :, None])
 
 
 @dataclass(frozen=True)
@@ -92,14 +106,15 @@ def responses(predictor: Predictor, point: Point) -> Responses:
 
 def with_base_noise(predictor: Predictor, response: Responses) -> Whitening:
     """The whitening of sensor noise and base noise together."""
+    return sensor_noise_only(predictor).with_columns(base_columns(predictor, response))
+
+
+def base_columns(predictor: Predictor, response: Responses) -> FloatArray:
+    """What the noise of the base motion leaves: columns (W, C, N, K) of unit variance."""
     m = predictor.measured
-    plain = sensor_noise_only(predictor)
     variance = []
     for r, recording in enumerate(m.recordings):
         floor = DISTURBANCE * float(np.max(np.abs(m.shakings[r].horizontal)))
         variance.append((m.base_noise[r] ** 2 * recording.time_step + floor**2 * DISTURBANCE_STEP) / HALF_WIDTH)
     deviation = np.sqrt(np.array(variance))[m.recording_of]
-    spread = response.values * plain.scale[..., None] * deviation[:, None, None, None]
-    flat = spread.reshape(spread.shape[0], -1, spread.shape[-1])
-    u, s, _ = np.linalg.svd(flat, full_matrices=False)
-    return replace(plain, basis=u, shrink=1.0 - 1.0 / np.sqrt(1.0 + s**2))
+    return np.asarray(response.values * m.mask[..., None] * deviation[:, None, None, None])

@@ -1,7 +1,7 @@
 """Parametric bootstrap of the p-value: recordings made by the fitted base model, searched the same way.
 
-Each draw is the base model's windows plus noise of the sensor and what noise of the base motion does to them
-(covariance of `diagnosis.fit.whitening`). The gains that a short search brings are compared with the gain that
+Each draw is the base model's windows plus errors as estimated (`diagnosis.errors.draws`), and passes through the whole
+chain: base fit, errors estimated anew, search. The gains that a short search brings are compared with the gain that
 the same search brings on the recordings. Beyond the draws' upper quarter the tail is that of lambda chi-squared
 with one degree of freedom, lambda from the mean excess over the quarter's start v lambda:
 
@@ -16,9 +16,10 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.stats import chi2
 
+from diagnosis.errors.draws import draw
+from diagnosis.errors.model import Errors, refitted
 from diagnosis.fit.linearisation import linearise_about
-from diagnosis.fit.misfit import Misfit
-from diagnosis.fit.solver import fit
+from diagnosis.fit.solver import Fitted, fit
 from diagnosis.fit.starts import start_of
 from diagnosis.progress import Progress
 from diagnosis.search.candidates import candidates
@@ -38,27 +39,30 @@ FARTHEST = 600.0
 
 def p_value(specimen: Specimen, found: Search, draws: int, seed: int, progress: Progress) -> float:
     """Probability of a gain at least as large as that of the recordings if nothing is missing."""
-    base = found.base.fitted
+    start = found if found.at_null is None else found.at_null
+    base, errors = start.base.fitted, start.errors
     predictor, m = base.misfit.predictor, base.measured
     motion = predictor.predict([base.point])[0]
     rng = np.random.default_rng(seed)
     progress("bootstrap: the recordings", 0.9)
-    observed = gain(specimen, base.misfit, base.states)
+    observed = gain(specimen, base, errors)
     drawn = []
-    for draw in range(draws):
-        progress(f"bootstrap {draw + 1} of {draws}", 0.9)
-        noise = base.misfit.whitening.draw(rng) * m.sigma[..., None]
-        made = replace(m, values=np.where(m.mask, motion + noise, 0.0))
-        drawn.append(gain(specimen, replace(base.misfit, predictor=replace(predictor, measured=made)), base.states))
+    for turn in range(draws):
+        progress(f"bootstrap {turn + 1} of {draws}", 0.9)
+        made = replace(m, values=np.where(m.mask, motion + draw(errors, m, rng), 0.0))
+        misfit = replace(base.misfit, predictor=replace(predictor, measured=made))
+        drawn.append(gain(specimen, replace(base, misfit=misfit), errors))
     return tail_probability(observed, np.array(drawn))
 
 
-def gain(specimen: Specimen, misfit: Misfit, states: FloatArray) -> float:
-    """What the best of the strongest mechanisms of a screen takes off the base model's loss."""
-    base = Explanation((), fit(misfit, start_of(misfit.unknowns), states))
-    scores = score(linearise_about(base.fitted), candidates(misfit.measured, specimen))
-    fits = [extend(base, entry.candidate, start) for entry in scores[:FEWEST] for start in entry.starts]
-    return max([0.0, *(base.loss - adjusted(each) for each in fits)])
+def gain(specimen: Specimen, base: Fitted, errors: Errors) -> float:
+    """What the best of the strongest mechanisms of a screen takes off the base model's loss, errors estimated anew."""
+    first = fit(base.misfit, start_of(base.misfit.unknowns), base.states)
+    fitted, _ = refitted(first, errors.base, errors)
+    explained = Explanation((), fitted)
+    scores = score(linearise_about(fitted), candidates(fitted.measured, specimen))
+    fits = [extend(explained, entry.candidate, start) for entry in scores[:FEWEST] for start in entry.starts]
+    return max([0.0, *(explained.loss - adjusted(each) for each in fits)])
 
 
 def tail_probability(observed: float, drawn: FloatArray) -> float:

@@ -12,10 +12,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from diagnosis.data.measured import Measured
+from diagnosis.errors.model import Errors
 from diagnosis.forces.constancy import Constancy
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.null import Null
-from diagnosis.search.refit import Explanation, from_other, gain_by_window, without
+from diagnosis.search.refit import Explanation, from_other, gain_by_window
 from diagnosis.search.screen import Score
 from models.base import FloatArray
 
@@ -39,11 +40,15 @@ class Search:
 
     base: Explanation
     candidates: tuple[Candidate, ...]
+    errors: Errors
+    """Of the recordings, about the base model or about the best one found."""
     scores: list[Score] = field(default_factory=list)
     null: Null | None = None
     singles: list[Explanation] = field(default_factory=list)
     tried: list[Explanation] = field(default_factory=list)
     best: Explanation | None = None
+    at_null: Search | None = None
+    """This search as it stood under the errors of the base model, once they were estimated anew."""
     outside: Constancy | None = None
     """A force outside the library that explains what the best single leaves."""
 
@@ -134,12 +139,3 @@ def rivals(found: Search) -> list[tuple[Explanation, Candidate, float]]:
         seen.add(new[0].name)
         near.append((other, new[0], max(gap, 0.0)))
     return near
-
-
-def evidence(found: Search) -> FloatArray:
-    """Gain of each effect over the best model without it (n_effects,)."""
-    if found.best is None:
-        return np.zeros(0)
-    if len(found.best.candidates) == 1:
-        return np.array([found.base.loss - found.best.loss])
-    return np.array([without(found.best, c).loss - found.best.loss for c in found.best.candidates])

@@ -10,7 +10,6 @@ from collections.abc import Iterator, Sequence
 
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.progress import Progress
-from diagnosis.search.candidates import Candidate
 from diagnosis.search.found import MISSING, Search, adequate, adjusted, explains_all, survives
 from diagnosis.search.null import null_distribution
 from diagnosis.search.outside import outside
@@ -26,7 +25,10 @@ from diagnosis.search.refit import (
     without,
 )
 from diagnosis.search.screen import Score, score
+from diagnosis.search.weighing import by_white_noise, weigh_again
 
+FAINT = 8.0
+"""Gain of the strongest single that is not taken further where the base model is adequate."""
 WORTH = 4.0
 """Linearisation statistic under which a refit is not tried (the strongest FEWEST are tried all the same)."""
 FEWEST, MOST = 5, 16
@@ -46,9 +48,8 @@ POOL_SHARE = 0.25
 """Singles whose gain is this share of the best one's are tried as parts of a pair."""
 
 
-def search(base: Explanation, candidates: Sequence[Candidate], progress: Progress) -> Iterator[Search]:
+def search(found: Search, progress: Progress) -> Iterator[Search]:
     """Yields the growing search after each stage; the last one is the answer."""
-    found = Search(base, tuple(candidates))
     yield found
     progress("screening the mechanisms", 0.1)
     _singles(found, progress)
@@ -58,6 +59,9 @@ def search(base: Explanation, candidates: Sequence[Candidate], progress: Progres
     take_best_single(found)
     if found.best is None:
         return
+    yield found
+    progress("estimating the errors with what was found", 0.46)
+    weigh_again(found)
     yield found
     _pairs(found, progress)
     yield found
@@ -101,12 +105,16 @@ def _singles(found: Search, progress: Progress) -> None:
     found.scores = score(opened, found.candidates)
     found.null = null_distribution(opened, found.scores)
     wanted = worth_a_refit(found.scores, FEWEST, SHARE_OF_FIRST)[:MOST]
+    sound = adequate(found.base)
     for k, entry in enumerate(wanted):
         progress(f"refitting {entry.candidate.name}", 0.15 + 0.3 * k / len(wanted))
         fits = [extend(found.base, entry.candidate, start, QUICK) for start in entry.starts]
-        found.singles.append(best_of(fits))
+        single = best_of(fits)
+        found.singles.append(single if sound else by_white_noise(single, found.errors))
     found.singles.sort(key=adjusted)
     if not found.singles:
+        return
+    if adequate(found.base) and found.gain(found.singles[0]) < FAINT:
         return
     leader = found.singles[0] = again(reshaped(found.singles[0]))
     if found.gain(leader) < MISSING:
@@ -162,6 +170,7 @@ def _pairs(found: Search, progress: Progress) -> None:
     alone = best_of([e for e in found.singles if e.names[0] in pair.names] or [found.best])
     if adjusted(found.best) - adjusted(pair) >= found.more and survives(alone, pair, found.more):
         found.best = again(reshaped(pair))
+        weigh_again(found)
 
 
 def seconds(found: Search, explanation: Explanation) -> list[Score]:
@@ -194,6 +203,7 @@ def _more(found: Search, progress: Progress) -> None:
         if adjusted(found.best) - adjusted(best) < found.more or not survives(found.best, best, found.more):
             return
         found.best = best
+        weigh_again(found)
 
 
 def _backward(found: Search) -> None:

@@ -13,6 +13,7 @@ from models.identification import (
     Largest,
     Lead,
     Motion,
+    Scatter,
     Separation,
     State,
     WindowLengths,
@@ -64,6 +65,7 @@ IDENTIFICATION = Identification(
         ),
     ),
     separation=Separation("impact", lambda m: m.coordinate, "between_impacts"),
+    scatter=Scatter("impacts", "rotation_1", "rotation_rate_1"),
     phases={
         "impact": "at impacts",
         "between_impacts": "between impacts",

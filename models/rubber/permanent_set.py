@@ -6,7 +6,6 @@ Beside other laws u - u_p is what they all see as the compression.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from models.base import FloatArray, MechanismParameter
 from models.rubber.base import Numbers, RubberLaw, rubber_mechanism
@@ -21,10 +20,12 @@ def rate(u: FloatArray, u_rate: FloatArray, h: FloatArray, p: Numbers) -> FloatA
     return np.asarray(p["rate"] * e * np.maximum(0.0, (u - h) / e - p["strain_limit"]))
 
 
-def restless(p: Numbers, u: FloatArray) -> tuple[NDArray[np.bool_], str]:
+def refusal(p: Numbers, u: FloatArray) -> str:
     limit, strain = np.broadcast_arrays(p["strain_limit"], u / p["thickness"])
-    worst = int(np.argmax(np.where(limit <= strain, strain - limit, -np.inf)))
-    return limit <= strain, (
+    if not np.any(limit <= strain):
+        return ""
+    worst = int(np.argmax(strain - limit))
+    return (
         f"permanent_set.strain_limit is {limit.flat[worst]:.3g}, not above the strain at rest, "
         f"{strain.flat[worst]:.3g}: the layer would creep without end; give a larger limit"
     )
@@ -57,5 +58,5 @@ LAW = RubberLaw(
         source="models/rubber/permanent_set.py",
         models=("interface",),
     ),
-    "shifts", effect, numbers, update, rate=rate, of_strain=True, restless=restless,
+    "shifts", effect, numbers, update, rate=rate, of_strain=True, refusal=refusal,
 )  # fmt: skip

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import lru_cache
 
 import numpy as np
@@ -16,6 +16,9 @@ from grids.specimen import Specimen
 from models.shaking import Shaking
 
 TIME_STEP = 0.005
+ATTEMPTS = 10
+OVERTURNS = 1.0
+"""rad, that only an overturned block reaches."""
 PEAK = 0.1
 """rad, over which levels of instruments are given."""
 TRUE = {"width": 0.2505, "height": 1.795, "mass": 540.0}
@@ -49,14 +52,27 @@ def _made(
     ran = model.simulate(
         {**TRUE, **of_wall}, moved(measured, mechanisms), duration=measured.duration, integrator="reference"
     )
-    true = {"rotation_1": np.ravel(ran.channels["rotation_1"])}
+    return _seen(name, seed, measured, np.ravel(ran.channels["rotation_1"]), mechanisms, noise)
+
+
+def _seen(
+    name: str,
+    seed: int,
+    measured: Shaking,
+    rotation: np.ndarray,
+    mechanisms: Mapping[str, Mapping[str, float]],
+    noise: float,
+    errors: Callable[[np.random.Generator, int], np.ndarray] | None = None,
+) -> Recording:
+    """What the instruments record: the rotation with white noise, or with ``errors`` (of unit deviation)."""
+    true = {"rotation_1": rotation}
     around = Surroundings(TIME_STEP, measured.horizontal, PEAK)
     seen = recorded(true, mechanisms, around)["rotation_1"]
     rng = np.random.default_rng(seed + 1000)
     peak = float(np.max(np.abs(seen)))
     channels = {
         "base_acceleration_x": measured.horizontal + 0.003 * measured.pga * rng.normal(size=seen.size),
-        "rotation_1": seen + noise * peak * rng.normal(size=seen.size),
+        "rotation_1": seen + noise * peak * (rng.normal(size=seen.size) if errors is None else errors(rng, seen.size)),
     }
     return Recording(name, TIME_STEP, np.arange(seen.size) * TIME_STEP, channels)
 
@@ -67,3 +83,43 @@ def recording(
     """The recording of a block with an effect, at 1 % noise of the peak."""
     frozen = tuple((k, tuple(v.items())) for k, v in (effect or {}).items())
     return _made(name, seed, frozen, noise)
+
+
+def scattered(
+    name: str,
+    seed: int,
+    scatter: float = 0.0,
+    noise: float = 0.01,
+    errors: Callable[[np.random.Generator, int], np.ndarray] | None = None,
+    still: float = 1.5,
+) -> Recording:
+    """The plain block's recording with a laboratory's errors: impacts that scatter, and noise of any colour.
+
+    It begins with ``still`` s without shaking. The rate is changed at the first sample after each impact.
+    """
+    plain = motion(seed)
+    lead = np.zeros(round(still / TIME_STEP))
+    measured = Shaking(TIME_STEP, np.concatenate([lead, plain.horizontal, lead]))
+    rng = np.random.default_rng(seed + 2000)
+    for _ in range(ATTEMPTS):
+        rotation = _with_kicks(measured, scatter, rng)
+        if np.max(np.abs(rotation)) < OVERTURNS:
+            return _seen(name, seed, measured, rotation, {}, noise, errors)
+    raise ValueError(f"the block overturns under motion {seed}: take another")
+
+
+def _with_kicks(measured: Shaking, scatter: float, rng: np.random.Generator) -> np.ndarray:
+    """Rotation of the plain block whose rate is changed at random after every impact."""
+    model = models.get("housner")
+    rotation, start, initial = np.zeros(measured.horizontal.size), 0, None
+    while True:
+        left = Shaking(TIME_STEP, measured.horizontal[start:])
+        ran = model.simulate(TRUE, left, initial=initial, duration=left.duration)
+        angle, rate = (np.ravel(ran.channels[c]) for c in ("rotation_1", "rotation_rate_1"))
+        rotation[start:] = angle
+        turns = np.flatnonzero(angle[1:] * angle[:-1] < 0.0)
+        if not scatter or not turns.size or start + turns[0] + 4 > rotation.size:
+            return rotation
+        k = int(turns[0]) + 1
+        start += k
+        initial = {"rotation_1": float(angle[k]), "rotation_rate_1": float(rate[k] * (1.0 + scatter * rng.normal()))}

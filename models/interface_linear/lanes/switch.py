@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from models.interface_linear.equation import (
     FULL,
     HALF_LEFT,
@@ -12,8 +14,9 @@ from models.interface_linear.equation import (
     STATES,
 )
 from models.interface_linear.lanes.rows import B_B, BRIEF, A, G
-from models.lanes.arrays import Table
 from models.lanes.compiler import called, inlined
+
+Table = Any
 
 
 @inlined

@@ -9,7 +9,7 @@ import pytest
 
 from diagnosis import calibrate, diagnose
 from diagnosis.answer.result import Diagnosis
-from diagnosis.search.null import LEAST_P
+from diagnosis.search.found import MISSING
 from models.errors import InputError
 from tests.diagnosis.made import SPECIMEN, TRUE, recording
 
@@ -39,7 +39,8 @@ def test_restitution_is_named_and_recovered() -> None:
     value = found.effects[0].parameters["factor_on_housner"]
     assert value.low95 <= truth <= value.high95
     assert value.high95 - value.low95 < 0.03
-    assert found.p_value == found.effects[0].p_value == LEAST_P and found.effects[0].evidence > 50
+    assert found.p_value == found.effects[0].p_value < 1e-3 and found.effects[0].evidence > MISSING
+    assert found.errors is not None and found.errors.scatter is not None and found.errors.scatter.estimate < 0.01
     assert found.holdout is not None and found.holdout.share_of_achievable is not None
     assert found.holdout.share_of_achievable > 0.8
     assert found.located[0].effect == "restitution" and found.located[0].where == ("impact",)

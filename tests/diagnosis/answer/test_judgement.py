@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from diagnosis.answer import heldout, judgement
+from diagnosis.errors.adequacy import Inadequacy
 from diagnosis.fit.setup import measure
 from diagnosis.progress import Stages
 from diagnosis.search.found import MISSING, Search
@@ -16,6 +17,8 @@ from diagnosis.search.null import LEAST_P, Null
 from diagnosis.search.refit import Explanation
 from tests.diagnosis.made import SPECIMEN, recording
 
+NO_ERRORS: Any = None
+SMALL = Inadequacy((0.0,), 0.0, 0.0, True)
 NULL = Null(np.sort(np.random.default_rng(0).chisquare(1, 20_000)), 1.0)
 
 
@@ -29,7 +32,7 @@ def explanation(window_losses: list[float], *candidates: Any) -> Explanation:
 
 
 def search(*singles: Explanation, best: Explanation | None = None, windows: int = 4) -> Search:
-    return Search(explanation([100.0] * windows), (), null=NULL, singles=list(singles), best=best)
+    return Search(explanation([100.0] * windows), (), NO_ERRORS, null=NULL, singles=list(singles), best=best)
 
 
 def test_shapes_are_paid_for() -> None:
@@ -41,18 +44,26 @@ def test_shapes_are_paid_for() -> None:
 
 def test_of_two_effects_the_stronger_one_tells_the_chance_not_their_sum() -> None:
     found = search(best=explanation([90.0] * 4, candidate("a"), candidate("b")))
-    assert judgement.p_of_missing(found, [9.0, 12.0], True) == NULL.p_value(12.0) > NULL.p_value(21.0)
+    assert judgement.p_of_missing(found, [9.0, 12.0], SMALL, True) == NULL.p_value(12.0) > NULL.p_value(21.0)
 
 
 def test_no_chance_is_told_beyond_what_anyone_tested() -> None:
     assert NULL.p_value(600.0) < LEAST_P == judgement.p_value(search(), 600.0)
 
 
+def test_a_large_error_of_the_model_is_as_unlikely_as_its_deviance() -> None:
+    large, faint = Inadequacy((1.0,), 4.0, 40.0, True), Inadequacy((0.1,), 0.2, 40.0, True)
+    assert large.large and not faint.large
+    found = search(explanation([100.0] * 4, candidate("a")))
+    assert judgement.p_of_missing(found, [], large, True) == LEAST_P
+    assert judgement.p_of_missing(found, [], faint, True) == 1.0
+
+
 def test_what_a_stopped_search_did_not_test_has_no_p_value() -> None:
     single = explanation([90.0] * 4, candidate("a"))
-    assert judgement.p_of_missing(search(single), [], finished=False) is None
-    assert judgement.p_of_missing(search(single), [], finished=True) == LEAST_P
-    assert judgement.p_of_missing(Search(explanation([1.0]), ()), [], finished=True) is None
+    assert judgement.p_of_missing(search(single), [], SMALL, finished=False) is None
+    assert judgement.p_of_missing(search(single), [], SMALL, finished=True) == LEAST_P
+    assert judgement.p_of_missing(Search(explanation([1.0]), (), NO_ERRORS), [], SMALL, finished=True) is None
 
 
 @pytest.mark.parametrize(
@@ -62,14 +73,14 @@ def test_what_a_stopped_search_did_not_test_has_no_p_value() -> None:
 def test_a_suspect_refused_says_what_it_rests_on(losses: list[float], rests_on: str) -> None:
     suspect = explanation(losses, candidate("saturation"))
     found = search(suspect)
-    left_open = judgement.undecided(found, judgement.p_of_missing(found, [], True))
+    left_open = judgement.undecided(found, judgement.p_of_missing(found, [], SMALL, True))
     assert left_open is not None and (left_open.name, left_open.rests_on) == ("saturation", rests_on)
     assert left_open.gain == 400.0 - sum(losses) and (left_open.gain >= MISSING) == bool(rests_on)
 
 
 def test_what_chance_brings_is_not_undecided() -> None:
     found = search(explanation([99.9] * 4, candidate("a")))
-    assert judgement.undecided(found, judgement.p_of_missing(found, [], True)) is None
+    assert judgement.undecided(found, judgement.p_of_missing(found, [], SMALL, True)) is None
 
 
 @pytest.mark.parametrize(("share", "explained"), [(0.05, True), (0.6, True), (0.8, False), (1.3, False)])

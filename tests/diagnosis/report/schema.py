@@ -87,6 +87,59 @@ class FitPart(Part):
     holdout: HoldoutPart | None
 
 
+class NotTriedPart(Part):
+    name: str
+    why: str
+
+
+class LinePart(Part):
+    frequency: float
+    amplitude: float
+
+
+class SpectrumPart(Part):
+    frequency: list[float]
+    estimated: list[float]
+    found: list[float]
+    lag: list[float]
+    correlation: list[float]
+    bound: float
+
+
+class ChannelErrorsPart(Part):
+    channel: str
+    unit: str
+    noise: float = Field(ge=0.0)
+    colour: Literal["white", "low", "filtered"]
+    drift: float = Field(ge=0.0)
+    growing: float = Field(ge=0.0)
+    hum: list[LinePart]
+    spectrum: SpectrumPart
+
+
+class ScatterPart(Part):
+    events: str
+    estimate: float = Field(ge=0.0)
+    low95: float
+    high95: float
+    deviance: float
+
+
+class InadequacyPart(Part):
+    size: list[float]
+    ratio: float
+    deviance: float
+    judged: bool
+
+
+class ErrorsPart(Part):
+    channels: list[ChannelErrorsPart]
+    scatter: ScatterPart | None
+    base_noise: list[float]
+    inadequacy: InadequacyPart
+    still_seconds: float
+
+
 class AnswerFile(Part):
     verdict: Literal["missing", "nothing_missing", "not_in_library", "cannot_tell_apart"]
     effects: list[EffectPart]
@@ -101,4 +154,6 @@ class AnswerFile(Part):
     fit: FitPart
     statement: str = Field(min_length=1)
     next_experiment: dict[str, Any] | None
+    errors: ErrorsPart | None
+    not_tried: list[NotTriedPart]
     provenance: dict[str, Any]

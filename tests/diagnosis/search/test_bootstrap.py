@@ -1,4 +1,4 @@
-"""The bootstrap's draws have the noise that the residuals are weighed with; its tail is that of the draws."""
+"""The bootstrap's draws have the estimated errors; its tail is that of the draws."""
 
 from __future__ import annotations
 
@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
+from diagnosis.errors.draws import draw
+from diagnosis.errors.model import calibrated
 from diagnosis.fit.linearisation import linearise_about
-from diagnosis.fit.setup import base_fit, measure
+from diagnosis.fit.setup import measure
 from diagnosis.fit.solver import fit
 from diagnosis.search.bootstrap import p_value, tail_probability
 from diagnosis.search.candidates import candidates
@@ -24,30 +26,27 @@ from tests.diagnosis.made import SPECIMEN, recording
 @cache
 def null() -> Search:
     measured = measure(SPECIMEN, [recording("train_1", 1), recording("train_2", 2)])
-    return Search(Explanation((), base_fit(SPECIMEN, measured)), candidates(measured, SPECIMEN))
+    fitted, errors = calibrated(SPECIMEN, measured)
+    return Search(Explanation((), fitted), candidates(measured, SPECIMEN), errors)
 
 
 def test_whitened_draws_are_white() -> None:
-    whitening = null().base.fitted.misfit.whitening
-    mask = null().base.measured.mask
+    """Of variance one, less the floor of white noise that is not drawn."""
+    base, errors = null().base.fitted, null().errors
     rng = np.random.default_rng(5)
-    sigma = np.where(whitening.scale > 0.0, 1.0 / np.where(whitening.scale > 0.0, whitening.scale, 1.0), 0.0)
-    drawn = np.stack([whitening(whitening.draw(rng) * sigma) for _ in range(200)])
-    inside = mask.reshape(len(mask), -1)
-    assert np.mean(drawn[:, inside] ** 2) == pytest.approx(1.0, abs=0.01)
-    assert whitening.basis is not None
-    along = np.einsum("wmk,nwm->nwk", whitening.basis, drawn)
-    assert np.mean(along**2) == pytest.approx(1.0, abs=0.03)
+    drawn = base.misfit.whitening(np.stack([draw(errors, base.measured, rng) for _ in range(150)]))
+    inside = base.measured.compared.reshape(len(base.measured.windows), -1)
+    assert np.mean(drawn[:, inside] ** 2) == pytest.approx(0.985, abs=0.025)
 
 
 def test_scores_of_draws_are_those_of_chance() -> None:
-    base = null().base.fitted
+    base, errors = null().base.fitted, null().errors
     predictor, m = base.misfit.predictor, base.measured
     motion = predictor.predict([base.point])[0]
     rng = np.random.default_rng(8)
     found = []
-    for _ in range(3):
-        values = np.where(m.mask, motion + base.misfit.whitening.draw(rng) * m.sigma[..., None], 0.0)
+    for _ in range(8):
+        values = np.where(m.mask, motion + draw(errors, m, rng), 0.0)
         made = replace(base.misfit, predictor=replace(predictor, measured=replace(m, values=values)))
         again = fit(made, base.u, base.states)
         found += [

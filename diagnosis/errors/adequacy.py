@@ -1,0 +1,134 @@
+"""Whether the model's own error is small, and how well events repeat: deviances of single variances.
+
+Dropping a component raises -2 log L by D (the others estimated anew); under the null that it is absent D is half a
+chi-squared with one degree of freedom, half zero (Self and Liang, J. Am. Stat. Assoc. 82, 1987).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import chi2
+
+from diagnosis.data.noise import BAND
+from diagnosis.errors.likelihood import climbed, maximise
+from diagnosis.errors.model import Errors
+from models.base import FloatArray
+
+CLEAR = 15.0
+"""Deviance from which on a variance is stated."""
+LARGE = 1.0
+"""Variance of the model's smooth error over that of the sensors below `BAND` beyond which the model is not adequate."""
+LEVEL = 3.841458820694124
+"""Rise of the deviance at the ends of a 95 % interval."""
+FACTORS = (0.5, 0.7, 0.85, 1.2, 1.5, 2.0, 3.0)
+"""Of an estimate, at which its profile is computed."""
+
+
+@dataclass(frozen=True)
+class Inadequacy:
+    """The model's smooth error: ``size`` (C,) as recorded, ``ratio`` of its variance over the sensors' below `BAND` Hz.
+
+    ``deviance``: what the likelihood loses without it. ``judged`` false: nothing is ever still, so it cannot be told
+    from noise.
+    """
+
+    size: tuple[float, ...]
+    ratio: float
+    deviance: float
+    judged: bool
+
+    @property
+    def large(self) -> bool:
+        return self.deviance > CLEAR and self.ratio > LARGE
+
+    @property
+    def p_value(self) -> float:
+        """Chance of such a deviance where the model is right."""
+        return 1.0 if self.deviance <= 0.0 else float(0.5 * chi2.sf(self.deviance, 1))
+
+
+@dataclass(frozen=True)
+class Repeatability:
+    """Relative standard deviation of events with 95 % interval; ``deviance``: what the likelihood loses without it."""
+
+    events: str
+    estimate: float
+    low95: float
+    high95: float
+    deviance: float
+
+    @property
+    def clear(self) -> bool:
+        return self.deviance > CLEAR
+
+
+def inadequacy(errors: Errors) -> Inadequacy:
+    """The smooth error that a model has under its estimated errors."""
+    acting = np.array([c.kind == "inadequacy" for c in errors.components])
+    channels = errors.unit.size
+    if not acting.any():
+        return Inadequacy((0.0,) * channels, 0.0, 0.0, False)
+    variance = np.zeros(channels)
+    for c, theta in zip(errors.components, errors.theta, strict=True):
+        if c.kind == "inadequacy" and c.channel is not None:
+            variance[c.channel] += theta
+    ratio = float(np.max(variance / np.maximum([below(errors, c) for c in range(channels)], 1e-300)))
+    deviance = _without(errors, acting) if variance.any() else 0.0
+    size = tuple(float(x) for x in np.sqrt(variance) * errors.unit)
+    return Inadequacy(size, ratio, deviance, True)
+
+
+def below(errors: Errors, channel: int, highest: float = BAND) -> float:
+    """Variance of a sensor's noise below ``highest`` Hz, in units squared."""
+    frequency = np.linspace(0.25, highest, 60)
+    return float(np.mean(density(errors, channel, frequency)) * highest)
+
+
+def density(errors: Errors, channel: int, frequency: FloatArray, moving: bool = False) -> FloatArray:
+    """One-sided density (units squared per Hz) of a sensor's noise, hum left out; with inadequacy if ``moving``."""
+    found = np.zeros_like(frequency)
+    for component, theta in zip(errors.components, errors.theta, strict=True):
+        if component.channel == channel and (moving or not component.moving):
+            found += theta * component.density(frequency, errors.step)
+    return found
+
+
+def repeatability(errors: Errors, events: str) -> Repeatability | None:
+    """How well events repeat, by profile likelihood; None where there are none."""
+    index = next((k for k, c in enumerate(errors.components) if c.kind == "scatter"), None)
+    if index is None:
+        return None
+    sd = float(np.sqrt(errors.theta[index]))
+    acting = np.arange(errors.theta.size) == index
+    lost = _without(errors, acting) if sd > 0.0 else 0.0
+    if lost < LEVEL:
+        low, reach = 0.0, max(sd, 0.001)
+    else:
+        low, reach = 0.0, sd
+    at = reach * np.array(FACTORS)
+    rise = np.array([_without(errors, acting, float(x) ** 2) for x in at])
+    if lost >= LEVEL:
+        low = _crossing(np.concatenate([[0.0], at[at < sd], [sd]]), np.concatenate([[lost], rise[at < sd], [0.0]]))
+    high = _crossing(np.concatenate([[sd], at[at > sd]])[::-1], np.concatenate([[0.0], rise[at > sd]])[::-1])
+    return Repeatability(events, sd, low, high, lost)
+
+
+def _crossing(at: FloatArray, rise: FloatArray) -> float:
+    """Where a profile that falls along ``at`` crosses LEVEL, linear in its root; the first point if it never does."""
+    root = np.sqrt(np.maximum(rise, 0.0))
+    below_it = np.flatnonzero(root <= np.sqrt(LEVEL))
+    if not below_it.size or below_it[0] == 0:
+        return float(at[0])
+    k = int(below_it[0])
+    share = (root[k - 1] - np.sqrt(LEVEL)) / max(root[k - 1] - root[k], 1e-12)
+    return float(at[k - 1] + share * (at[k] - at[k - 1]))
+
+
+def _without(errors: Errors, held: np.ndarray, value: float = 0.0) -> float:
+    """Rise of the deviance with the ``held`` variances at a value and the others estimated anew."""
+    pieces = [piece.holding(held, value) for piece in errors.pieces]
+    theta, _ = climbed(pieces, errors.prior, errors.theta[~held], errors.weights, 0, 1)
+    _, state = maximise(pieces, errors.prior, np.maximum(theta, 1e-6), errors.weights)
+    return max(state.deviance - errors.deviance, 0.0)

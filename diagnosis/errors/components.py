@@ -1,0 +1,130 @@
+"""The variance components of a recording's errors: what each adds to the covariance of a piece.
+
+A piece is a stretch of samples (a window of the motion, or one in which nothing moves). Its covariance is
+
+    C = B + sum_k theta_k V_k,      theta_k >= 0,
+
+B known (noise of the measured base motion). The V_k are stationary noise of a sensor with a kernel k(lag), noise that
+grows with the signal (a diagonal), and random kicks at events (low rank). Every kind knows its product with a vector,
+its trace with a matrix and how to add itself, so that none of them is ever formed for all pieces at once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal, Protocol
+
+import numpy as np
+
+from models.base import FloatArray
+
+Kind = Literal["white", "low_pass", "drift", "hum", "growing", "scatter", "inadequacy"]
+
+LOW_PASS = (0.006, 0.012)
+"""s, deviation of Gaussian kernels: noise that a filter left, with spectra of 27 and 13 Hz standard deviation."""
+DECAYS = (0.015, 0.05, 0.15, 0.5, 3.0)
+"""s, of exponential kernels: autoregressive and 1/f noise, drift."""
+SMOOTH = (0.05, 0.15)
+"""s, deviation of the Gaussian kernels of a smooth inadequacy of the model."""
+
+
+@dataclass(frozen=True)
+class Component:
+    """One variance. ``channel``: whose noise it is, None for scatter; ``scale``: s of a kernel, Hz of a hum line."""
+
+    kind: Kind
+    channel: int | None = None
+    scale: float = 0.0
+
+    @property
+    def moving(self) -> bool:
+        """Whether it acts only while the specimen moves."""
+        return self.kind in ("growing", "scatter", "inadequacy")
+
+    @property
+    def kernel(self) -> Callable[[FloatArray], FloatArray]:
+        """Correlation as a function of the lag in s, for a stationary kind."""
+        scale = self.scale
+        if self.kind == "white":
+            return lambda lag: (lag == 0.0).astype(np.float64)
+        if self.kind == "drift":
+            return lambda lag: np.exp(-lag / scale)
+        if self.kind == "hum":
+            return lambda lag: np.cos(2.0 * np.pi * scale * lag)
+        return lambda lag: np.exp(-0.5 * (lag / scale) ** 2)
+
+    def density(self, frequency: FloatArray, step: float) -> FloatArray:
+        """One-sided spectral density (1/Hz) of a stationary kind of variance one; ``step`` (s) of samples if white."""
+        if self.kind == "white":
+            return np.full_like(frequency, 2.0 * step)
+        if self.kind == "drift":
+            return np.asarray(4.0 * self.scale / (1.0 + (2.0 * np.pi * frequency * self.scale) ** 2))
+        if self.kind in ("low_pass", "inadequacy"):
+            wide = 2.0 * np.sqrt(2.0 * np.pi) * self.scale
+            return np.asarray(wide * np.exp(-2.0 * (np.pi * frequency * self.scale) ** 2))
+        return np.zeros_like(frequency)
+
+
+class Part(Protocol):
+    """What one component does in one piece of n samples."""
+
+    def add_to(self, covariance: FloatArray, theta: float) -> None:
+        """Add theta V to a covariance (n, n)."""
+
+    def times(self, vector: FloatArray) -> FloatArray:
+        """V v of a vector (n,) or of columns (n, k)."""
+
+    def trace(self, matrix: FloatArray) -> float:
+        """tr(M V) of a symmetric matrix (n, n)."""
+
+
+@dataclass(frozen=True)
+class Stationary:
+    """A kernel among the samples ``inside`` of a piece: V = ``matrix`` (m, m) there."""
+
+    inside: slice
+    matrix: FloatArray
+
+    def add_to(self, covariance: FloatArray, theta: float) -> None:
+        covariance[self.inside, self.inside] += theta * self.matrix
+
+    def times(self, vector: FloatArray) -> FloatArray:
+        found = np.zeros_like(vector)
+        found[self.inside] = self.matrix @ vector[self.inside]
+        return found
+
+    def trace(self, matrix: FloatArray) -> float:
+        return float(np.einsum("ij,ij->", matrix[self.inside, self.inside], self.matrix))
+
+
+@dataclass(frozen=True)
+class Diagonal:
+    """Independent errors with the variances ``values`` (n,)."""
+
+    values: FloatArray
+
+    def add_to(self, covariance: FloatArray, theta: float) -> None:
+        covariance.flat[:: covariance.shape[0] + 1] += theta * self.values
+
+    def times(self, vector: FloatArray) -> FloatArray:
+        return np.asarray((vector.T * self.values).T)
+
+    def trace(self, matrix: FloatArray) -> float:
+        return float(np.diagonal(matrix) @ self.values)
+
+
+@dataclass(frozen=True)
+class LowRank:
+    """Independent random numbers of variance one times ``columns`` (n, q)."""
+
+    columns: FloatArray
+
+    def add_to(self, covariance: FloatArray, theta: float) -> None:
+        covariance += theta * (self.columns @ self.columns.T)
+
+    def times(self, vector: FloatArray) -> FloatArray:
+        return np.asarray(self.columns @ (self.columns.T @ vector))
+
+    def trace(self, matrix: FloatArray) -> float:
+        return float(np.einsum("iq,ij,jq->", self.columns, matrix, self.columns, optimize=True))

@@ -1,0 +1,211 @@
+"""Restricted likelihood of variance components, and its maximum under theta >= 0.
+
+A piece's residual is r = J b + X x + e, e ~ N(0, C(theta)): x its own states without a prior, b the base parameters
+with theirs (precision Q about b0). With P = C^-1 - C^-1 X (X' C^-1 X)^-1 X' C^-1 and H = sum J'PJ + Q,
+
+    -2 log L = sum [log|C| + log|X'C^-1 X| + w r'P r] + log|H| - g' H^-1 g + const,     g = sum w J'P r + Q (b - b0),
+
+(Patterson and Thompson, Biometrika 58, 1971). The slope along theta_k is tr(P V_k) - w a'V_k a with a = P (r - J d),
+the average information a'V_k P V_l a (Gilmour, Thompson and Cullis, Biometrics 51, 1995). Multiplicative steps
+theta_k <- theta_k sqrt(w a'V_k a/tr(P V_k)) never fail and end slowly; then Newton steps with the average information,
+bounds kept by non-negative least squares. ``w`` are the weights of pieces: those of a t-distribution, so that one wrong
+event does not pass for noise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import cho_factor, lapack
+from scipy.optimize import nnls
+
+from diagnosis.errors.components import Part
+from models.base import FloatArray
+
+NU = 10.0
+NEWTON, HALVINGS = 8, 4
+RIDGE = 1e-6
+"""Added to the information of every variance, in its own unit: kernels are alike."""
+CLOSE = 0.1
+"""Fall of -2 log L that ends the iteration."""
+
+
+@dataclass(frozen=True)
+class Piece:
+    """n samples: residual r (n,), states' derivatives X (n, S), base parameters' J (n, k), known covariance B (n, n).
+
+    ``time`` (n,) in s and ``channel`` (n,) of the samples; ``parts``: what each component does here, None where it does
+    not act.
+    """
+
+    time: FloatArray
+    channel: NDArray[np.int64]
+
+    residual: FloatArray
+    by_state: FloatArray
+    by_unknown: FloatArray
+    known: FloatArray
+    parts: tuple[Part | None, ...]
+
+    def holding(self, held: NDArray[np.bool_], value: float) -> Piece:
+        """The same with the ``held`` components (K,) no longer unknown: each has the variance ``value``."""
+        fixed = np.where(held, value, 0.0)
+        parts = tuple(part for part, gone in zip(self.parts, held, strict=True) if not gone)
+        return replace(self, known=self.covariance(fixed), parts=parts)
+
+    def covariance(self, theta: FloatArray) -> FloatArray:
+        found = self.known.copy()
+        for part, value in zip(self.parts, theta, strict=True):
+            if part is not None and value > 0.0:
+                part.add_to(found, float(value))
+        return found
+
+
+@dataclass(frozen=True)
+class Prior:
+    """Precision Q (k, k) and slope Q (b - b0) (k,) of the base parameters at the point of the residuals."""
+
+    precision: FloatArray
+    slope: FloatArray
+
+
+@dataclass(frozen=True)
+class Solved:
+    """One piece at one theta: P (n, n), P r, P J, log determinants, r'P r."""
+
+    projector: FloatArray
+    on_residual: FloatArray
+    on_unknown: FloatArray
+    determinants: float
+    square: float
+
+
+@dataclass(frozen=True)
+class State:
+    """The restricted likelihood at one theta: -2 log L, and its slope and average information (K,), (K, K)."""
+
+    deviance: float
+    slope: FloatArray
+    information: FloatArray
+    quadratic: FloatArray
+    trace: FloatArray
+    chi2: FloatArray
+    determinants: float
+
+
+def solve(piece: Piece, theta: FloatArray) -> Solved:
+    """One piece at theta (K,)."""
+    covariance = piece.covariance(theta)
+    factor = cho_factor(covariance, lower=True, overwrite_a=True)
+    inverse, _ = lapack.dpotri(factor[0], lower=1)
+    inverse = np.tril(inverse) + np.tril(inverse, -1).T
+    x = inverse @ piece.by_state
+    gram = piece.by_state.T @ x
+    projector = inverse - x @ np.linalg.solve(gram, x.T)
+    on_residual = projector @ piece.residual
+    return Solved(
+        projector,
+        on_residual,
+        projector @ piece.by_unknown,
+        2.0 * float(np.log(np.diagonal(factor[0])).sum()) + float(np.linalg.slogdet(gram)[1]),
+        float(piece.residual @ on_residual),
+    )
+
+
+def whitened(piece: Piece, theta: FloatArray) -> FloatArray:
+    """The residual (n,) in units of its errors, its own states projected out."""
+    lower = np.linalg.cholesky(piece.covariance(theta))
+    return np.asarray(lower.T @ solve(piece, theta).on_residual)
+
+
+def evaluate(
+    pieces: Sequence[Piece], prior: Prior, theta: FloatArray, weights: FloatArray, slopes: bool = True
+) -> State:
+    """The restricted likelihood at theta (K,) with weights (pieces,)."""
+    solved = [solve(piece, theta) for piece in pieces]
+    hessian, gradient = prior.precision.copy(), prior.slope.copy()
+    for piece, one, w in zip(pieces, solved, weights, strict=True):
+        hessian += w * piece.by_unknown.T @ one.on_unknown
+        gradient += w * piece.by_unknown.T @ one.on_residual
+    k = gradient.size
+    inverse = np.linalg.inv(hessian) if k else np.zeros((0, 0))
+    shift = inverse @ gradient
+    chi2 = np.array([one.square for one in solved])
+    determinants = sum(one.determinants for one in solved)
+    deviance = determinants + float(weights @ chi2) + float(-gradient @ shift)
+    deviance += float(np.linalg.slogdet(hessian)[1]) if k else 0.0
+    n = theta.size
+    quadratic, trace, information = np.zeros(n), np.zeros(n), np.zeros((n, n))
+    if slopes:
+        for piece, one, w in zip(pieces, solved, weights, strict=True):
+            a = one.on_residual - one.on_unknown @ shift
+            acting = [i for i, part in enumerate(piece.parts) if part is not None]
+            turned = np.stack([piece.parts[i].times(a) for i in acting], axis=1)  # type: ignore[union-attr]
+            quadratic[acting] += w * (a @ turned)
+            information[np.ix_(acting, acting)] += w * (turned.T @ one.projector @ turned)
+            for i in acting:
+                part = piece.parts[i]
+                assert part is not None
+                trace[i] += part.trace(one.projector)
+                if k:
+                    trace[i] -= w * float(np.sum((one.on_unknown @ inverse) * part.times(one.on_unknown)))
+    return State(deviance, trace - quadratic, information, quadratic, trace, chi2, determinants)
+
+
+def climbed(
+    pieces: Sequence[Piece], prior: Prior, theta: FloatArray, weights: FloatArray, moving: int, steps: int
+) -> tuple[FloatArray, FloatArray]:
+    """Variances (K,) and weights (pieces,) after multiplicative steps; the first ``moving`` pieces are weighed anew."""
+    count = np.array([piece.residual.size for piece in pieces[:moving]], np.float64)
+    weights = weights.copy()
+    for _ in range(steps):
+        state = evaluate(pieces, prior, theta, weights)
+        ratio = np.sqrt(np.maximum(state.quadratic, 0.0) / np.maximum(state.trace, 1e-300))
+        theta = theta * np.clip(ratio, 0.05, 20.0)
+        weights[:moving] = robust_weights(state.chi2[:moving], count)
+    return theta, weights
+
+
+def maximise(pieces: Sequence[Piece], prior: Prior, theta: FloatArray, weights: FloatArray) -> tuple[FloatArray, State]:
+    """The theta >= 0 of largest restricted likelihood with given weights, and the likelihood there."""
+    state = evaluate(pieces, prior, theta, weights)
+    for _ in range(NEWTON):
+        step = _newton(theta, state)
+        moved, ahead = theta, state
+        for halving in range(HALVINGS):
+            moved = theta + 0.5**halving * step
+            ahead = evaluate(pieces, prior, moved, weights)
+            if ahead.deviance < state.deviance:
+                break
+        fall = state.deviance - ahead.deviance
+        if fall <= 0.0:
+            break
+        theta, state = moved, ahead
+        if fall < CLOSE:
+            break
+    return theta, state
+
+
+def _newton(theta: FloatArray, state: State) -> FloatArray:
+    """The step to the minimum over theta >= 0 of the quadratic that slope and average information give."""
+    unit = 1.0 / np.sqrt(np.maximum(np.diagonal(state.information), 1e-300))
+    scaled = state.information * np.outer(unit, unit) + RIDGE * np.eye(unit.size)
+    root = np.linalg.cholesky(scaled)
+    aim = scaled @ (theta / unit) - unit * state.slope
+    found, _ = nnls(root.T, np.linalg.solve(root, aim))
+    return np.asarray(unit * found - theta)
+
+
+def robust_deviance(state: State, pieces: Sequence[Piece], moving: int) -> float:
+    """-2 log L, base parameters at their estimate, with the t-distribution that the weights belong to."""
+    count = np.array([piece.residual.size for piece in pieces[:moving]], np.float64)
+    windows = (NU + 1.0) * count * np.log1p(state.chi2[:moving] / (NU * count))
+    return state.determinants + float(windows.sum() + state.chi2[moving:].sum())
+
+
+def robust_weights(chi2: FloatArray, count: FloatArray) -> FloatArray:
+    """Weights (pieces,) of a t-distribution with NU n degrees of freedom, at most 1."""
+    return np.minimum(1.0, (1.0 + 1.0 / NU) / (1.0 + chi2 / (NU * np.maximum(count, 1.0))))

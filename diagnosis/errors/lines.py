@@ -1,0 +1,54 @@
+"""Hum: lines in the spectrum of the errors, found by their score.
+
+For a line of frequency f in one channel, V_ij = cos 2 pi f (t_i - t_j) is of rank two in each piece, so that q = sum w
+a'V a has the mean t = sum tr(P V) and, without a line, a variance of about sum tr(P V)^2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from diagnosis.errors.components import Component
+from diagnosis.errors.likelihood import Piece, Solved, solve
+from models.base import FloatArray
+
+LOWEST, STEP, FINE, HIGHEST = 6.0, 0.2, 0.02, 48.0
+"""Hz; below, a line cannot be told from motion, above there are no averages."""
+CLEAR = 8.0
+"""Standard deviations over what is expected at which a line counts."""
+APART = 1.5
+"""Hz between the lines of a channel."""
+MOST = 2
+
+
+def lines(pieces: Sequence[Piece], channels: int, theta: FloatArray, weights: FloatArray) -> tuple[Component, ...]:
+    """Lines beyond what the other components explain, at most MOST a channel, strongest first."""
+    found: list[Component] = []
+    frequency = np.arange(LOWEST, HIGHEST, STEP)
+    solved = [solve(piece, theta) for piece in pieces]
+    for c in range(channels):
+        left = _score(pieces, solved, c, frequency, weights)
+        for _ in range(MOST):
+            best = int(np.argmax(left))
+            if left[best] < CLEAR:
+                break
+            near = frequency[best] + np.arange(-STEP, STEP, FINE)
+            sharp = near[int(np.argmax(_score(pieces, solved, c, near, weights)))]
+            found.append(Component("hum", c, float(sharp)))
+            left[np.abs(frequency - frequency[best]) < APART] = 0.0
+    return tuple(found)
+
+
+def _score(
+    pieces: Sequence[Piece], solved: Sequence[Solved], channel: int, frequency: FloatArray, weights: FloatArray
+) -> FloatArray:
+    """Standard deviations (f,) by which a line's part exceeds what is expected without one."""
+    excess, variance = np.zeros_like(frequency), np.zeros_like(frequency)
+    for piece, one, weight in zip(pieces, solved, weights, strict=True):
+        wave = np.exp(2j * np.pi * frequency[None, :] * piece.time[:, None]) * (piece.channel == channel)[:, None]
+        expected = np.einsum("if,if->f", wave.conj(), one.projector @ wave).real
+        excess += weight * np.abs(one.on_residual @ wave) ** 2 - expected
+        variance += expected**2
+    return np.asarray(excess / np.sqrt(np.maximum(variance, 1e-300)))

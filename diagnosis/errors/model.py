@@ -1,0 +1,141 @@
+"""The estimated errors of the recordings, and how they weigh residuals."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diagnosis.data.measured import Measured
+from diagnosis.errors.components import DECAYS, LOW_PASS, SMOOTH, Component
+from diagnosis.errors.kicks import kicks
+from diagnosis.errors.likelihood import Piece, Prior, climbed, maximise, robust_deviance
+from diagnosis.errors.lines import lines
+from diagnosis.errors.pieces import Scene, opened, prior_of, stills, windows
+from diagnosis.fit.setup import base_fit
+from diagnosis.fit.solver import Fitted, fit_thoroughly
+from diagnosis.fit.whitening import Whitening, base_columns, responses
+from grids.specimen import Specimen
+from models.base import FloatArray
+
+STEPS, AGAIN = 10, 3
+"""Multiplicative steps from the first start, and from an estimate."""
+SCATTER = 0.01
+"""Where the scatter of events starts, relative."""
+
+
+@dataclass(frozen=True)
+class Errors:
+    """Variances ``theta`` (K,) of ``components``, in units (C,) squared (scatter: relative, squared).
+
+    ``deviance``: -2 log restricted likelihood of the windows and still stretches with the weights held, ``loss`` with
+    those of a t-distribution: what models, each with its own errors, are compared by; ``pieces`` with their
+    ``weights``: the windows' first; ``step``: s between samples as recorded, of the first recording;
+    ``base`` and ``kicks`` (W, C, N, K): columns of base noise and of events.
+    """
+
+    components: tuple[Component, ...]
+    theta: FloatArray
+    unit: FloatArray
+    pieces: tuple[Piece, ...]
+    weights: FloatArray
+    prior: Prior
+    deviance: float
+    loss: float
+    step: float
+    whitening: Whitening
+    base: FloatArray
+    kicks: FloatArray
+
+
+def disturbance_about(fitted: Fitted) -> FloatArray:
+    """What the noise of the base motion leaves in the windows: columns (W, C, N, K) of unit variance."""
+    predictor = fitted.misfit.predictor
+    return base_columns(predictor, responses(predictor, fitted.point))
+
+
+def calibrated(specimen: Specimen, measured: Measured, seed: int = 0) -> tuple[Fitted, Errors]:
+    """The calibrated base and the errors of the recordings about it."""
+    first = base_fit(specimen, measured, seed)
+    return refitted(first, disturbance_about(first))
+
+
+def refitted(fitted: Fitted, base: FloatArray, start: Errors | None = None, rounds: int = 2) -> tuple[Fitted, Errors]:
+    """A fit and its errors, each estimated under the other in turn."""
+    errors = estimate(fitted, base, start)
+    for turn in range(rounds):
+        fitted = fit_thoroughly(replace(fitted.misfit, whitening=errors.whitening), fitted.u, fitted.states)
+        if turn + 1 < rounds:
+            errors = estimate(fitted, base, errors)
+    return fitted, errors
+
+
+def estimate(fitted: Fitted, base: FloatArray, start: Errors | None = None) -> Errors:
+    """The errors about a fit; ``base`` (W, C, N, K): columns of base noise, of unit variance."""
+    kicked = kicks(fitted.misfit.predictor, fitted.point)
+    scene = opened(fitted, base, kicked)
+    components = _components(scene) if start is None else start.components
+    quiet = stills(scene, components)
+    if not quiet:
+        components = tuple(c for c in components if c.kind != "inadequacy")
+    theta = _start(components) if start is None else np.maximum(start.theta, 1e-4 * _start(components))
+    pieces = (*windows(scene, components), *stills(scene, components))
+    prior = prior_of(scene)
+    moving = len(fitted.measured.windows)
+    weights = np.ones(len(pieces))
+    theta, weights = climbed(pieces, prior, theta, weights, moving, STEPS if start is None else AGAIN)
+    if start is None:
+        heard = lines(pieces, scene.unit.size, theta, weights)
+        if heard:
+            components = (*components, *heard)
+            pieces = (*windows(scene, components), *stills(scene, components))
+            theta = np.concatenate([theta, np.full(len(heard), 0.1)])
+            theta, weights = climbed(pieces, prior, theta, weights, moving, AGAIN)
+    theta, state = maximise(pieces, prior, theta, weights)
+    whitening = _whitening(scene, components, theta, base, kicked)
+    step = fitted.measured.recordings[0].time_step
+    loss = robust_deviance(state, pieces, moving) + fitted.misfit.prior(fitted.u)
+    return Errors(
+        components, theta, scene.unit, pieces, weights, prior, state.deviance, loss, step, whitening, base, kicked
+    )
+
+
+def _components(scene: Scene) -> tuple[Component, ...]:
+    found: list[Component] = []
+    for c in range(len(scene.fitted.measured.channels)):
+        found.append(Component("white", c))
+        found += [Component("low_pass", c, s) for s in LOW_PASS]
+        found += [Component("drift", c, s) for s in DECAYS]
+        found.append(Component("growing", c))
+        found += [Component("inadequacy", c, s) for s in SMOOTH]
+    if scene.kicks.shape[-1]:
+        found.append(Component("scatter"))
+    return tuple(found)
+
+
+def _start(components: Sequence[Component]) -> FloatArray:
+    return np.array([SCATTER**2 if c.kind == "scatter" else 1.0 if c.kind == "white" else 0.1 for c in components])
+
+
+def _whitening(
+    scene: Scene, components: Sequence[Component], theta: FloatArray, base: FloatArray, kicked: FloatArray
+) -> Whitening:
+    """By the inverse Cholesky factor of the sensors' errors, then base noise and events as columns."""
+    m = scene.fitted.measured
+    sensors = [k for k, c in enumerate(components) if c.kind not in ("scatter", "inadequacy")]
+    n = m.compared.shape[2]
+    alone = replace(scene, base=scene.base[..., :0], kicks=scene.kicks[..., :0])
+    of_sensors = windows(alone, [components[k] for k in sensors])
+    factor = np.zeros((*m.compared.shape, n))
+    for w, piece in enumerate(of_sensors):
+        covariance = piece.covariance(theta[sensors])
+        begin = 0
+        for c in range(len(m.channels)):
+            inside = np.flatnonzero(m.compared[w, c])
+            own = slice(begin, begin + inside.size)
+            begin += inside.size
+            lower = np.linalg.cholesky(covariance[own, own])
+            factor[w, c][np.ix_(inside, inside)] = np.linalg.inv(lower) / scene.unit[c]
+    scatter = float(np.sqrt(sum(theta[k] for k, c in enumerate(components) if c.kind == "scatter")))
+    return Whitening(m, factor).with_columns(np.concatenate([base, scatter * kicked], axis=-1))

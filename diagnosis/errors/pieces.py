@@ -1,0 +1,146 @@
+"""The pieces of the recordings that tell of their errors: windows of the motion, and stretches in which nothing moves.
+
+While nothing moves a sensor's noise stands alone; in a window the model's residual lies on top of it. Both enter one
+likelihood, so that noise is told from what the model lacks. Values are averages (`diagnosis.data.averaging`) in units
+of each channel's noise level.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnosis.data.noise import still
+from diagnosis.errors.components import Component, Diagonal, LowRank, Part, Stationary
+from diagnosis.errors.likelihood import Piece, Prior
+from diagnosis.fit.misfit import Linear, Misfit
+from diagnosis.fit.solver import Fitted
+from diagnosis.fit.whitening import Whitening
+from models.base import FloatArray
+
+LONGEST_STILL = 300
+"""Averages of a still stretch that are used: the first and the last half of them."""
+FLOOR = 0.02
+"""Variance of white noise that is always there, over that of the noise level: solvers and storage are not exact."""
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A fit opened up: residuals and derivatives of its windows in units (C,) of the channels' noise, as recorded.
+
+    ``linear``: averages (W, M) and so on; ``base`` and ``kicks`` (W, C, n, K): columns of base noise and of events.
+    """
+
+    fitted: Fitted
+    unit: FloatArray
+    linear: Linear
+    base: FloatArray
+    kicks: FloatArray
+
+
+def opened(fitted: Fitted, base: FloatArray, kicks: FloatArray) -> Scene:
+    """``base`` and ``kicks`` (W, C, N, K): columns of base noise and of events."""
+    m = fitted.measured
+    unit = np.sqrt(np.mean(m.sigma**2, axis=0))
+    whitening = Whitening(m, m.compared / unit[None, :, None])
+    misfit = Misfit(fitted.misfit.predictor, whitening, fitted.misfit.unknowns, fitted.misfit.fixed)
+
+    def scaled(columns: FloatArray) -> FloatArray:
+        each = m.averaged(np.moveaxis(columns, -1, 0)) * m.compared / unit[:, None]
+        return np.moveaxis(each, 0, -1)
+
+    return Scene(fitted, unit, misfit.linearise(fitted.u, fitted.states), scaled(base), scaled(kicks))
+
+
+def prior_of(scene: Scene) -> Prior:
+    rows, slopes = scene.fitted.misfit.prior_rows(scene.fitted.u)
+    return Prior(slopes.T @ slopes, slopes.T @ rows)
+
+
+def windows(scene: Scene, components: Sequence[Component]) -> list[Piece]:
+    """One piece a window."""
+    m = scene.fitted.measured
+    found = []
+    growth = _growth(scene)
+    for w, window in enumerate(m.windows):
+        keep = m.compared[w].ravel()
+        channel = np.repeat(np.arange(len(m.channels)), m.compared.shape[2])[keep]
+        step = m.recordings[window.recording].time_step * m.strides[w]
+        at = np.tile(np.arange(m.compared.shape[2]), len(m.channels))[keep]
+        parts: list[Part | None] = []
+        kicked = scene.kicks[w].reshape(keep.size, -1)[keep]
+        for component in components:
+            if component.kind == "scatter":
+                parts.append(LowRank(kicked) if kicked.shape[1] else None)
+                continue
+            own = np.flatnonzero(channel == component.channel)
+            inside = slice(int(own[0]), int(own[-1]) + 1)
+            if component.kind == "growing":
+                values = np.zeros(channel.size)
+                values[inside] = growth[w].ravel()[keep][inside] / m.strides[w]
+                parts.append(Diagonal(values))
+            else:
+                parts.append(_stationary(component, at[inside], step, inside, float(m.strides[w])))
+        base = scene.base[w].reshape(keep.size, -1)[keep]
+        known = base @ base.T + np.diag(np.full(channel.size, FLOOR / m.strides[w]))
+        linear = scene.linear
+        found.append(
+            Piece(
+                at * step, channel, linear.residual[w][keep], linear.by_state[w][keep], linear.by_unknown[w][keep],
+                known, tuple(parts),
+            )
+        )  # fmt: skip
+    return found
+
+
+def stills(scene: Scene, components: Sequence[Component]) -> list[Piece]:
+    """One piece a channel and recording, of all that is still there; its level is unknown."""
+    m = scene.fitted.measured
+    found = []
+    k = scene.linear.by_unknown.shape[-1]
+    for r, recording in enumerate(m.recordings):
+        own = np.flatnonzero(m.recording_of == r)
+        if not own.size:
+            continue
+        size = int(m.strides[own[0]])
+        for c, name in enumerate(m.channels):
+            values = recording.channels[name]
+            at = np.array(
+                [i for s in still(values, recording.time_step) for i in range(-(-s.start // size), s.stop // size)],
+                np.int64,
+            )
+            if at.size < 8:
+                continue
+            if at.size > LONGEST_STILL:
+                at = np.concatenate([at[: LONGEST_STILL // 2], at[-LONGEST_STILL // 2 :]])
+            means = values[: values.size // size * size].reshape(-1, size).mean(axis=1)
+            level = np.asarray((means[at] - means[at].mean()) / scene.unit[c], np.float64)
+            inside = slice(0, at.size)
+            parts = tuple(
+                _stationary(component, at, recording.time_step * size, inside, float(size))
+                if component.channel == c and not component.moving
+                else None
+                for component in components
+            )
+            known = np.diag(np.full(at.size, FLOOR / size))
+            time = np.asarray(at * recording.time_step * size, np.float64)
+            channel = np.full(at.size, c)
+            blank = np.zeros((at.size, k))
+            found.append(Piece(time, channel, level, np.ones((at.size, 1)), blank, known, parts))
+    return found
+
+
+def _stationary(component: Component, at: np.ndarray, step: float, inside: slice, stride: float) -> Stationary:
+    """A kernel among averages at whole numbers ``at`` of ``step`` s; white noise falls with what is averaged."""
+    lag = np.abs(at[:, None] - at[None, :]) * step
+    return Stationary(inside, component.kernel(lag) / (stride if component.kind == "white" else 1.0))
+
+
+def _growth(scene: Scene) -> FloatArray:
+    """Squared size of the signal over its peak (W, C, n)."""
+    m = scene.fitted.measured
+    size = np.abs(m.averaged(m.values)) * m.compared
+    peak = np.maximum(size.max(axis=(0, 2)), 1e-300)
+    return np.asarray((size / peak[None, :, None]) ** 2, np.float64)

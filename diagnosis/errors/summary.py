@@ -1,0 +1,150 @@
+"""The estimated errors as a report states them: by channel, by event, and of the model itself."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnosis.data.averaging import RATE
+from diagnosis.data.measured import Measured
+from diagnosis.errors.adequacy import Inadequacy, Repeatability, density, inadequacy, repeatability
+from diagnosis.errors.likelihood import whitened
+from diagnosis.errors.model import Errors
+
+SLOW = 0.4
+"""s, correlation time from which on noise is called drift."""
+CLEARLY = 0.25
+"""Deviation over that of the noise from which on drift, hum and growing noise are stated."""
+COLOURED = 0.5
+"""Density at 20-40 Hz over that at 2-10 Hz, and its inverse, beyond which noise is called coloured."""
+LAGS = 24
+
+
+@dataclass(frozen=True)
+class Line:
+    """A hum: frequency (Hz) and amplitude in the channel's unit."""
+
+    frequency: float
+    amplitude: float
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """Residuals of the final model: one-sided densities (unit squared per Hz) and autocorrelation after whitening.
+
+    ``estimated``: what the errors amount to in the windows; ``found``: of the windows' residuals, nan where there are
+    none; ``correlation`` at ``lag`` (s), beyond ``bound`` by chance with 5 % probability.
+    """
+
+    frequency: tuple[float, ...]
+    estimated: tuple[float, ...]
+    found: tuple[float, ...]
+    lag: tuple[float, ...]
+    correlation: tuple[float, ...]
+    bound: float
+
+
+@dataclass(frozen=True)
+class ChannelErrors:
+    """Errors of one channel in its ``unit``, standard deviations.
+
+    ``noise``: of what is faster than `SLOW`; ``drift``: of the rest; ``growing``: of noise in proportion to the
+    signal, at its peak; ``colour``: "white", "low" (denser below 10 Hz) or "filtered" (little above 20 Hz and no more
+    below).
+    """
+
+    channel: str
+    unit: str
+    noise: float
+    colour: str
+    drift: float
+    growing: float
+    hum: tuple[Line, ...]
+    spectrum: Spectrum
+
+
+@dataclass(frozen=True)
+class ErrorModel:
+    """Everything that was estimated. ``base_noise`` (m s-2) by recording; ``scatter`` None: no events."""
+
+    channels: tuple[ChannelErrors, ...]
+    scatter: Repeatability | None
+    base_noise: tuple[float, ...]
+    inadequacy: Inadequacy
+    still_seconds: float
+
+
+def summary(errors: Errors, measured: Measured) -> ErrorModel:
+    """The errors in the units of the recordings."""
+    declared = measured.identification.scatter
+    units = {q.name: q.unit for q in measured.model.observables}
+    still = errors.pieces[len(measured.windows) :]
+    seconds = sum(p.time.size * float(np.min(np.diff(p.time))) for p in still) / max(len(measured.channels), 1)
+    return ErrorModel(
+        channels=tuple(_channel(errors, c, name, units[name]) for c, name in enumerate(measured.channels)),
+        scatter=repeatability(errors, declared.events) if declared else None,
+        base_noise=measured.base_noise,
+        inadequacy=inadequacy(errors),
+        still_seconds=float(seconds),
+    )
+
+
+def _channel(errors: Errors, channel: int, name: str, unit: str) -> ChannelErrors:
+    own = [(c, float(t)) for c, t in zip(errors.components, errors.theta, strict=True) if c.channel == channel]
+    scale = float(errors.unit[channel])
+    fast = sum(t for c, t in own if c.kind in ("white", "low_pass") or (c.kind == "drift" and c.scale < SLOW))
+    slow = sum(t for c, t in own if c.kind == "drift" and c.scale >= SLOW)
+    growing = sum(t for c, t in own if c.kind == "growing")
+    hum = tuple(Line(c.scale, float(np.sqrt(2.0 * t)) * scale) for c, t in own if c.kind == "hum" and t > 0.0)
+    return ChannelErrors(
+        channel=name,
+        unit=unit,
+        noise=float(np.sqrt(fast)) * scale,
+        colour=_colour(errors, channel),
+        drift=float(np.sqrt(slow)) * scale,
+        growing=float(np.sqrt(growing)) * scale,
+        hum=hum,
+        spectrum=_spectrum(errors, channel, scale),
+    )
+
+
+def _colour(errors: Errors, channel: int) -> str:
+    low, middle, high = (
+        float(np.mean(density(errors, channel, np.linspace(a, b, 20))))
+        for a, b in ((2.0, 6.0), (6.0, 12.0), (30.0, 45.0))
+    )
+    if min(low, middle) > 0.0 and high / max(low, middle) < COLOURED:
+        return "filtered" if low < middle / COLOURED else "low"
+    return "white"
+
+
+def _spectrum(errors: Errors, channel: int, scale: float) -> Spectrum:
+    moving = [p for p, w in zip(errors.pieces, errors.weights, strict=True) if p.by_state.shape[1] > 1 and w > 0.0]
+    frequency = np.arange(1.0, RATE / 2.0, 1.0)
+    step = errors.step
+    found, count = np.zeros_like(frequency), 0.0
+    products, pairs = np.zeros(LAGS), np.zeros(LAGS)
+    for piece in moving:
+        own = piece.channel == channel
+        values, time = piece.residual[own], piece.time[own]
+        taper = np.hanning(values.size + 2)[1:-1]
+        wave = np.exp(-2j * np.pi * frequency[:, None] * time[None, :])
+        spacing = float(np.min(np.diff(time)))
+        found += 2.0 * spacing * np.abs(wave @ (taper * (values - np.mean(values)))) ** 2 / np.sum(taper**2)
+        count += 1.0
+        white = whitened(piece, errors.theta)[own]
+        for lag in range(LAGS):
+            products[lag] += float(white[lag:] @ white[: white.size - lag])
+            pairs[lag] += white.size - lag
+    correlation = products / np.maximum(products[0], 1e-300) * (pairs[0] / np.maximum(pairs, 1.0))
+    expected = density(errors, channel, frequency, moving=True)
+    spacing = float(np.min(np.diff(moving[0].time[moving[0].channel == channel]))) if moving else step
+    return Spectrum(
+        frequency=tuple(frequency.tolist()),
+        estimated=tuple((expected * scale**2).tolist()),
+        found=tuple((found / max(count, 1.0) * scale**2).tolist()),
+        lag=tuple((np.arange(LAGS) * spacing).tolist()),
+        correlation=tuple(correlation.tolist()),
+        bound=float(1.96 / np.sqrt(max(pairs[0], 1.0))),
+    )

@@ -1,0 +1,47 @@
+"""The errors in an engineer's words."""
+
+from __future__ import annotations
+
+from diagnosis.errors.summary import CLEARLY, ChannelErrors, ErrorModel
+
+LOOSE = 0.05
+"""Scatter of events from which on the reader is warned."""
+COLOURS = {
+    "white": "white noise",
+    "low": "noise that is stronger at low frequencies",
+    "filtered": "noise that a filter has taken the high frequencies of",
+}
+
+
+def error_lines(errors: ErrorModel) -> list[str]:
+    """Sentences about the recordings' errors, the most important first."""
+    found = []
+    scatter = errors.scatter
+    if scatter is not None and scatter.clear:
+        warning = "; that is much: check the base and the edges" if scatter.estimate > LOOSE else ""
+        found.append(
+            f"{scatter.events.capitalize()} repeat to {scatter.estimate:.1%} "
+            f"(95 % interval {scatter.low95:.1%} to {scatter.high95:.1%}){warning}."
+        )
+    elif scatter is not None:
+        found.append(f"No scatter of the {scatter.events} shows: at most {scatter.high95:.1%}.")
+    for channel in errors.channels:
+        found.append(_channel(channel))
+    left = errors.inadequacy
+    if not left.judged:
+        found.append("No stretch is still, so noise of the sensors and errors of the model are not told apart.")
+    elif left.large:
+        found.append(
+            f"The model leaves a smooth error {left.ratio:.1f} times the variance of the sensors' noise below 15 Hz."
+        )
+    return found
+
+
+def _channel(channel: ChannelErrors) -> str:
+    parts = [f"{COLOURS[channel.colour]} of {channel.noise:.2g} {channel.unit}"]
+    if channel.drift > CLEARLY * channel.noise:
+        parts.append(f"drift of {channel.drift:.2g} {channel.unit}")
+    parts += [f"hum at {line.frequency:.1f} Hz of {line.amplitude:.2g} {channel.unit}" for line in channel.hum]
+    if channel.growing > CLEARLY * channel.noise:
+        parts.append(f"noise that grows with the signal to {channel.growing:.2g} {channel.unit} at its peak")
+    return f"{channel.channel}: {', '.join(parts)}."

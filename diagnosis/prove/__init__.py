@@ -1,1 +1,0 @@
-"""Proving the diagnosis on concealed cases: answers before keys, scores with their intervals, figures."""

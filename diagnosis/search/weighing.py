@@ -1,0 +1,83 @@
+"""Errors estimated anew with what was found, and what they make of the evidence.
+
+Until an effect is in, the errors hold part of what it does: scatter of events a wrong law of them, for instance. So
+gains under the base model's errors are bounded. They name the effect and say how sure it is; everything after that
+(further effects, rivals, constancy, intervals) stands under the errors estimated with it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from diagnosis.errors.model import Errors, refitted
+from diagnosis.fit.solver import fit
+from diagnosis.fit.whitening import sensor_noise_only
+from diagnosis.search.found import Search, adjusted
+from diagnosis.search.refit import Explanation, without
+
+NEAR, OWN = 0.3, 0.6
+"""Share of the leader's gain from which an explanation is taken along, and from which its own errors are estimated."""
+MOST = 6
+
+
+def reweighed(explanation: Explanation, errors: Errors) -> Explanation:
+    """The explanation refitted under these errors."""
+    f = explanation.fitted
+    return replace(explanation, fitted=fit(replace(f.misfit, whitening=errors.whitening), f.u, f.states))
+
+
+def by_white_noise(explanation: Explanation, errors: Errors) -> Explanation:
+    """The explanation refitted as if the sensors' errors were white, then under these errors, if that is better.
+
+    Errors that hold part of an effect make its valley flat; white noise leads into it.
+    """
+    f = explanation.fitted
+    white = replace(f.misfit, whitening=sensor_noise_only(f.misfit.predictor).with_columns(errors.base))
+    led = fit(white, f.u, f.states)
+    back = replace(explanation, fitted=fit(f.misfit, led.u, led.states))
+    return min(explanation, back, key=lambda e: e.loss)
+
+
+def weigh_again(found: Search) -> None:
+    """Estimate the errors with each of the leading explanations in, and refit the others under those of the best.
+
+    Which is best is told by their likelihoods, each under its own errors.
+    """
+    if found.best is None:
+        return
+    if found.at_null is None:
+        found.at_null = replace(found)
+    size = len(found.best.candidates)
+    least = NEAR * found.gain(found.best)
+    near = [e for e in sorted(found.tried, key=adjusted) if len(e.candidates) == size and found.gain(e) > least][:MOST]
+    if found.best.candidates not in [e.candidates for e in near]:
+        near.append(found.best)
+    judged = []
+    for explanation in near:
+        if found.gain(explanation) > OWN * found.gain(found.best):
+            fitted, errors = refitted(explanation.fitted, found.errors.base, found.errors)
+            price = adjusted(explanation) - explanation.loss
+            judged.append((errors.loss + price, replace(explanation, fitted=fitted), errors))
+    _, found.best, found.errors = min(judged, key=lambda entry: entry[0])
+    found.base = reweighed(found.base, found.errors)
+    others = [reweighed(e, found.errors) for e in near if e.candidates != found.best.candidates]
+    found.tried = [found.best, *others]
+    found.singles = sorted((e for e in found.tried if len(e.candidates) == 1), key=adjusted)
+
+
+def evidence(found: Search) -> list[float]:
+    """Gain of each effect of the answer over the best model without it, under the errors of the model without it."""
+    best = found.best
+    if best is None:
+        return []
+    if len(best.candidates) == 1:
+        start = found if found.at_null is None else found.at_null
+        same = [e for e in start.tried if e.candidates == best.candidates]
+        if same:
+            return [start.base.loss - min(e.loss for e in same)]
+    return [_evidence(best, without(best, c), found.errors) for c in best.candidates]
+
+
+def _evidence(best: Explanation, rest: Explanation, start: Errors) -> float:
+    fitted, errors = refitted(rest.fitted, start.base, start)
+    return max(fitted.loss - reweighed(best, errors).loss, 0.0)

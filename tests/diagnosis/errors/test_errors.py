@@ -1,0 +1,112 @@
+"""A laboratory's errors: estimated as they are, whitened, and no alarm where nothing is missing."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy.signal import lfilter
+
+from diagnosis.errors.adequacy import inadequacy, repeatability
+from diagnosis.errors.likelihood import whitened
+from diagnosis.errors.model import Errors, disturbance_about, refitted
+from diagnosis.errors.summary import summary
+from diagnosis.errors.words import error_lines
+from diagnosis.fit.linearisation import linearise_about
+from diagnosis.fit.setup import base_fit, measure
+from diagnosis.search.candidates import candidates
+from diagnosis.search.null import null_distribution
+from diagnosis.search.refit import Explanation
+from diagnosis.search.screen import score
+from tests.diagnosis.made import SPECIMEN, scattered
+
+
+def autoregressive(rng: np.random.Generator, n: int) -> np.ndarray:
+    """AR(1) with .85 at 200 Hz, of unit deviation."""
+    noise = lfilter([1.0], [1.0, -0.85], rng.normal(size=n + 200))[200:]
+    return noise * np.sqrt(1.0 - 0.85**2)
+
+
+def drifting(rng: np.random.Generator, n: int) -> np.ndarray:
+    """White noise on a drift to half its deviation."""
+    return rng.normal(size=n) + np.linspace(0.0, 0.5, n)
+
+
+def hum(rng: np.random.Generator, n: int) -> np.ndarray:
+    return rng.normal(size=n) + np.sin(2.0 * np.pi * 12.3 * 0.005 * np.arange(n))
+
+
+SMOOTH = ("restitution", "viscous_damping", "velocity_restitution", "coulomb_damping", "tilt", "pivot_inset", "gain",
+          "offset", "base_gain", "accelerometer_offset", "delay", "clock")  # fmt: skip
+CASES = {
+    "white": (0.0, None),
+    "scatter": (0.015, None),
+    "autoregressive": (0.0, autoregressive),
+    "drift": (0.0, drifting),
+    "hum": (0.0, hum),
+}
+
+
+@cache
+def about(case: str) -> tuple[Explanation, Explanation, Errors]:
+    """The base fit under white noise, the same under the errors estimated with it, and these."""
+    scatter, errors = CASES[case]
+    noise = 0.005 if scatter else 0.01
+    measured = measure(SPECIMEN, [scattered(f"train_{k}", k, scatter, noise, errors) for k in (1, 6)])
+    first = base_fit(SPECIMEN, measured)
+    fitted, found = refitted(first, disturbance_about(first))
+    return Explanation((), first), Explanation((), fitted), found
+
+
+def test_impacts_that_scatter_are_told() -> None:
+    found = repeatability(about("scatter")[2], "impacts")
+    assert found is not None and found.clear
+    assert found.low95 < 0.015 < found.high95 < 0.03
+    assert found.low95 < found.estimate < found.high95
+
+
+def test_impacts_that_repeat_do_not_scatter() -> None:
+    found = repeatability(about("white")[2], "impacts")
+    assert found is not None and not found.clear and found.high95 < 0.02
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_the_model_is_adequate_where_nothing_is_missing(case: str) -> None:
+    left = inadequacy(about(case)[2])
+    assert left.judged and not left.large
+
+
+@pytest.mark.parametrize("case", ["autoregressive", "hum", "scatter"])
+def test_whitened_residuals_are_white(case: str) -> None:
+    """Lags one to five within chance of zero, and of variance one."""
+    errors = about(case)[2]
+    products, squares, count = np.zeros(5), 0.0, 0
+    for piece in errors.pieces:
+        w = whitened(piece, errors.theta)
+        squares += float(w @ w)
+        count += w.size - piece.by_state.shape[1]
+        products += [float(w[lag:] @ w[:-lag]) for lag in range(1, 6)]
+    assert abs(squares / count - 1.0) < 0.1
+    assert np.all(np.abs(products / squares) < 4.0 / np.sqrt(count))
+
+
+def test_words_name_what_there_is() -> None:
+    said = {case: " ".join(error_lines(summary(about(case)[2], about(case)[0].measured))) for case in CASES}
+    assert "Impacts repeat to 1." in said["scatter"] and "Impacts repeat" not in said["white"]
+    assert "hum at 12.3 Hz" in said["hum"]
+    assert "hum" not in said["white"] and "low frequencies" in said["autoregressive"]
+
+
+@pytest.mark.parametrize("case", ["scatter", "autoregressive"])
+def test_errors_of_a_laboratory_raise_no_alarm(case: str) -> None:
+    """With the errors taken for white noise something would be missing; as they are, nothing is."""
+    first, base, _ = about(case)
+    chance = {}
+    for name, start in (("white", first), ("estimated", base)):
+        opened = linearise_about(start.fitted)
+        smooth = [c for c in candidates(start.measured, SPECIMEN) if c.name in SMOOTH]
+        scores = score(opened, smooth)
+        chance[name] = null_distribution(opened, scores).p_value(scores[0].statistic)
+    assert chance["white"] < 1e-4
+    assert chance["estimated"] > 0.01

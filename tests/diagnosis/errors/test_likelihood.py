@@ -1,0 +1,83 @@
+"""Restricted likelihood: known variances come back, absent ones stay at zero, slopes are those of the likelihood."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from diagnosis.errors.components import Component, Diagonal, LowRank, Stationary
+from diagnosis.errors.likelihood import Piece, Prior, climbed, evaluate, maximise
+
+N, PIECES = 80, 40
+TIME = np.arange(N) * 0.01
+LAG = np.abs(TIME[:, None] - TIME[None, :])
+KERNELS = [Component("white", 0).kernel(LAG), Component("drift", 0, 0.05).kernel(LAG)]
+NO_PRIOR = Prior(np.zeros((1, 1)), np.zeros(1))
+NAMES = ("white", "drift", "growing", "scatter")
+
+
+def pieces(theta: list[float], seed: int) -> list[Piece]:
+    """Synthetic windows: two states, one shared unknown, four variance components."""
+    rng = np.random.default_rng(seed)
+    found = []
+    for _ in range(PIECES):
+        columns = np.stack([(at < TIME) * np.sin(9.0 * (TIME - at)) for at in rng.uniform(0.0, 0.6, 2)], axis=1)
+        size = np.abs(np.sin(8.0 * TIME + rng.uniform(0.0, 6.0))) ** 2
+        parts = (
+            Stationary(slice(0, N), KERNELS[0]),
+            Stationary(slice(0, N), KERNELS[1]),
+            Diagonal(size),
+            LowRank(columns),
+        )
+        states = np.stack([np.ones(N), TIME], axis=1)
+        unknown = np.sin(5.0 * TIME)[:, None]
+        piece = Piece(TIME, np.zeros(N, int), np.zeros(N), states, unknown, 1e-6 * np.eye(N), parts)
+        root = np.linalg.cholesky(piece.covariance(np.array(theta)))
+        residual = root @ rng.normal(size=N) + states @ rng.normal(size=2) + 0.7 * unknown[:, 0]
+        found.append(Piece(TIME, piece.channel, residual, states, unknown, piece.known, parts))
+    return found
+
+
+def estimated(theta: list[float], seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Estimates and their standard deviations by the average information."""
+    made = pieces(theta, seed)
+    weights = np.ones(len(made))
+    start, _ = climbed(made, NO_PRIOR, np.array([1.0, 0.1, 0.1, 0.1]), weights, 0, 10)
+    found, state = maximise(made, NO_PRIOR, start, weights)
+    return found, np.sqrt(2.0 * np.diagonal(np.linalg.inv(state.information)))
+
+
+def test_known_variances_are_recovered() -> None:
+    """Within three standard deviations each, and right on average over twelve simulations."""
+    truth = np.array([1.0, 0.5, 2.0, 3.0])
+    found = [estimated(truth.tolist(), seed) for seed in range(12)]
+    z = np.array([(values - truth) / sd for values, sd in found])
+    assert np.all(np.abs(z) < 3.5)
+    assert np.all(np.abs(z.mean(axis=0)) < 3.0 / np.sqrt(len(z)))
+    assert 0.4 < np.mean(z**2) < 1.8
+
+
+@pytest.mark.parametrize("absent", [1, 2, 3])
+def test_what_is_absent_stays_at_its_bound(absent: int) -> None:
+    """Half of the estimates are zero exactly, the others within chance."""
+    truth = np.array([1.0, 0.5, 2.0, 3.0])
+    truth[absent] = 0.0
+    found = [estimated(truth.tolist(), seed) for seed in range(8)]
+    values = np.array([values[absent] for values, _ in found])
+    deviations = np.array([sd[absent] for _, sd in found])
+    assert np.sum(values == 0.0) >= 1 and np.all(values < 3.0 * deviations)
+
+
+def test_slope_and_weights_are_those_of_the_deviance() -> None:
+    made = pieces([1.0, 0.5, 2.0, 3.0], 1)[:6]
+    prior = Prior(np.array([[4.0]]), np.array([0.3]))
+    weights = np.linspace(0.4, 1.0, 6)
+    theta = np.array([0.8, 0.7, 1.5, 2.0])
+    state = evaluate(made, prior, theta, np.ones(6))
+    for k in range(4):
+        step = np.zeros(4)
+        step[k] = 1e-4
+        ends = [evaluate(made, prior, theta + sign * step, np.ones(6)).deviance for sign in (1.0, -1.0)]
+        assert state.slope[k] == pytest.approx((ends[0] - ends[1]) / 2e-4, rel=1e-4, abs=1e-4)
+    lighter = evaluate(made, prior, theta, weights)
+    assert lighter.deviance < state.deviance
