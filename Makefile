@@ -7,7 +7,7 @@ READY := .venv/.ready
 STUDY := results/rubber_interface
 HEAVY := --select "top_mass=5 t" --select damping_ratio=0.0544
 
-.PHONY: study quick test lint types bench independent kill-test agreement diagnosis-bench laboratory-bench gallery docs clean
+.PHONY: study quick test lint types bench independent kill-test agreement diagnosis-bench laboratory-bench beginnings-bench gallery docs clean
 
 study: $(READY)
 	$(BIN)/rocking run studies/rubber_interface.toml
@@ -48,6 +48,9 @@ diagnosis-bench: $(READY)
 
 laboratory-bench: $(READY)
 	$(BIN)/python -m benchmarks.diagnosis laboratory
+
+beginnings-bench: $(READY)
+	$(BIN)/python -m benchmarks.diagnosis beginnings
 
 gallery: $(READY)
 	$(BIN)/python docs/make_gallery.py

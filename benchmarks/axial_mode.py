@@ -18,9 +18,11 @@ from typing import Any
 import numpy as np
 
 from grids.plan import read_plan
+from models.interface import modes
 from models.interface.assembly import build
 from models.interface.lanes import run as lanes
 from models.interface.model import MODEL
+from models.runs import Request
 
 OUT = Path("results/bench/axial_mode.json")
 PLAN = Path(__file__).parent.parent / "studies" / "rubber_interface.toml"
@@ -40,10 +42,11 @@ def measure() -> list[dict[str, Any]]:
     shaking, scale = motion.shaking(), cells.pop("pga") / motion.pga
     wall = build({**plan.fixed, **cells}, MODEL.resolve_options(None), True, CELLS)
     rate = 2.0 * (wall.base_damping * wall.base_half_width + wall.top_damping * wall.top_half_width) / wall.mass_1
-    bound, step = EXPLICIT_LIMIT / rate, motion.time_step / lanes.substeps(wall, motion.time_step)
-    coarse, fine = (
-        lanes.outputs(wall, lanes.run(wall, shaking, scale, tail=plan.tail, refinement=n).result) for n in (1, FINE)
+    bound, step = (
+        EXPLICIT_LIMIT / rate,
+        motion.time_step / lanes.substeps(wall, modes.at_rest(wall).squares, motion.time_step),
     )
+    coarse, fine = (lanes.run(wall, Request(shaking, scale, tail=plan.tail), n).outputs for n in (1, FINE))
     stands = ~(coarse["overturned"] | fine["overturned"])
     rows = []
     for low, high in pairwise(BOUNDS):

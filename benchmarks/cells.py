@@ -26,6 +26,7 @@ from typing import Any
 import numpy as np
 
 from grids.plan import Plan, parse_plan
+from models.interface import modes
 from models.interface.assembly import build
 from models.interface.lanes import run as lanes
 from models.interface.model import MODEL
@@ -63,7 +64,11 @@ def lane_steps(chosen: Plan) -> float:
     varied = {name: v for name, v in chosen.grid.coordinates(index).items() if name != "pga"}
     walls = build({**chosen.fixed, **varied}, MODEL.resolve_options(None), True, WALLS)
     (motion,) = chosen.motions
-    return float(lanes.substeps(walls, motion.time_step).mean()) * motion.horizontal.size * chosen.grid.size
+    return (
+        float(lanes.substeps(walls, modes.at_rest(walls).squares, motion.time_step).mean())
+        * motion.horizontal.size
+        * chosen.grid.size
+    )
 
 
 def timed(kernel: Callable[..., int], spent: list[float]) -> Callable[..., int]:

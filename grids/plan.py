@@ -42,6 +42,7 @@ from grids.motions import Motion
 from grids.plan_checks import check_cells, check_scales, check_size
 from grids.plan_motions import MotionTable, read_motions
 from grids.specimen import Specimen, read_specimen
+from grids.stages import after_the_last
 from grids.targets import Targets, find_model
 from grids.units import to_si
 from models.errors import InputError, nearest
@@ -173,7 +174,7 @@ def _specimen(table: StudyTable, folder: Path) -> Specimen | None:
     if (table.model is None) == (table.specimen is None):
         held = "both" if table.model else "neither"
         raise InputError(f"[study] has {held} of model and specimen; give exactly one.")
-    return read_specimen(folder / table.specimen) if table.specimen else None
+    return after_the_last(read_specimen(folder / table.specimen)) if table.specimen else None
 
 
 def _fixed(file: PlanFile, targets: Targets) -> dict[str, float]:

@@ -18,6 +18,9 @@ formulation = "linear"
 reference_peak = "2 deg"          # that levels of instruments are given over; the run's own without it
 [mechanisms.pivot_inset]
 inset_over_half_width = 0.1
+[[mechanisms.pivot_inset.stages]] # when it acts (see `grids.stages`); always without stages
+recording = "shake_2"
+begins = 4.21
 """
 
 from __future__ import annotations
@@ -34,12 +37,14 @@ from grids.consistency import check_laws, check_names
 from grids.files import Schema, check, parse_toml, read_text
 from grids.instruments import INSTRUMENTS
 from grids.plan_checks import check_cells, check_vertical
+from grids.stages import Stage, StageTable, read_stages
 from grids.targets import Targets, find_model
 from grids.units import to_si, with_unit
 from models.errors import InputError, nearest
 from models.model import Model
 
 MOST_TOLERANCE = 1.0
+STAGES = "stages"
 UNITS_OF_STATES = {"rotation_rate": "rad s-1", "rotation": "rad", "velocity": "m s-1", "displacement": "m"}
 """By how the name of a state begins that a model does not observe."""
 
@@ -69,6 +74,7 @@ class SpecimenFile(Schema):
 class Specimen:
     """A checked specimen in SI. ``calibrate`` holds (low, high); ``vertical`` None: the model decides.
 
+    ``stages``: when a mechanism acts, by its name; without an entry always.
     ``reference_peak``: rotation (rad) that levels of instruments are given over; None: the largest of a run itself.
     """
 
@@ -82,6 +88,7 @@ class Specimen:
     options: Mapping[str, str] = field(default_factory=dict)
     mechanisms: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     reference_peak: float | None = None
+    stages: Mapping[str, tuple[Stage, ...]] = field(default_factory=dict)
 
 
 def read_specimen(path: str | Path) -> Specimen:
@@ -135,6 +142,7 @@ def parse_specimen(text: str) -> Specimen:
         options=options,
         mechanisms=mechanisms,
         reference_peak=_reference_peak(file.instruments),
+        stages=_stages(file),
     )
 
 
@@ -151,13 +159,25 @@ def _mechanisms(file: SpecimenFile, targets: Targets) -> dict[str, dict[str, flo
     mechanisms: dict[str, dict[str, float]] = {}
     for name, table in file.mechanisms.items():
         targets.mechanism(name, f"[mechanisms.{name}]")
-        if not table:
+        values = {parameter: value for parameter, value in table.items() if parameter != STAGES}
+        if not values:
             raise InputError(f"[mechanisms.{name}] is empty; give its parameters or leave the table out.")
         mechanisms[name] = {}
-        for parameter, value in table.items():
+        for parameter, value in values.items():
             where = f"[mechanisms.{name}] {parameter}"
             mechanisms[name][parameter] = targets.find(f"{name}.{parameter}", where).number(value, where)
     return mechanisms
+
+
+def _stages(file: SpecimenFile) -> dict[str, tuple[Stage, ...]]:
+    found = {}
+    for name, table in file.mechanisms.items():
+        entries = table.get(STAGES, [])
+        if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
+            raise InputError(f"[mechanisms.{name}] {STAGES} = {entries!r}: write [[mechanisms.{name}.stages]] tables.")
+        if stages := read_stages(name, [check(StageTable, entry) for entry in entries]):
+            found[name] = stages
+    return found
 
 
 def _tolerance(file: SpecimenFile, parameters: Mapping[str, float], targets: Targets) -> dict[str, float]:

@@ -21,10 +21,12 @@ def specimen_text(specimen: Specimen) -> str:
         "initial": specimen.initial,
         "options": specimen.options,
         "instruments": {} if specimen.reference_peak is None else {"reference_peak": specimen.reference_peak},
-        **{f"mechanisms.{name}": values for name, values in specimen.mechanisms.items()},
     }
     parts = [_lines(head)]
     parts += [f"[{name}]\n{_lines(table)}" for name, table in tables.items() if table or name == "parameters"]
+    for name, values in specimen.mechanisms.items():
+        parts.append(f"[mechanisms.{name}]\n{_lines(values)}")
+        parts += [f"[[mechanisms.{name}.stages]]\n{_lines(vars(one))}" for one in specimen.stages.get(name, ())]
     return "\n".join(parts)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from typing_extensions import TypeVar  # typing has no default of a parameter before Python 3.13
 
-from models.answers import answers
+from models.answers import among, answers, unanswered
 from models.base import FloatArray, History, Mechanism, Parameter, Quantity, Values
 from models.errors import InputError, nearest
 from models.identification import Identification
@@ -46,6 +46,8 @@ class Model(ABC, Generic[C]):
     ``options``: words that choose a formulation, with their values, the default first.
     ``states``: what a run starts from, by name.
     ``identification``: what calibration and diagnosis need to know; None: neither is offered.
+    ``resumes_with``: mechanisms with which the states of `resume` are all that a run remembers, so that it can be cut
+    at an instant (`models.piecewise`); None: it never can.
     ``takes_vertical``: whether a vertical motion of the base enters the equations; ``vertical_by_default``:
     whether it does where a specimen does not say.
     """
@@ -62,6 +64,7 @@ class Model(ABC, Generic[C]):
     states: tuple[str, ...]
     integrators: tuple[str, ...] = ("lanes", "reference")
     identification: Identification | None = None
+    resumes_with: tuple[str, ...] | None = None
     takes_vertical: bool = True
     vertical_by_default: bool = False
 
@@ -94,8 +97,31 @@ class Model(ABC, Generic[C]):
     def derive(self, values: Values, options: Mapping[str, str] | None = None) -> dict[str, FloatArray]:
         """Auxiliary constants (alpha, R, p ...) under ``options``, arrays ``(n,)`` by the names of `derived`."""
 
+    def cannot_stand(self, coefficients: C) -> Sequence[tuple[NDArray[np.bool_], str]]:
+        """Lanes (n,) without a state of rest under their own load, by why, with a sentence about the worst of each.
+
+        Default: all stand.
+        """
+        return []
+
+    def refused(self, coefficients: C) -> list[str]:
+        """Why not one lane can stand; empty where one can."""
+        found = self.cannot_stand(coefficients)
+        return [said for unable, said in found if np.any(unable)] if np.all(_any_of(found)) else []
+
     def run(self, integrator: str, coefficients: C, request: Request) -> Run:
-        """All lanes by the integrator of that name."""
+        """All lanes by the integrator of that name; what cannot stand is not_converged, all else of it nan."""
+        unable = _any_of(self.cannot_stand(coefficients))
+        if not np.any(unable):
+            return self._integrated(integrator, coefficients, request)
+        outputs = [quantity for quantity in self.outputs if not quantity.peak_of]
+        whole = unanswered(outputs, unable.size, request.samples, len(self.states))
+        able = np.flatnonzero(~unable)
+        if not able.size:
+            return whole
+        return among(whole, able, self._integrated(integrator, coefficients.take(able), request.take(able)))
+
+    def _integrated(self, integrator: str, coefficients: C, request: Request) -> Run:
         if integrator == "lanes":
             return self.run_lanes(coefficients, request)
         lanes = [slice(k, k + 1) for k in range(coefficients.size)]
@@ -104,6 +130,16 @@ class Model(ABC, Generic[C]):
     def settle(self, run: Run, time_step: float) -> FloatArray:
         """States of a history in which what has overturned stays where it lies; default: as computed."""
         return run.samples
+
+    def resume(
+        self, states: FloatArray, outputs: Mapping[str, NDArray[Any]], initial: Mapping[str, FloatArray]
+    ) -> dict[str, FloatArray]:
+        """What a run goes on from, arrays (n,) as for ``initial``: states (n, k) as the integrators return them.
+
+        ``outputs`` and ``initial``: of the run that ends there; default: `states` in their order, nothing of a model
+        that no run goes on in (`resumes_with`).
+        """
+        return {} if self.resumes_with is None else dict(zip(self.states, states.T, strict=True))
 
     # --- the same for all
 
@@ -179,14 +215,30 @@ class Model(ABC, Generic[C]):
 
         ``initial``: arrays ``(n,)`` by the names of `states`, and of what laws with a memory need.
         """
-        n = first.size
+        steps = np.full(first.size, samples - 1)
+        return self.follow(values, shaking, first=first, steps=steps, initial=initial, options=options)[0]
+
+    def follow(
+        self,
+        values: Values,
+        shaking: Shaking,
+        *,
+        first: NDArray[np.int64],
+        steps: NDArray[np.int64],
+        initial: Mapping[str, FloatArray],
+        options: Mapping[str, str] | None = None,
+    ) -> tuple[dict[str, FloatArray], dict[str, FloatArray]]:
+        """As `trajectories`, lane k over ``steps[k]`` samples, and what each lane would go on from (`resume`)."""
+        n, end = first.size, shaking.horizontal.size - 1
         coefficients = self._shaken(values, options, shaking, n, "lanes")
+        last = np.minimum(first + steps, end)
         request = Request(
-            shaking, np.ones(n), self.resolve_options(options), first=first,
-            last=np.minimum(first + samples - 1, shaking.horizontal.size - 1), samples=samples,
+            shaking, np.ones(n), self.resolve_options(options), first=first, last=last, samples=int(np.max(steps)) + 1,
             initial={name: np.broadcast_to(np.asarray(v, dtype=np.float64), (n,)) for name, v in initial.items()},
         )  # fmt: skip
-        return self.observe(coefficients, self.run("lanes", coefficients, request).samples)
+        run = self.run("lanes", coefficients, request)
+        after = self.resume(run.samples[np.arange(n), last - first], run.outputs, request.initial)
+        return self.observe(coefficients, run.samples), after
 
     def simulate(
         self,
@@ -208,14 +260,32 @@ class Model(ABC, Generic[C]):
         for name in initial or {}:
             if name not in self.states:
                 raise InputError(f"[initial] has no state '{name}'; {nearest(name, self.states)}")
+        last = round((shaking.duration + tail if duration is None else duration) / shaking.time_step)
+        given = {name: np.array([value], dtype=np.float64) for name, value in (initial or {}).items()}
+        return self.simulate_from(
+            values, shaking, initial=given, samples=last, scale=scale, options=options, integrator=integrator
+        )[0]
+
+    def simulate_from(
+        self,
+        values: Values,
+        shaking: Shaking,
+        *,
+        initial: Mapping[str, FloatArray],
+        samples: int,
+        scale: float,
+        options: Mapping[str, str] | None,
+        integrator: str,
+    ) -> tuple[History, dict[str, FloatArray]]:
+        """A history of so many ``samples`` after the first, and what it would go on from (`resume`)."""
         coefficients = self._shaken(values, options, shaking, 1, integrator)
+        for sentence in self.refused(coefficients):
+            raise InputError(sentence)
         step = shaking.time_step
-        last = round((shaking.duration + tail if duration is None else duration) / step)
         request = Request(
             shaking, np.array([scale], dtype=np.float64), self.resolve_options(options),
-            tail=max(0.0, last * step - shaking.duration),
-            initial={name: np.array([value], dtype=np.float64) for name, value in (initial or {}).items()},
-            last=np.array([last]), samples=last + 1, log=MOST_LOGGED,
+            tail=max(0.0, samples * step - shaking.duration), initial=initial, last=np.array([samples]),
+            samples=samples + 1, log=MOST_LOGGED,
         )  # fmt: skip
         run = self.run(integrator, coefficients, request)
         channels = self.observe(coefficients, self.settle(run, step))
@@ -223,12 +293,13 @@ class Model(ABC, Generic[C]):
         found = dict(run.outputs)
         found |= peaks(lambda *_: channels, request, wanted, found.get("overturning_time", np.full(1, np.nan)))
         given = answers(self.outputs, found, [quantity.name for quantity in self.outputs])
-        return History(
-            step * np.arange(last + 1, dtype=np.float64),
+        history = History(
+            step * np.arange(samples + 1, dtype=np.float64),
             {name: one[0] for name, one in channels.items()},
             run.events[0],
             {name: float(value[0]) for name, value in given.items()},
         )
+        return history, self.resume(run.samples[:, samples], run.outputs, initial)
 
     def _shaken(
         self, values: Values, options: Mapping[str, str] | None, shaking: Shaking, size: int, integrator: str
@@ -245,3 +316,8 @@ class Model(ABC, Generic[C]):
         if coefficients.size != size:
             raise ValueError(f"values broadcast to {coefficients.size} lanes, {size} are asked for")
         return coefficients
+
+
+def _any_of(found: Sequence[tuple[NDArray[np.bool_], str]]) -> NDArray[np.bool_]:
+    """Lanes (n,) that any of the reasons holds for; one False without reasons."""
+    return np.any([unable for unable, _ in found], axis=0) if found else np.zeros(1, np.bool_)

@@ -34,8 +34,10 @@ def simulate(
     shipped motion, a motion file, or a recording, whose measured base motion is used. Without a
     motion, ``duration`` (s) of free motion from the specimen's initial state. The specimen says
     whether the vertical component acts (default: the model's). Its instruments act on what is
-    written; the motion is then what the accelerometers of the base read. Raises InputError.
+    written; the motion is then what the accelerometers of the base read. Mechanisms with stages act as
+    they say for a recording of that name. Raises InputError.
     """
+    from grids.recordings import Recording, read_recording
     from grids.specimen import read_specimen
     from study.history import simulate_specimen
 
@@ -48,14 +50,17 @@ def simulate(
             raise InputError("no motion and no duration: name a motion, or give the time of free motion in s")
         shaking = Shaking.silence(duration, FREE_TIME_STEP)
     else:
+        if isinstance(motion, str | Path) and is_recording(Path(motion)):
+            motion = read_recording(motion, base_only=True)
         shaking = _shaking(specimen, motion, component)
-    return simulate_specimen(specimen, shaking, scale=scale, duration=duration, integrator=integrator)
+    name = motion.name if isinstance(motion, Recording) else None
+    return simulate_specimen(specimen, shaking, scale=scale, duration=duration, integrator=integrator, recording=name)
 
 
 def _shaking(specimen: Specimen, motion: Motion | Recording | str | Path, component: str | None) -> Shaking:
     import models
     from grids.motions import read_motion
-    from grids.recordings import Recording, read_recording
+    from grids.recordings import Recording
 
     model = models.get(specimen.model)
     vertical = specimen.vertical
@@ -68,8 +73,6 @@ def _shaking(specimen: Specimen, motion: Motion | Recording | str | Path, compon
                 "set [motion] vertical = false or leave the mechanism out."
             )
         vertical = True
-    if isinstance(motion, str | Path) and is_recording(Path(motion)):
-        motion = read_recording(motion, base_only=True)
     if isinstance(motion, Recording):
         if component is not None:
             raise InputError(f"recording {motion.name}: its base motion has one component: leave '{component}' out")

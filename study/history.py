@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -11,13 +12,15 @@ import xarray as xr
 
 import models
 from grids.instruments import INSTRUMENTS, moved, recorded
-from grids.instruments.base import Surroundings, Switched
+from grids.instruments.base import Surroundings
 from grids.netcdf_lock import NETCDF_LOCK
 from grids.recordings.base import SHARE
 from grids.specimen import Specimen
+from grids.stages import Mechanisms, first_sample, stretches
 from models.base import Event, FloatArray, History
 from models.errors import InputError, nearest
 from models.model import Model
+from models.piecewise import Part, simulate
 from models.shaking import Shaking
 from study.provenance import as_json, attribute, commit, machine, now, versions
 from study.store import write_whole
@@ -33,13 +36,16 @@ def simulate_specimen(
     duration: float | None = None,
     tail: float = 10.0,
     integrator: str = "lanes",
+    recording: str | None = None,
 ) -> xr.Dataset:
     """Every observable (and the base acceleration) over ``time``, the events over ``event``.
 
     ``scale`` multiplies the shaking; ``duration`` (s) fixes the length of the run, else it lasts
     the record and at most ``tail`` s of free motion. With instruments among the specimen's mechanisms
     the shaking is what the accelerometers of the base read, and the channels are what is recorded.
-    Raises InputError for a specimen without a value for every parameter and for an unknown integrator.
+    Mechanisms with stages act as they say for the ``recording`` of that name, else as after their last stage; an
+    instant is that of the next sample. Raises InputError for a specimen without a value for every parameter, for an
+    unknown integrator, and where a run cannot be cut (`models.piecewise`).
     """
     model = models.get(specimen.model)
     if specimen.calibrate:
@@ -49,22 +55,20 @@ def simulate_specimen(
         )
     if integrator not in model.integrators:
         raise InputError(f"integrator '{integrator}' is not known: {nearest(integrator, model.integrators)}")
-    instruments = {name: given for name, given in specimen.mechanisms.items() if name in INSTRUMENTS}
-    values: dict[str, float] = dict(specimen.parameters)
-    for mechanism, parameters in specimen.mechanisms.items():
-        if mechanism not in instruments:
-            values |= {f"{mechanism}.{name}": value for name, value in parameters.items()}
     read = shaking.scaled(scale)
-    history = model.simulate(
-        values,
-        moved(read, instruments),
+    ways = [(first_sample(begin, read.time_step), acting) for begin, acting in stretches(specimen, recording)]
+    instruments = {name: given for name, given in specimen.mechanisms.items() if name in INSTRUMENTS}
+    history = simulate(
+        model,
+        _parts(specimen, ways),
+        _base(read, ways),
         initial=dict(specimen.initial) or None,
         duration=duration,
         tail=tail,
         options=dict(specimen.options),
         integrator=integrator,
     )
-    channels = _recorded(model, history, read, instruments, specimen.reference_peak)
+    channels = _recorded(model, history, read, ways, specimen.reference_peak)
     dataset = _label(model, replace(history, channels=channels), read)
     dataset.attrs = {
         "Conventions": "CF-1.11",
@@ -73,7 +77,8 @@ def simulate_specimen(
         "history": f"{now()} rocking simulate",
         "provenance": as_json(
             {
-                "values": values,
+                "values": _values(specimen, specimen.mechanisms),
+                "stages": {name: [vars(one) for one in stages] for name, stages in specimen.stages.items()},
                 "options": model.resolve_options(specimen.options),
                 "versions": versions(),
                 "commit": commit(),
@@ -88,14 +93,50 @@ def simulate_specimen(
     return dataset
 
 
+Ways = Sequence[tuple[int, Mechanisms]]
+"""From which sample on which mechanisms act."""
+
+
+def _values(specimen: Specimen, mechanisms: Mechanisms) -> dict[str, float]:
+    """Parameters of the wall with those of its own mechanisms."""
+    values: dict[str, float] = dict(specimen.parameters)
+    for mechanism, parameters in mechanisms.items():
+        if mechanism not in INSTRUMENTS:
+            values |= {f"{mechanism}.{name}": value for name, value in parameters.items()}
+    return values
+
+
+def _parts(specimen: Specimen, ways: Ways) -> list[Part]:
+    """The wall's values from sample to sample, where they change."""
+    found: list[Part] = []
+    for first, acting in ways:
+        values = _values(specimen, acting)
+        if not found or values != found[-1].values:
+            found.append(Part(first, values))
+    return found
+
+
+def _base(read: Shaking, ways: Ways) -> Shaking:
+    """What the base did, when ``read`` is what its accelerometers say."""
+    found = moved(read, ways[0][1])
+    horizontal = found.horizontal.copy()
+    for first, acting in ways[1:]:
+        horizontal[first:] = moved(read, acting).horizontal[first:]
+    return replace(found, horizontal=horizontal)
+
+
 def _recorded(
-    model: Model, history: History, read: Shaking, instruments: Switched, reference_peak: float | None
+    model: Model, history: History, read: Shaking, ways: Ways, reference_peak: float | None
 ) -> dict[str, FloatArray]:
     """The channels as the instruments record them; shares of contact stay as they are."""
     units = {quantity.name: quantity.unit for quantity in model.observables}
     around = Surroundings(read.time_step, _at(history, read, read.horizontal), reference_peak)
     signals = {name: x for name, x in history.channels.items() if units[name] != SHARE}
-    return {**history.channels, **(recorded(signals, instruments, around) if instruments else {})}
+    found = {name: np.array(x) for name, x in signals.items()}
+    for first, acting in ways:
+        for name, seen in recorded(signals, acting, around).items():
+            found[name][..., first:] = seen[..., first:]
+    return {**history.channels, **found}
 
 
 def _at(history: History, read: Shaking, component: FloatArray) -> FloatArray:

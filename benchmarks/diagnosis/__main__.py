@@ -1,4 +1,4 @@
-"""python -m benchmarks.diagnosis: concealed cases of our own, or those of a folder, made, answered, scored."""
+"""python -m benchmarks.diagnosis: concealed cases of our own, made, answered, scored."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from benchmarks.diagnosis.suite import EVALUATION_SEED
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.diagnosis", description=__doc__)
     parser.add_argument(
-        "what", nargs="?", choices=("diagnosis", "laboratory", "concealed", "methods", "same"), default="diagnosis",
-        help="cases of our own with white noise (default) or with a laboratory's errors, the block's of a folder, what "
-        "other methods say of our own, or whether two runs over our own answer the same",
+        "what", nargs="?", choices=("diagnosis", "laboratory", "beginnings", "methods", "same"), default="diagnosis",
+        help="cases with white noise (default), with a laboratory's errors or with effects that begin, what other "
+        "methods say of the first, or whether two runs over them answer the same",
     )  # fmt: skip
     parser.add_argument("--out", type=Path, default=Path("results/bench"), help="folder of the results")
     parser.add_argument("--jobs", type=int, default=2, help="processes")
@@ -22,17 +22,9 @@ def main() -> None:
     parser.add_argument("--against", default="before", help="of same: the run that --run is compared with")
     parser.add_argument("--cases", type=int, help="only the first so many of our own cases")
     parser.add_argument("--seed", type=int, default=EVALUATION_SEED, help="of our own cases")
-    parser.add_argument("--half", choices=("odd", "even"), help="which cases of the folder")
-    parser.add_argument("--folder", type=Path, help="concealed cases (default: those of the data folder)")
     given = parser.parse_args()
     common = {"jobs": given.jobs, "minutes": given.minutes, "run": given.run, "say": say}
-    if given.what == "concealed":
-        if given.half is None:
-            parser.error("concealed needs --half odd or --half even")
-        from benchmarks.diagnosis.concealed import concealed
-
-        concealed(given.folder, given.half, given.out, **common)
-    elif given.what == "methods":
+    if given.what == "methods":
         from benchmarks.diagnosis.methods import compare
 
         compare(given.out, seed=given.seed, cases=given.cases, **common)

@@ -1,4 +1,6 @@
-"""The benchmark of the diagnosis on concealed cases of our own: with white noise, or with a laboratory's errors."""
+"""The benchmark of the diagnosis on concealed cases of our own: with white noise, with a
+laboratory's errors, or with effects that begin.
+"""
 
 from __future__ import annotations
 
@@ -7,10 +9,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from benchmarks.diagnosis import laboratory, report, runner, suite
-from benchmarks.diagnosis.answers import Answering, diagnosed
-from benchmarks.diagnosis.files import write_json
-from benchmarks.diagnosis.scores import Scored
+from benchmarks.diagnosis import beginnings, laboratory, report, runner, suite
+from diagnosis.prove.answers import Answering, diagnosed, write_json
+from diagnosis.prove.figures import draw_confusion
+from diagnosis.prove.report import wrong as wrong_answers
+from diagnosis.prove.scores import Scored
 
 
 @dataclass(frozen=True)
@@ -24,6 +27,7 @@ class Bench:
 BENCHES = {
     "diagnosis": Bench(suite.suite, report.grouped),
     "laboratory": Bench(laboratory.suite, report.by_imperfection),
+    "beginnings": Bench(beginnings.suite, report.by_beginning),
 }
 
 
@@ -55,8 +59,8 @@ def bench(
     figures = {**BENCHES[name].figures(answered), "seed": seed, "run": run, "asked": len(designs)}
     write_json(folder / f"{name}.json", figures)
     write_json(here / f"{run}.json", figures)
-    report.draw_confusion(answered, here / f"{run}_confusion.png")
-    wrong = report.wrong(answered)
+    draw_confusion(answered, here / f"{run}_confusion.png")
+    wrong = wrong_answers(answered)
     (here / f"{run}_wrong.txt").write_text(wrong + "\n", encoding="utf-8")
     say(report.tables(figures))
     say(wrong)

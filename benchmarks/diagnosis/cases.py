@@ -3,21 +3,21 @@
 A case is a folder in the format of the concealed recordings (specimen.toml, train_1.nc, train_2.nc,
 test_1.nc) and, elsewhere, its key. The truth of a catalogue effect comes from the model's plain reference
 (`models.housner.reference.run`, DOP853); that of a law outside the catalogue, and every one with a laboratory's
-`imperfections`, from `truth`, a program of its own. Sizes follow `size`. A motion is scaled so that the block
-without the effect reaches .1-.5 alpha and impacts more than 8 times without overturning; with the effect it
-must still rock.
+`imperfections` or an effect that begins, from `truth`, a program of its own. Sizes follow `size`. A motion is
+scaled so that the block without the effect reaches .1-.5 alpha and impacts more than 8 times without overturning;
+with the effect it must still rock.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from benchmarks.diagnosis import imperfections, shakings, size, specimens, truth
+from benchmarks.diagnosis import beginnings, imperfections, shakings, size, specimens, truth
 from benchmarks.diagnosis.effects import CATALOGUE, Hidden
 from benchmarks.diagnosis.open_laws import LAWS, Law
 from benchmarks.diagnosis.scene import FEWEST_IMPACTS, Effects, FloatArray, Scene, Track, Unsuitable
@@ -72,12 +72,19 @@ def make(design: CaseDesign, seed: int) -> Case:
     raise RuntimeError(f"{design.label} ({design.kind} {design.names}): no suitable draw in {ATTEMPTS}")
 
 
-def _alone(row: Hidden, value: float, shapes: Mapping[str, float]) -> Effects:
+def _alone(row: Hidden, value: float, shapes: Mapping[str, float], when: beginnings.When | None) -> Effects:
     """One effect of the catalogue."""
     numbers = {row.parameter: value, **shapes}
     if row.sensor:
-        return Effects({}, {row.name: numbers})
-    return Effects({f"{row.name}.{k}": v for k, v in numbers.items()}, {})
+        return Effects({}, {row.name: numbers}, when=when)
+    return Effects({f"{row.name}.{k}": v for k, v in numbers.items()}, {}, when=when)
+
+
+def _cycle(rotation: FloatArray, step: float, instant: float) -> float:
+    """Two swings at an instant, in s: twice the longest time between impacts around it."""
+    times = step * np.flatnonzero(rotation[1:] * rotation[:-1] < 0.0)
+    around = int(np.searchsorted(times, instant))
+    return 2.0 * float(np.max(np.diff(times)[max(0, around - 2) : around + 1], initial=0.0))
 
 
 class _Draft:
@@ -88,7 +95,7 @@ class _Draft:
         self.block = specimens.draw(rng)
         self.sampling_hz = float(rng.choice(list(LOW_PASS)))
         left_out = "vertical_acceleration" in design.names
-        plain = design.kind != "open" and not design.imperfection and not left_out
+        plain = design.kind != "open" and not design.imperfection and not design.beginning and not left_out
         acts = plain and rng.uniform() < VERTICAL_SHARE
         self.vertical_channel, self.vertical_acts = left_out or acts, acts
         tracks = [self._track() for _ in RECORDINGS]
@@ -97,6 +104,8 @@ class _Draft:
         errors = None
         if design.imperfection:
             errors = imperfections.draw(design.imperfection, design.names, self.sampling_hz, rng)
+        motions = [track.shaking for track in tracks]
+        self.when = beginnings.draw(design.beginning, motions, rng) if design.beginning else None
         self.scene = Scene(self.block, tuple(tracks), acts, self.sampling_hz, design.noise, errors)
 
     def _track(self) -> Track:
@@ -143,6 +152,10 @@ class _Draft:
             }  # fmt: skip
             if effects.active:
                 notes[name]["active_interval"] = effects.active[k]
+            if effects.when is not None:
+                notes[name] |= {"duration": track.shaking.duration, "active": effects.when[k]}
+                step = track.shaking.time_step / shakings.FINE
+                notes[name]["cycles"] = [_cycle(rotation, step, begins) for begins, _ in effects.when[k]]
         exact = max(notes[name]["strength"] for name in RECORDINGS[:2])
         if described and len(described) == 1 and not weak and self.design.relative_size == 1.0:
             if not abs(exact / size.NOMINAL - 1.0) < EXACT_WITHIN:
@@ -153,6 +166,8 @@ class _Draft:
             "sampling_hz": self.sampling_hz, "weak": weak, "effects": described, "over_peak": scale,
             "true_parameters": dict(self.block.true), "recordings": notes,
         }  # fmt: skip
+        if self.design.beginning:
+            key["beginning"] = self.design.beginning
         if errors is not None:
             key |= {"imperfections": errors.described(), "named_rightly": errors.named_rightly}
         return Case(self._specimen(), self.sampling_hz, channels, key)
@@ -171,21 +186,26 @@ class _Draft:
         """The effects at their sizes, as the key tells them, and whether one could not reach its size."""
         if self.design.kind == "open":
             return self._open({**LAWS, **UNSEEN}[self.design.names[0]], peak)
-        both, described, weak = Effects({}, {}), [], False
+        both, described, weak = Effects({}, {}, when=self.when), [], False
         for name in self.design.names:
             row = CATALOGUE[name]
-            end = float(self.rng.choice(row.ends))
+            given = beginnings.BEGINNINGS[self.design.beginning].ends if self.design.beginning else ()
+            end = float(self.rng.choice(given or row.ends))
             if name == "sliding":  # below the slope of the diagonal the block slides and does not rock
                 end = max(end, self.block.true["width"] / self.block.true["height"])
             shapes = row.shapes(self.rng, peak)
 
             shares = SHARES[row.smallest <= SHARES]
-            share, reached = self._nominal(lambda x: _alone(row, row.at(x, end), shapes), peak, shares)  # noqa: B023
+            share, reached = self._nominal(lambda x: _alone(row, row.at(x, end), shapes, self.when), peak, shares)  # noqa: B023
             value = row.at(share, end)
             if self.design.relative_size == 0.5:
                 value = row.half(value)
-            alone = _alone(row, value, shapes)
-            both = Effects({**both.mechanisms, **alone.mechanisms}, {**both.sensors, **alone.sensors})
+            alone = _alone(row, value, shapes, self.when)
+            both = replace(
+                both,
+                mechanisms={**both.mechanisms, **alone.mechanisms},
+                sensors={**both.sensors, **alone.sensors},
+            )
             described.append(
                 {"name": name, "class": row.effect_class, "parameters": {row.parameter: value, **shapes},
                  "primary": row.parameter}

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import json
-import os
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from benchmarks.diagnosis.cases import Case
+from diagnosis.prove.answers import write_json
 from grids.netcdf_lock import NETCDF_LOCK
 
 UNITS = {"rotation_1": "rad", "base_acceleration_x": "m s-2", "base_acceleration_z": "m s-2"}
@@ -32,16 +29,3 @@ def write_case(case: Case, folder: Path, key: Path) -> None:
                 variable.units = UNITS.get(channel, "s")
                 variable[:] = values
     write_json(key, case.key)
-
-
-def write_json(path: Path, content: Mapping[str, Any]) -> None:
-    """Whole or not at all."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    partial = path.with_suffix(".partial")
-    partial.write_text(json.dumps(content, indent=1), encoding="utf-8")
-    os.replace(partial, path)
-
-
-def read_json(path: Path) -> dict[str, Any]:
-    content: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-    return content

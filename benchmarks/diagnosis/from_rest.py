@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import OptimizeResult, least_squares
 
-from benchmarks.diagnosis.answers import NOTHING
+from diagnosis.prove.answers import NOTHING
 from grids.instruments import INSTRUMENTS, moved, recorded
 from grids.instruments.base import Surroundings
 from grids.recordings import Recording, noise_of, read_recording

@@ -7,9 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.diagnosis import from_rest, report, runner, weak_form
-from benchmarks.diagnosis.answers import Answering
-from benchmarks.diagnosis.files import write_json
 from benchmarks.diagnosis.suite import place, suite
+from diagnosis.prove.answers import Answering, write_json
 
 METHODS: dict[str, Answering] = {
     "from rest, least squares, BIC": from_rest.answer,

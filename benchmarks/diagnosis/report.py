@@ -1,39 +1,13 @@
-"""What a run of the benchmark writes: results/bench/*.json, a table, the confusion matrix."""
+"""Figures of the benches: by group of noise and size, by imperfection, by what begins."""
 
 from __future__ import annotations
 
-import math
-from collections import Counter
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
-from benchmarks.diagnosis.scores import Scored, confusion, score
 from benchmarks.diagnosis.suite import GROUPS
-
-FIGURES = (
-    "false_alarm", "class_first", "rivals_cover", "rivals_mean", "pairs_both", "interval_coverage",
-    "open_recall", "open_false", "seconds_median",
-)  # fmt: skip
-MORE = (
-    "mismatch_alarm", "detected", "class_first_strict", "class_first_detected", "class_first_weak",
-    "rivals_cover_detected", "pairs_one", "base_coverage", "open_detected", "seconds_most",
-)  # fmt: skip
-
-
-def value(figure: Any) -> float | None:
-    """The number of a figure, None where there was no case."""
-    number = figure["value"] if isinstance(figure, Mapping) else figure
-    return None if math.isnan(number) else float(number)
-
-
-def summary(cases: Sequence[Scored], *, weak_too: bool = False) -> dict[str, Any]:
-    """Plain numbers by name, and the intervals of the shares under ``intervals``."""
-    figures = score(cases, weak_too=weak_too)
-    numbers = {name: value(figures[name]) for name in (*FIGURES, *MORE)}
-    shares = {name: figure for name, figure in figures.items() if isinstance(figure, Mapping) and "of" in figure}
-    intervals = {name: {**share, "value": value(share)} for name, share in shares.items()}
-    return {"cases": figures["cases"], "by_kind": figures["by_kind"], **numbers, "intervals": intervals}
+from diagnosis.prove.report import FIGURES, OF_PLACES, provenance, summary, table
+from diagnosis.prove.scores import Scored
 
 
 def grouped(cases: Sequence[Scored]) -> dict[str, Any]:
@@ -67,80 +41,38 @@ def grouped(cases: Sequence[Scored]) -> dict[str, Any]:
 
 
 def by_imperfection(cases: Sequence[Scored]) -> dict[str, Any]:
-    """The figures of cases with a laboratory's errors: all, and counts by imperfection."""
-    figures = summary(cases)
-    parts = {}
-    for name in sorted({name for case in cases for name in _imperfections(case)}):
-        found = summary([case for case in cases if name in _imperfections(case)])
-        counts = {key: [part["count"], part["of"]] for key, part in found["intervals"].items() if part["of"]}
-        parts[name] = {"cases": found["cases"], "counts": counts}
-    return {**figures, "by_imperfection": parts, **provenance(cases)}
+    """The figures of cases with a laboratory's errors: all, and counts by imperfection, of mixtures also together."""
+
+    def of(case: Scored) -> list[str]:
+        return [*case.imperfections, "mixture"] if len(case.imperfections) > 1 else case.imperfections
+
+    names = sorted({name for case in cases for name in of(case)})
+    parts = {name: _counts([case for case in cases if name in of(case)]) for name in names}
+    return {**summary(cases), "by_imperfection": parts, **provenance(cases)}
 
 
-def _imperfections(case: Scored) -> list[str]:
-    """By name; of a mixture also ``mixture``."""
-    names = list(case.key["imperfections"]["names"])
-    return [*names, "mixture"] if len(names) > 1 else names
+def by_beginning(cases: Sequence[Scored]) -> dict[str, Any]:
+    """The figures of effects that begin: all, and counts by what happens."""
+    names = sorted({str(case.key["beginning"]) for case in cases if "beginning" in case.key})
+    parts = {name: _counts([case for case in cases if case.key.get("beginning") == name]) for name in names}
+    return {**summary(cases), "by_beginning": parts, **provenance(cases)}
 
 
-def provenance(cases: Sequence[Scored]) -> dict[str, Any]:
-    """Cases by the sources that answered them, and those that failed."""
-    return {
-        "sources": dict(Counter(str(case.answer.get("sources")) for case in cases)),
-        "failed": [case.case for case in cases if case.verdict == "failed"],
-    }
-
-
-def table(figures: Mapping[str, Any], title: str) -> str:
-    """The shares with their intervals, a line each."""
-    lines = [f"{title}: {figures['cases']} cases {figures['by_kind']}"]
-    for name in (*FIGURES, *MORE):
-        share = figures["intervals"].get(name)
-        if share is None:
-            number = figures[name]
-            lines.append(f"  {name:24s} {'-' if number is None else f'{number:8.2f}'}")
-        elif share["of"]:
-            lines.append(
-                f"  {name:24s} {share['value']:8.3f}  [{share['low95']:.3f}, {share['high95']:.3f}]"
-                f"  {share['count']} of {share['of']}"
-            )
-    return "\n".join(lines)
-
-
-def wrong(cases: Sequence[Scored]) -> str:
-    """A line for every case that was not answered rightly: what was hidden and what was said."""
-    lines = []
-    for case in cases:
-        said = " + ".join(effect["name"] for effect in case.answer["effects"]) or "-"
-        rivals = ", ".join(f"{r['name']} ({r['evidence_gap']:.0f})" for r in case.answer["rivals"])
-        hidden = " + ".join(effect["name"] for effect in case.key["effects"]) or "-"
-        right = {
-            "null": not case.detected,
-            "mismatch": not case.detected,
-            "single": case.first_class in case.truth and case.verdict != "not_in_library",
-            "pair": set(case.truth) <= {effect["class"] for effect in case.effects},
-            "open": case.verdict == "not_in_library",
-        }[case.kind]
-        if not right:
-            hidden = hidden if case.kind != "open" else "outside the catalogue"
-            beside = ", ".join(["weak"] * case.weak + list(case.key.get("imperfections", {}).get("names", ())))
-            kind = f"{case.kind} ({beside})" if beside else case.kind
-            lines.append(
-                f"{case.case} {kind}: {hidden}; said {case.verdict}: {said}" + (f"; rivals {rivals}" if rivals else "")
-            )
-    return "\n".join(lines)
+def _counts(cases: Sequence[Scored]) -> dict[str, Any]:
+    found = summary(cases)
+    counts = {key: [part["count"], part["of"]] for key, part in found["intervals"].items() if part["of"]}
+    return {"cases": found["cases"], "counts": counts}
 
 
 def tables(figures: Mapping[str, Any]) -> str:
-    """All tables of `grouped` or of `by_imperfection`."""
-    if "by_imperfection" in figures:
-        lines = [table(figures, "with a laboratory's errors")]
-        for name, part in figures["by_imperfection"].items():
-            counts = ", ".join(
-                f"{key} {count} of {of}" for key, (count, of) in part["counts"].items() if key in FIGURES
-            )
-            lines.append(f"  {name:14s} {counts}")
-        return "\n".join(lines)
+    """All tables of `grouped`, `by_imperfection` or `by_beginning`."""
+    for key, title in (("by_imperfection", "with a laboratory's errors"), ("by_beginning", "effects that begin")):
+        if key in figures:
+            lines = [table(figures, title)]
+            for name, part in figures[key].items():
+                shown = (item for item in part["counts"].items() if item[0] in (*FIGURES, *OF_PLACES))
+                lines.append(f"  {name:32s} " + ", ".join(f"{one} {count} of {of}" for one, (count, of) in shown))
+            return "\n".join(lines)
     found = [table(figures, "1 % noise, nominal size")]
     for title, name in (("3 % noise, half size", "half_size_3_percent"), ("0.5 % noise", "nominal_size_half_percent")):
         part = figures[name]
@@ -150,28 +82,3 @@ def tables(figures: Mapping[str, Any]) -> str:
         if bare["cases"]:
             found.append(table(bare, f"{title} (keys end with {suffix!r})" if suffix else title))
     return "\n".join(found)
-
-
-def draw_confusion(cases: Sequence[Scored], path: Path) -> None:
-    """The confusion matrix of nulls, singles and open cases as a figure."""
-    import matplotlib
-
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
-
-    rows, columns, counts = confusion(cases)
-    figure, axes = pyplot.subplots(figsize=(0.35 * len(columns) + 3.5, 0.3 * len(rows) + 2.5))
-    axes.imshow(counts, cmap="Blues", aspect="auto")
-    for i, row in enumerate(counts):
-        for j, count in enumerate(row):
-            if count:
-                axes.text(j, i, str(count), ha="center", va="center", fontsize=7,
-                          color="white" if count > counts.max() / 2 else "black")  # fmt: skip
-    axes.set_xticks(range(len(columns)), columns, rotation=90, fontsize=7)
-    axes.set_yticks(range(len(rows)), rows, fontsize=7)
-    axes.set_xlabel("class named first")
-    axes.set_ylabel("class hidden")
-    figure.tight_layout()
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=150)
-    pyplot.close(figure)

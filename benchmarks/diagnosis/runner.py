@@ -3,23 +3,17 @@
 from __future__ import annotations
 
 import multiprocessing
-import os
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from pathlib import Path
 
-from benchmarks.diagnosis.answers import Answering, answer, diagnosed
 from benchmarks.diagnosis.cases import make
-from benchmarks.diagnosis.files import read_json, write_case
-from benchmarks.diagnosis.scores import Scored
+from benchmarks.diagnosis.files import write_case
 from benchmarks.diagnosis.suite import CaseDesign
-
-
-def one_thread() -> None:
-    """Called first in every process: a case may use one core."""
-    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"):
-        os.environ[name] = "1"
+from diagnosis.prove.answers import Answering, answer, diagnosed, read_json
+from diagnosis.prove.chain import one_thread
+from diagnosis.prove.scores import Scored
 
 
 def run_case(design: CaseDesign, seed: int, cases: Path, answers: Path, answering: Answering = diagnosed) -> str:

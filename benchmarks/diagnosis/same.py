@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from benchmarks.diagnosis.files import read_json
 from benchmarks.diagnosis.suite import place
+from diagnosis.prove.answers import read_json
 
 TOLERANCE = 1e-6
 """Of estimates, evidence and gaps: relative difference under which two numbers are the same."""

@@ -39,12 +39,16 @@ class Track:
 
 @dataclass(frozen=True)
 class Effects:
-    """What is hidden: the block's mechanisms, the instruments' faults, or a law outside the catalogue."""
+    """What is hidden: the block's mechanisms, the instruments' faults, or a law outside the catalogue.
+
+    ``active``: the one interval of a law in each recording; ``when``: those of everything else, None: always.
+    """
 
     mechanisms: Mapping[str, float]
     sensors: Mapping[str, Mapping[str, float]]
     law: truth.Applied | None = None
     active: tuple[tuple[float, float], ...] = ()
+    when: tuple[tuple[tuple[float, float], ...], ...] | None = None
 
 
 @dataclass(frozen=True)
@@ -82,13 +86,14 @@ class Scene:
         """
         shaking = self.tracks[k].shaking
         true = self.block.true
-        if effects.law is not None or self.imperfections is not None:
+        if effects.law is not None or effects.when is not None or self.imperfections is not None:
             law = None if effects.law is None else replace(effects.law, active=effects.active[k])
             fine = shakings.fine(shaking.horizontal)
             step = shaking.time_step / shakings.FINE
             ran = truth.run(
-                true["width"], true["height"], specimens.GRAVITY, fine, step, law, effects.mechanisms, kicks=kicks
-            )
+                true["width"], true["height"], specimens.GRAVITY, fine, step, law, effects.mechanisms,
+                None if effects.when is None else effects.when[k], kicks,
+            )  # fmt: skip
             every = 1 if exact else shakings.FINE
             return ran.rotation[::every], ran.rate[::every], ran.impacts
         block = MODEL.build({**true, **effects.mechanisms}, vertical=self.vertical_acts)
@@ -104,15 +109,26 @@ class Scene:
         """Of the effects in recording ``k``, over its noise (see `size`), from the true motion."""
         shaking = self.tracks[k].shaking
         step = shaking.time_step
-        recorded = instruments.response(rotation, shaking.horizontal, step, effects.sensors, peak)
+        base, recorded = self._seen(k, effects, effects.sensors, shaking.horizontal, rotation, step, peak)
         noise = self.noise * float(np.max(np.abs(recorded)))
         measured = Shaking(
             step,
-            instruments.base(shaking.horizontal, step, effects.sensors),
+            base,
             shaking.vertical if self.vertical_acts else None,
         )
         windows = size.windows(rotation, rate, step, noise)
         return size.over_noise(self.block.true, specimens.TOLERANCE, measured, recorded, windows, noise)
+
+    def _seen(
+        self, k: int, effects: Effects, sensors: instruments.Sensors, base: FloatArray, rotation: FloatArray,
+        step: float, peak: float,
+    ) -> tuple[FloatArray, FloatArray]:  # fmt: skip
+        """Signals of the base's accelerometer and of the rotation sensor, each fault in its time."""
+        acts = truth.within(step * np.arange(base.size), None if effects.when is None else effects.when[k])
+        return (
+            np.where(acts, instruments.base(base, step, sensors), base),
+            np.where(acts, instruments.response(rotation, base, step, sensors, peak), rotation),
+        )
 
     def size(self, effects: Effects, peak: float) -> float:
         """Of the effects over the noise, from fast runs; infinite where the block no longer rocks as asked."""
@@ -130,10 +146,8 @@ class Scene:
         base = shakings.fine(shaking.horizontal)
         errors = self.imperfections or Imperfections()
         sensors = {**effects.sensors, **errors.sensors}
-        signals = {
-            "base_acceleration_x": instruments.base(base, step, sensors),
-            "rotation_1": instruments.response(rotation, base, step, sensors, peak),
-        }
+        measured, response = self._seen(k, effects, sensors, base, rotation, step, peak)
+        signals = {"base_acceleration_x": measured, "rotation_1": response}
         if shaking.vertical is not None:
             signals["base_acceleration_z"] = shakings.fine(shaking.vertical)
         fraction = float(rng.uniform(0.002, 0.005))

@@ -30,7 +30,7 @@ NOT_HALVED = ("sliding",)
 class CaseDesign:
     """What case ``number`` is to hold: catalogue names (or one law's), at which noise and size.
 
-    ``imperfection``: one of `imperfections.NAMES`, or none.
+    ``imperfection``: one of `imperfections.NAMES`, or none; ``beginning``: one of `beginnings.BEGINNINGS`, or none.
     """
 
     number: int
@@ -39,6 +39,7 @@ class CaseDesign:
     noise: float
     relative_size: float
     imperfection: str = ""
+    beginning: str = ""
 
     @property
     def label(self) -> str:
@@ -62,8 +63,8 @@ GROUPS = (
 
 
 MAKERS = (
-    "cases", "effects", "imperfections", "instruments", "laboratory", "open_laws", "scene", "shakings", "size",
-    "specimens", "suite", "truth", "unseen_laws",
+    "beginnings", "cases", "effects", "imperfections", "instruments", "laboratory", "open_laws", "scene", "shakings",
+    "size", "specimens", "suite", "truth", "unseen_laws",
 )  # fmt: skip
 """Files that the cases of a seed depend on."""
 

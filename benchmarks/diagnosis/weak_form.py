@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import savgol_filter
 
-from benchmarks.diagnosis.answers import NOTHING
+from diagnosis.prove.answers import NOTHING
 from grids.recordings import Recording, noise_of, read_recording
 from grids.specimen import Specimen, read_specimen
 from models import get

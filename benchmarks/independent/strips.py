@@ -17,6 +17,7 @@ from models.interface.layered import LayeredWall
 from models.interface.model import MODEL
 from models.interface.reference import run as reference
 from models.interface.strip import strip
+from models.runs import Request
 from models.shaking import Shaking
 
 G = 9.81
@@ -116,8 +117,12 @@ def free_rocking(
         lean = math.sin(start)
         z = lean * (half - math.sqrt(2.0 * weight / (STIFFNESS * lean)))
         begun = {"rotation_1": start, "rotation_2": start, "displacement_z_1": z}
-        ours = reference.run(body, Shaking.silence(2.0, 1e-3), initial=begun, duration=2.0)
-        exact = _crossing(ours.state[0], 1e-3), float(np.min(ours.state[0]))
+        still = Shaking.silence(2.0, 1e-3)
+        request = Request(
+            still, np.ones(1), initial={k: np.array([v]) for k, v in begun.items()}, samples=still.horizontal.size
+        )
+        ours = reference.run(body, request).samples[0, :, 0]
+        exact = _crossing(ours, 1e-3), float(np.min(ours))
         for way, fibres, step in settings:
             still = Shaking.silence(2.0, step)
             theirs, _ = opensees.history(
@@ -154,7 +159,7 @@ def shaken(
     rows = []
     for name, values, joints in WALLS:
         body = wall(values, joints, True)
-        per = int(lanes.substeps(body, shaking.time_step)[0])
+        per = int(lanes.substeps(body, modes.at_rest(body).squares, shaking.time_step)[0])
         for level in levels:
             scale = level * G / shaking.pga
             exact = rotations(body, shaking, scale, 16)
@@ -173,10 +178,8 @@ def shaken(
 
 def rotations(body: LayeredWall, shaking: Shaking, scale: float, refinement: int = 1) -> NDArray[np.float64]:
     """The wall's rotation by this program, at the samples of the shaking."""
-    ran = lanes.run(
-        body, shaking, np.array([scale]), samples=shaking.horizontal.size, refinement=refinement, may_rest=False
-    )
-    return ran.samples[0, :, 0]
+    request = Request(shaking, np.array([scale]), samples=shaking.horizontal.size)
+    return np.asarray(lanes.run(body, request, refinement).samples[0, :, 0])
 
 
 def opensees_rotations(

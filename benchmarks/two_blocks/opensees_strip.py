@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from benchmarks import opensees
 from benchmarks.independent.strips import TWO_LAYERS, G, apart, opensees_rotations, record, rotations, wall
+from models.interface import modes
 from models.interface.lanes.run import substeps
 
 FIBRES = 20
@@ -34,7 +35,7 @@ def ratios(rate: float, seconds: float = 10.0) -> dict[str, Any]:
     if not opensees.available():
         return {}
     body, shaking = wall(TWO_LAYERS, "both", True), record(seconds)
-    per = int(substeps(body, shaking.time_step)[0])
+    per = int(substeps(body, modes.at_rest(body).squares, shaking.time_step)[0])
     scales = [level * G / shaking.pga for level in LEVELS]
 
     def by_lanes(refinement: int) -> NDArray[np.float64]:

@@ -1,22 +1,28 @@
 """From parameters and window states to what the sensors would have recorded in every window.
 
-All windows, for many parameter points at once: one call of ``model.trajectories`` for each recording and each
-motion of the base, which carries the clock of the responses (`grids.instruments.windowed`).
+All windows, for many parameter points at once: one call of the model for each recording and each motion of the
+base, which carries the clock of the responses (`grids.instruments.windowed`). Mechanisms with stages act in their
+intervals: a window before or after an instant runs as it is then; one that holds it is cut there and goes on from its
+state (`models.piecewise`), and what instruments do to it changes at that sample.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.data.measured import Measured
 from diagnosis.fit.unknowns import instruments_of, without_instruments
-from grids.instruments.base import Surroundings, Switched
+from grids.instruments.base import Channels, Surroundings, Switched
 from grids.instruments.windowed import moved_in_windows, recorded_in_windows, same_base, seconds_ahead
+from grids.recordings.base import Recording
+from grids.stages import Stage, changes, first_sample
 from models.base import FloatArray
+from models.errors import InputError
+from models.piecewise import trajectories
 from models.shaking import Shaking
 
 
@@ -30,10 +36,11 @@ class Point:
 
 @dataclass(frozen=True)
 class Predictor:
-    """Predictions for the windows of ``measured``."""
+    """Predictions for the windows of ``measured``; ``stages`` by mechanism, of those that do not always act."""
 
     measured: Measured
     options: Mapping[str, str] = field(default_factory=dict)
+    stages: Mapping[str, Sequence[Stage]] = field(default_factory=dict)
 
     def predict(self, points: Sequence[Point], shakings: Sequence[Shaking] | None = None) -> FloatArray:
         """Channels (P, W, C, N) of P points; ``shakings`` replace the measured ones."""
@@ -49,9 +56,10 @@ class Predictor:
             if not windows.size:
                 continue
             given = m.shakings[r] if shakings is None else shakings[r]
+            ways = self._ways(recording)
             for members in groups.values():
-                shaking = moved_in_windows(given, instruments[members[0]])
-                self._run(points, members, windows, shaking, complete, recording.time_step, instruments, out)
+                shaking = _moved(given, instruments[members[0]], ways)
+                self._run(points, members, windows, shaking, complete, recording.time_step, instruments, ways, out)
         return out
 
     def _complete(self, points: Sequence[Point]) -> list[dict[str, float]]:
@@ -81,6 +89,7 @@ class Predictor:
         complete: Sequence[Mapping[str, float]],
         time_step: float,
         instruments: Sequence[Switched],
+        ways: Ways,
         out: FloatArray,
     ) -> None:
         m = self.measured
@@ -88,23 +97,74 @@ class Predictor:
         ahead = max(seconds_ahead(instruments[p]) for p in members)
         samples = compared + int(np.ceil(ahead / time_step))
         n, count = len(windows), len(members)
-        values = {}
-        for name in complete[0]:
-            column = np.array([complete[p][name] for p in members])
-            values[name] = column[0] if np.all(column == column[0]) else np.repeat(column, n)
+        parts = [self._values([complete[p] for p in members], off, n) for _, off in ways]
+        instants = np.tile(np.array([first for first, _ in ways[1:]], np.int64), (n * count, 1))
         states = np.stack([points[p].states[windows] for p in members])
         initial = {s: states[:, :, k].ravel() for k, s in enumerate(m.model.states)}
         initial |= {k: np.tile(v[windows], count) for k, v in m.memory.items()}
         first = np.tile(m.first[windows], count)
-        ran = m.model.trajectories(values, shaking, first=first, samples=samples, initial=initial, options=self.options)
+        ran = trajectories(
+            m.model, parts, instants, shaking, first=first, samples=samples, initial=initial, options=self.options
+        )
         found = {c: _held(ran[c].reshape(count, n, samples), shaking, m.first[windows]) for c in m.channels}
         base = np.pad(m.base[windows][:, :compared], ((0, 0), (0, samples - compared)))
         start = np.asarray(time_step * m.first[windows, None], float)
         around = Surroundings(time_step, base, m.reference_peak, start)
         for k, p in enumerate(members):
-            recorded = recorded_in_windows({c: found[c][k] for c in m.channels}, instruments[p], around)
+            true = {c: found[c][k] for c in m.channels}
+            recorded = _recorded(true, instruments[p], around, ways, m.first[windows])
             for c, channel in enumerate(m.channels):
                 out[p, windows, c, :compared] = recorded[channel][:, :compared]
+
+    def _ways(self, recording: Recording) -> Ways:
+        """From which sample of a recording on which mechanisms with stages do not act."""
+        step = recording.time_step
+        found = changes(self.stages.keys(), self.stages, recording.name)
+        return [(first_sample(time, step), frozenset(self.stages) - acting) for time, acting in found]
+
+    def _values(
+        self, points: Sequence[Mapping[str, float]], off: frozenset[str], windows: int
+    ) -> dict[str, float | FloatArray]:
+        """Values of the points for their lanes, one for all or (points x windows,); those of ``off`` at their nulls."""
+        values: dict[str, float | FloatArray] = {}
+        for name in points[0]:
+            mechanism, _, parameter = name.partition(".")
+            column = np.array([point[name] for point in points])
+            if mechanism in off:
+                column[:] = self.measured.model.mechanisms[mechanism].parameter(parameter).null
+            values[name] = column[0] if np.all(column == column[0]) else np.repeat(column, windows)
+        return values
+
+
+Ways = Sequence[tuple[int, frozenset[str]]]
+"""From which sample of a recording on which mechanisms are off."""
+
+
+def _without(instruments: Switched, off: frozenset[str]) -> Switched:
+    return {name: values for name, values in instruments.items() if name not in off}
+
+
+def _moved(given: Shaking, instruments: Switched, ways: Ways) -> Shaking:
+    """The motion that the base makes, on the clock of the responses."""
+    moved = [moved_in_windows(given, _without(instruments, off)) for _, off in ways]
+    if any(one.time_step != moved[0].time_step for one in moved):
+        raise InputError("the clock of a recording cannot change within it; give 'clock' stages of whole recordings.")
+    horizontal = moved[0].horizontal.copy()
+    for (first, _), one in zip(ways[1:], moved[1:], strict=True):
+        horizontal[first:] = one.horizontal[first:]
+    return replace(moved[0], horizontal=horizontal)
+
+
+def _recorded(
+    true: Channels, instruments: Switched, around: Surroundings, ways: Ways, first: NDArray[np.int64]
+) -> Channels:
+    """Channels (W, N) as recorded in windows that begin at samples ``first`` of the recording."""
+    found = dict(recorded_in_windows(true, _without(instruments, ways[0][1]), around))
+    index = first[:, None] + np.arange(around.base_acceleration.shape[-1])
+    for begin, off in ways[1:]:
+        later = recorded_in_windows(true, _without(instruments, off), around)
+        found = {c: np.where(index >= begin, later[c], x) for c, x in found.items()}
+    return found
 
 
 def _held(channel: FloatArray, shaking: Shaking, first: NDArray[np.int64]) -> FloatArray:

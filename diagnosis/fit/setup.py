@@ -35,6 +35,11 @@ def measure(specimen: Specimen, recordings: Sequence[Recording], reference_peak:
     """
     if not recordings:
         raise InputError("no recording to learn from: name at least one.")
+    for name in specimen.stages:
+        raise InputError(
+            f"[mechanisms.{name}] has stages: a mechanism that is given acts always where parameters are fitted; leave "
+            "its stages out, or the mechanism for it to be found."
+        )
     model = models.get(specimen.model)
     windows = identification_of(model).windows
     lengths = None

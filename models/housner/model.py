@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.base import FloatArray, Values
 from models.errors import InputError
@@ -35,6 +37,7 @@ class Housner(Model[Block]):
     states = declaration.STATES
     identification = IDENTIFICATION
     integrators = ("lanes", "reference", "newmark")
+    resumes_with = declaration.RESUMES_WITH
 
     def assemble(self, values: Values, options: Mapping[str, str], *, vertical: bool, size: int) -> Block:
         return assemble(values, vertical, size)
@@ -109,6 +112,18 @@ class Housner(Model[Block]):
             "rotation_rate_1": rate,
             "displacement_1_x": across + shift,
             "contact_1": ((rotation == 0.0) & (rate == 0.0)).astype(float),
+        }
+
+    def resume(
+        self, states: FloatArray, outputs: Mapping[str, NDArray[Any]], initial: Mapping[str, FloatArray]
+    ) -> dict[str, FloatArray]:
+        """Rotation and rate, the largest rotation and the impacts so far."""
+        earlier = {name: initial.get(name, np.zeros(states.shape[0])) for name in ("peak_rotation_1", "impacts")}
+        return {
+            "rotation_1": states[:, 0],
+            "rotation_rate_1": states[:, 1],
+            "peak_rotation_1": np.maximum(earlier["peak_rotation_1"], outputs["peak_rotation"]),
+            "impacts": earlier["impacts"] + outputs["impacts"],
         }
 
     def settle(self, run: Run, time_step: float) -> FloatArray:

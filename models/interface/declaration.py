@@ -75,6 +75,11 @@ UP = (
     "(see the option dashpot); counted to overturning"
 )
 LOST = "what the rubber's law could give back at the end counts as stored; counted to overturning"
+STATUS_RULE = (
+    "not_converged: the wall cannot stand under its own weight (a law cannot carry it or creeps without end, it tips, "
+    "a layer is compressed beyond its thickness), or the run diverged: a state that is not a number, a layer opened or "
+    "compressed by more than ten times the wall's size, energy that nothing has given"
+)
 CALM = 1e-6
 """At rest: kinetic energy below this share of its peak for one first period, after the shaking."""
 
@@ -104,7 +109,7 @@ OUTPUTS = (
         "friction_demand", "max |H|/N", "1", "largest ratio of the forces along and across the joint",
         "nan for a bonded joint; inf when the joint opens completely: the model holds it laterally all the same", WORST,
     ),
-    Quantity("status", "", "1", "what became of the run", "not_converged: the state is not a number", dtype="int8"),
+    Quantity("status", "", "1", "what became of the run", STATUS_RULE, dtype="int8"),
 )  # fmt: skip
 
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Mapping
 
 import numpy as np
 
-from models.base import Event, FloatArray, Values
+from models.base import FloatArray, Values
 from models.errors import InputError
-from models.interface import declaration, modes
+from models.interface import declaration, modes, standing
 from models.interface.assembly import assemble, build
 from models.interface.identification import IDENTIFICATION
 from models.interface.layered import LayeredWall
@@ -38,6 +37,7 @@ class Interface(Model[LayeredWall]):
     states = declaration.STATES
     identification = IDENTIFICATION
     vertical_by_default = True
+    resumes_with: tuple[str, ...] | None = ("vertical_acceleration", "pivot_inset", "hardening", "locking")
 
     def assemble(self, values: Values, options: Mapping[str, str], *, vertical: bool, size: int) -> LayeredWall:
         return assemble(values, options, vertical, size)
@@ -49,31 +49,14 @@ class Interface(Model[LayeredWall]):
         return build(values, self.resolve_options(options), vertical, size, self.name)
 
     def check(self, values: Values, options: Mapping[str, str] | None = None) -> list[str]:
-        """Layers that lack a number, and walls that cannot stand on them under their own weight."""
+        """Layers that lack a number, and walls none of which can stand under their own weight."""
         try:
-            wall = self.build(values, options)
+            return self.refused(self.build(values, options))
         except InputError as error:
             return [str(error)]
-        lowest = modes.at_rest(wall).squares[:, 0]
-        if np.any(~(lowest > 0.0)):
-            worst = int(np.argmax(~(lowest > 0.0)))
-            return [
-                f"the layers are too soft to hold the wall upright (k_b = {wall.base_stiffness[worst]:.3g}, "
-                f"k_t = {wall.top_stiffness[worst]:.3g} N m-2): make them stiffer or the wall longer"
-            ]
-        found = []
-        compression = -modes.static_state(wall)
-        for joint, compressed, thickness in (
-            ("base", compression[:, 2], wall.base_thickness),
-            ("top", compression[:, 3], wall.top_thickness),
-        ):
-            if wall.joints in ("both", joint) and np.any(compressed > thickness):
-                worst = int(np.argmax(compressed - thickness))
-                found.append(
-                    f"under its load the {joint} layer is compressed by {compressed[worst] * 1e3:.3g} mm, more than "
-                    f"its thickness of {thickness[worst] * 1e3:.3g} mm: make it stiffer or thicker"
-                )
-        return found
+
+    def cannot_stand(self, coefficients: LayeredWall) -> list[standing.Unable]:
+        return standing.cannot_stand(coefficients)
 
     def derive(self, values: Values, options: Mapping[str, str] | None = None) -> dict[str, FloatArray]:
         """Static state, natural frequencies, mode shapes and modal damping at rest, arrays ``(n,)``."""
@@ -85,14 +68,14 @@ class Interface(Model[LayeredWall]):
         return modes.at_rest(wall)
 
     def run_lanes(self, coefficients: LayeredWall, request: Request) -> Run:
-        from models.interface.lanes.run import outputs, run
+        from models.interface.lanes.run import run
 
-        return by_lanes(run, outputs, coefficients, request)
+        return run(coefficients, request)
 
     def run_reference(self, coefficients: LayeredWall, request: Request) -> Run:
         from models.interface.reference.run import run
 
-        return by_reference(run, coefficients, request)
+        return run(coefficients, request)
 
     def observe(self, coefficients: LayeredWall, samples: FloatArray) -> dict[str, FloatArray]:
         return observe(coefficients, samples)
@@ -108,33 +91,6 @@ class Interface(Model[LayeredWall]):
                     samples[lane, fallen:, body - 1] = run.outputs[f"residual_rotation_{body}"][lane]
             samples[lane, fallen:, 4:] = 0.0
         return samples
-
-
-def by_lanes(run: Callable[..., Any], outputs: Callable[..., Any], wall: LayeredWall, request: Request) -> Run:
-    """What the kernel that ``run`` calls makes of a request."""
-    ran = run(
-        wall, request.shaking, request.scale, tail=request.tail, initial=request.initial, first=request.first,
-        last=request.last, samples=request.samples, log=request.log, may_rest=not request.history,
-    )  # fmt: skip
-    events = tuple(_with_onset(tuple(Event(*event) for event in lane)) for lane in ran.events)
-    return Run(outputs(wall, ran.result), ran.samples, events, ran.steps)
-
-
-def by_reference(run: Callable[..., Any], wall: LayeredWall, request: Request) -> Run:
-    """What the reference ``run`` makes of a request of one lane."""
-    ran = run(
-        wall, request.shaking, float(request.scale[0]), tail=request.tail, initial=request.start,
-        duration=request.until if request.history else None,
-    )  # fmt: skip
-    return Run.of_one(ran.outputs, ran.state.T, _with_onset(ran.events))
-
-
-def _with_onset(events: tuple[Event, ...]) -> tuple[Event, ...]:
-    """The first uplift is the onset too."""
-    for k, event in enumerate(events):
-        if event.kind == "uplift":
-            return (*events[:k], Event(event.time, "onset", event.body), *events[k:])
-    return events
 
 
 MODEL = Interface()

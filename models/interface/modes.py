@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.base import FloatArray
 from models.interface.layered import FREE, LayeredWall
@@ -108,14 +109,33 @@ class Modes:
 def at_rest(wall: LayeredWall, rest: FloatArray | None = None) -> Modes:
     """Undamped modes in full contact, gravity included, with l as at ``rest`` (the static state, if it is known)."""
     rest = static_state(wall) if rest is None else rest
-    lever = wall.height_1 + wall.top_thickness_in_height + rest[:, 3]
-    stiffness = layer_matrix(wall, *tangents(wall, rest)) - gravity_matrix(wall, lever)
-    return modes(wall, mass_matrix(wall, lever), stiffness)
+    return modes(wall, mass_matrix(wall, _lever(wall, rest)), _stiffness(wall, rest))
+
+
+def stable(wall: LayeredWall, rest: FloatArray) -> NDArray[np.bool_]:
+    """Whether gravity leaves the wall stiffness in every direction at ``rest`` (n, 4): all omega^2 positive."""
+    free = FREE[wall.joints]
+    stiffness = free.T @ _stiffness(wall, rest) @ free
+    with np.errstate(invalid="ignore"):
+        minors = [np.linalg.det(stiffness[:, :k, :k]) > 0.0 for k in range(1, free.shape[1] + 1)]
+    return np.asarray(np.all(minors, axis=0))
+
+
+def _lever(wall: LayeredWall, rest: FloatArray) -> FloatArray:
+    """l (m) at rest."""
+    return np.asarray(wall.height_1 + wall.top_thickness_in_height + rest[:, 3])
+
+
+def _stiffness(wall: LayeredWall, rest: FloatArray) -> FloatArray:
+    """K (n, 4, 4) in full contact, gravity included."""
+    return layer_matrix(wall, *tangents(wall, rest)) - gravity_matrix(wall, _lever(wall, rest))
 
 
 def modes(wall: LayeredWall, mass: FloatArray, stiffness: FloatArray) -> Modes:
-    """Modes of given matrices ``(n, 4, 4)`` in the coordinates that the wall's joints leave free."""
+    """Modes of given matrices ``(n, 4, 4)`` in the coordinates that the wall's joints leave free; nan of nan."""
     free = FREE[wall.joints]
+    unknown = np.asarray(np.any(np.isnan(mass + stiffness), axis=(1, 2)))
+    mass, stiffness = (np.where(unknown[:, None, None], np.eye(4), matrix) for matrix in (mass, stiffness))
 
     def reduced(matrix: FloatArray) -> FloatArray:
         return np.asarray(free.T @ matrix @ free)
@@ -124,6 +144,7 @@ def modes(wall: LayeredWall, mass: FloatArray, stiffness: FloatArray) -> Modes:
     inverse = np.linalg.inv(root)
     transposed = np.swapaxes(inverse, 1, 2)
     squares, vectors = np.linalg.eigh(inverse @ reduced(stiffness) @ transposed)
+    squares[unknown] = np.nan
     normal = transposed @ vectors
     damping = reduced(layer_matrix(wall, wall.base_damping, wall.top_damping))
     with np.errstate(invalid="ignore"):

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from models.base import FloatArray
+from models.base import Event, FloatArray
 from models.interface.layered import LayeredWall
 
 
@@ -56,3 +58,13 @@ def share(
         low = np.where(slope > 0.0, np.maximum(low, root), np.where(slope == 0.0, np.maximum(low, flat), low))
         high = np.where(slope < 0.0, np.minimum(high, root), high)
     return np.asarray(np.maximum(high - low, 0.0) / (2.0 * b))
+
+
+def with_onset(logs: Sequence[tuple[Event, ...]]) -> tuple[tuple[Event, ...], ...]:
+    """The logs of several lanes in which the first uplift is the onset too."""
+    found = []
+    for events in logs:
+        first = next((k for k, event in enumerate(events) if event.kind == "uplift"), None)
+        onset = () if first is None else (Event(events[first].time, "onset", events[first].body),)
+        found.append((*events[:first], *onset, *events[first:]) if onset else events)
+    return tuple(found)

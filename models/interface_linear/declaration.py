@@ -24,7 +24,7 @@ BRIEF = 0.2
 UP = "a joint is up while it is not in full contact (z + b |r| > 0, or held at the switch); counted to overturning"
 RULES = {
     "status": "outside_model: a joint opened completely (z >= b |r|), which these equations do not describe; "
-    "not_converged: a state is not a number, or too many switches within one sample",
+    f"{full.STATUS_RULE}, or too many switches within one sample",
     "minimum_contact": "1 in full contact, .5 once it was left, 0 where z >= b |r|",
     "peak_strain": "(compression + b |r|)/e, of an overturned wall that of the fall; above 1 the layer would be "
     "compressed beyond its own thickness; nan for a bonded joint",

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from models.base import FloatArray
 from models.interface import modes
 from models.interface.layered import LayeredWall
-from models.interface.model import Interface, by_lanes, by_reference
+from models.interface.model import Interface
 from models.interface_linear import declaration, equation
 from models.interface_linear.identification import IDENTIFICATION
 from models.interface_linear.observe import observe
@@ -29,6 +29,7 @@ class InterfaceLinear(Interface):
     options = declaration.OPTIONS
     outputs = declaration.OUTPUTS
     identification = IDENTIFICATION
+    resumes_with = ("vertical_acceleration", "pivot_inset")
 
     def resolve_options(self, options: Mapping[str, str] | None) -> dict[str, str]:
         """Every option of `interface` with its word: `joints` as chosen, the others as the paper has them."""
@@ -38,14 +39,14 @@ class InterfaceLinear(Interface):
         return equation.at_rest(wall)
 
     def run_lanes(self, coefficients: LayeredWall, request: Request) -> Run:
-        from models.interface_linear.lanes.run import outputs, run
+        from models.interface_linear.lanes.run import run
 
-        return by_lanes(run, outputs, coefficients, request)
+        return run(coefficients, request)
 
     def run_reference(self, coefficients: LayeredWall, request: Request) -> Run:
         from models.interface_linear.reference.run import run
 
-        return by_reference(run, coefficients, request)
+        return run(coefficients, request)
 
     def observe(self, coefficients: LayeredWall, samples: FloatArray) -> dict[str, FloatArray]:
         return observe(coefficients, samples)

@@ -69,7 +69,7 @@ def build(values: Values, options: Mapping[str, str], size: int | None = None) -
     )
     chain = applied("isolated", chain, values)
     for rubber_law, p in chain.rubber_laws:
-        if refused := rubber_law.refusal(p, np.zeros(chain.size)):
+        if refused := rubber_law.refusal(p):
             raise InputError(refused)
     law = options["rubber_law"]
     if law == "as_given":

@@ -77,7 +77,8 @@ OUTPUTS = (
     ),
     Quantity(
         "status", "", "1", "what became of the run",
-        "nothing rocks or overturns here: rocking means that it moved; not_converged: the state is not a number",
+        "nothing rocks or overturns here: rocking means that it moved; not_converged: the run diverged: a state that "
+        "is not a number, a velocity beyond what the shaking's impulse can give, energy that nothing has given",
         dtype="int8",
     ),
 )  # fmt: skip

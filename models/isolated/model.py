@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from models.base import Event, FloatArray, Values
+from models.base import FloatArray, Values
 from models.errors import InputError
 from models.isolated import declaration, modes
 from models.isolated.assembly import build, complaints
@@ -62,22 +62,12 @@ class Isolated(Model[Chain]):
     def run_lanes(self, coefficients: Chain, request: Request) -> Run:
         from models.isolated.lanes.run import run
 
-        ran = run(
-            coefficients, request.shaking, request.scale, tail=request.tail, initial=request.initial,
-            first=request.first, last=request.last, samples=request.samples, may_rest=not request.history,
-        )  # fmt: skip
-        rested = ran.result["rest_time"].tolist()
-        events = tuple((Event(time, "rest"),) if time == time else () for time in rested)
-        return Run(ran.result, ran.samples, events, ran.steps)
+        return run(coefficients, request)
 
     def run_reference(self, coefficients: Chain, request: Request) -> Run:
         from models.isolated.reference.run import run
 
-        ran = run(
-            coefficients, request.shaking, float(request.scale[0]), tail=request.tail, initial=request.start,
-            duration=request.until if request.history else None,
-        )  # fmt: skip
-        return Run.of_one(ran.outputs, ran.samples, ran.events)
+        return run(coefficients, request)
 
     def observe(self, coefficients: Chain, samples: FloatArray) -> dict[str, FloatArray]:
         return observe(coefficients, samples)

@@ -36,10 +36,15 @@ def empty(request: Request, columns: int, states: int) -> Tables:
     )  # fmt: skip
 
 
-def put(whole: Tables, lanes: NDArray[np.intp], part: Tables) -> None:
+def put(whole: Tables, lanes: NDArray[np.intp], found: Tables) -> None:
     """Take over what a kernel wrote for some of the lanes."""
-    for table, rows in zip(whole, part, strict=True):
+    for table, rows in zip(whole, found, strict=True):
         table[lanes] = rows
+
+
+def part(whole: Tables, lanes: slice) -> Tables:
+    """The tables of some of the lanes, to write in."""
+    return Tables(whole.result[lanes], whole.trace[lanes], whole.log[lanes], whole.length[lanes])
 
 
 def logged(tables: Tables, kinds: Sequence[str]) -> tuple[tuple[Event, ...], ...]:

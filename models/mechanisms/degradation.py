@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from models.base import Mechanism, MechanismParameter, Values
 from models.housner.block import Block
-from models.isolated.chain import Chain
+from models.rubber.base import with_law
 
 
 def on_housner(block: Block, values: Values) -> Block:
     return block.replace(loss_per_impact=values["loss_of_restitution_per_impact"], restitution_floor=values["floor"])
-
-
-def on_isolated(chain: Chain, values: Values) -> Chain:
-    return chain.with_law("degradation", values)
 
 
 OF_RUBBER = Mechanism(
@@ -25,7 +23,7 @@ OF_RUBBER = Mechanism(
     equation="k [1 - final_loss (1 - exp(-n/cycles))] after n full cycles",
     signature="grows with time and record",
     sentence="the rubber loses {final_loss:.1%} of its stiffness, over {cycles:.0f} cycles",
-    acts={"isolated": on_isolated},
+    acts={"isolated": partial(with_law, name="degradation")},
     static_test="repeat a run and compare",
     source="form of this project: models/isolated/bearing.py",
 )

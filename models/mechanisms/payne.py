@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from models.base import Mechanism, MechanismParameter, Values
-from models.isolated.chain import Chain
+from functools import partial
 
-
-def on_isolated(chain: Chain, values: Values) -> Chain:
-    return chain.with_law("payne", values)
-
+from models.base import Mechanism, MechanismParameter
+from models.rubber.base import with_law
 
 MECHANISM = Mechanism(
     name="payne",
@@ -20,6 +17,6 @@ MECHANISM = Mechanism(
     equation="s = k [1 - softening (1 - exp(-A/(strain e)))] u + c u', A = |u| at the last reversal, or |u| if larger",
     signature="with the amplitude of the cycle; small cycles after large ones are stiff again",
     sentence="the rubber loses up to {softening:.1%} of its stiffness in large cycles, over a strain of {strain:.2f}",
-    acts={"isolated": on_isolated},
+    acts={"isolated": partial(with_law, name="payne")},
     source="Payne (J. Appl. Polym. Sci. 6, 1962); A is a form of this project: models/isolated/bearing.py",
 )

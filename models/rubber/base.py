@@ -13,6 +13,7 @@ from functools import partial
 from typing import Any, Literal, Protocol, Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.base import FloatArray, Mechanism, MechanismParameter, Values
 
@@ -27,7 +28,8 @@ class Layered(Protocol):
     def with_law(self, name: str, values: Values) -> Self: ...
 
 
-def _act(coefficients: Layered, values: Values, name: str) -> Layered:
+def with_law(coefficients: Layered, values: Values, name: str) -> Layered:
+    """The coefficients with the law ``name`` in their rubber."""
     return coefficients.with_law(name, values)
 
 
@@ -36,7 +38,7 @@ def rubber_mechanism(
     source: str, models: Sequence[str] = ("interface", "isolated"),
 ) -> Mechanism:  # fmt: skip
     """The mechanism of a rubber law: a class of its own, addressed at both joints of a wall together or at one."""
-    acts: dict[str, Callable[..., Any]] = {model: partial(_act, name=name) for model in models}
+    acts: dict[str, Callable[..., Any]] = {model: partial(with_law, name=name) for model in models}
     return Mechanism(name, name, parameters, equation, signature, sentence, acts, source, at_joints=("interface",))
 
 
@@ -50,9 +52,14 @@ def unmoved(u: FloatArray, h: FloatArray, p: Numbers) -> FloatArray:
     return h
 
 
-def accepted(p: Numbers, u: FloatArray) -> str:
+def accepted(p: Numbers) -> str:
     """No complaint."""
     return ""
+
+
+def resting(p: Numbers, u: FloatArray) -> tuple[NDArray[np.bool_], str]:
+    """Nowhere restless."""
+    return np.zeros(u.shape, np.bool_), ""
 
 
 @dataclass(frozen=True)
@@ -69,7 +76,8 @@ class RubberLaw:
     ``numbers(p, step)``: what ``update`` wants for steps of ``step`` (s), by the names of its arguments.
     ``update(u, change, h, *numbers)``: h, effect and slope of one fibre at the end of a step over which u has
     grown by ``change`` (``_`` where the law does not look at it) to u; plain floats, without branches.
-    ``of_strain``: whether the rubber's thickness enters. ``refusal(p, u)``: why the law cannot hold rest at u, or "".
+    ``of_strain``: whether the rubber's thickness enters. ``refusal(p)``: what is wrong with the numbers, or "".
+    ``restless(p, u)``: where the law never comes to rest at u, and a sentence about the worst such place.
     """
 
     mechanism: Mechanism
@@ -85,7 +93,8 @@ class RubberLaw:
     reached: Callable[[FloatArray, FloatArray, Numbers], FloatArray] = unmoved
     hidden: bool = True
     of_strain: bool = False
-    refusal: Callable[[Numbers, FloatArray], str] = accepted
+    refusal: Callable[[Numbers], str] = accepted
+    restless: Callable[[Numbers, FloatArray], tuple[NDArray[np.bool_], str]] = resting
 
     @property
     def name(self) -> str:

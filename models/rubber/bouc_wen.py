@@ -60,7 +60,7 @@ def turned(u: FloatArray, rest: FloatArray, p: Numbers) -> FloatArray:
     return np.where(u > rest, relaxed(u, p), down)
 
 
-def refusal(p: Numbers, u: FloatArray) -> str:
+def refusal(p: Numbers) -> str:
     odd = p["exponent"][~np.isin(p["exponent"], EXPONENTS)]
     return f"bouc_wen.exponent is {odd.flat[0]:g}; give 1, 2, 3 or 4" if odd.size else ""
 

@@ -145,7 +145,8 @@ def _softening(before: Step, update: Step, first: bool) -> Step:
         left, grown, more, slope = before(t, j, u, change, k, n[0])
         _, lost, _ = update(t, j, left, grown, n[1])
         if first:
-            return left, grown, -lost * (k * u), -lost * k
+            steep = lost * k
+            return left, grown, -steep * u, -steep
         return left, grown, more - lost * (k * u + more), slope - lost * (k + slope)
 
     return softened

@@ -6,6 +6,7 @@ Beside other laws u - u_p is what they all see as the compression.
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.base import FloatArray, MechanismParameter
 from models.rubber.base import Numbers, RubberLaw, rubber_mechanism
@@ -20,12 +21,10 @@ def rate(u: FloatArray, u_rate: FloatArray, h: FloatArray, p: Numbers) -> FloatA
     return np.asarray(p["rate"] * e * np.maximum(0.0, (u - h) / e - p["strain_limit"]))
 
 
-def refusal(p: Numbers, u: FloatArray) -> str:
+def restless(p: Numbers, u: FloatArray) -> tuple[NDArray[np.bool_], str]:
     limit, strain = np.broadcast_arrays(p["strain_limit"], u / p["thickness"])
-    if not np.any(limit <= strain):
-        return ""
-    worst = int(np.argmax(strain - limit))
-    return (
+    worst = int(np.argmax(np.where(limit <= strain, strain - limit, -np.inf)))
+    return limit <= strain, (
         f"permanent_set.strain_limit is {limit.flat[worst]:.3g}, not above the strain at rest, "
         f"{strain.flat[worst]:.3g}: the layer would creep without end; give a larger limit"
     )
@@ -58,5 +57,5 @@ LAW = RubberLaw(
         source="models/rubber/permanent_set.py",
         models=("interface",),
     ),
-    "shifts", effect, numbers, update, rate=rate, of_strain=True, refusal=refusal,
+    "shifts", effect, numbers, update, rate=rate, of_strain=True, restless=restless,
 )  # fmt: skip

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.base import FloatArray, Values
 from models.model import Model
@@ -36,6 +38,7 @@ class Stacked(Model[Stack]):
     observables = declaration.OBSERVABLES
     states = declaration.STATES
     identification = IDENTIFICATION
+    resumes_with = ("pivot_inset", "tilt", "eccentricity", "restitution", "viscous_damping")
 
     def assemble(self, values: Values, options: Mapping[str, str], *, vertical: bool, size: int) -> Stack:
         return assemble(values, vertical, size)
@@ -92,6 +95,13 @@ class Stacked(Model[Stack]):
 
     def observe(self, coefficients: Stack, samples: FloatArray) -> dict[str, FloatArray]:
         return observe(coefficients, samples)
+
+    def resume(
+        self, states: FloatArray, outputs: Mapping[str, NDArray[Any]], initial: Mapping[str, FloatArray]
+    ) -> dict[str, FloatArray]:
+        """Rotations against the base, and their rates."""
+        q1, q2, w1, w2 = states.T
+        return {"rotation_1": q1, "rotation_2": q1 + q2, "rotation_rate_1": w1, "rotation_rate_2": w1 + w2}
 
 
 MODEL = Stacked()

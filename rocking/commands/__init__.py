@@ -4,7 +4,20 @@ from __future__ import annotations
 
 import typer
 
-from rocking.commands import calibrate, check, diagnose, export, map, motions, plan, run, simulate, slices, status
+from rocking.commands import (
+    calibrate,
+    check,
+    diagnose,
+    export,
+    map,
+    motions,
+    plan,
+    prove,
+    run,
+    simulate,
+    slices,
+    status,
+)
 from rocking.commands.base import Commands
 
 COMMANDS = (
@@ -19,6 +32,7 @@ COMMANDS = (
     simulate.simulate,
     calibrate.calibrate,
     diagnose.diagnose,
+    prove.prove,
 )
 
 app = typer.Typer(

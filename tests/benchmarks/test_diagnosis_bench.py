@@ -5,10 +5,12 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import pytest
+
 from benchmarks.diagnosis import weak_form
-from benchmarks.diagnosis.answers import Answering, diagnosed
 from benchmarks.diagnosis.bench import bench
 from benchmarks.diagnosis.suite import place, suite
+from diagnosis.prove.answers import Answering, diagnosed
 
 SEED = 29
 """Its suite begins with a null and a hidden restitution, both at 1 % noise."""
@@ -46,3 +48,14 @@ def test_two_cases_from_making_to_figures(tmp_path: Path) -> None:
     run(again, weak_form.answer)
     assert again[0] == "1 of 2 cases were answered before"
     assert answers[1].stat().st_mtime_ns == before[1] and answers[0].is_file()
+
+
+@pytest.mark.parametrize(("name", "key"), [("laboratory", "by_imperfection"), ("beginnings", "by_beginning")])
+def test_benches_of_laboratories_from_making_to_figures(name: str, key: str, tmp_path: Path) -> None:
+    figures = bench(
+        name, tmp_path, seed=1_000, cases=4, minutes=10.0, jobs=1, run="a", say=lambda text: None,
+        answering=weak_form.answer,
+    )  # fmt: skip
+    assert figures["cases"] == figures["asked"] == 4 and figures["failed"] == []
+    written = json.loads((tmp_path / f"{name}.json").read_text())
+    assert written[key] == figures[key] and sum(part["cases"] for part in written[key].values()) >= 1

@@ -7,12 +7,14 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from benchmarks.diagnosis import report, shakings, truth
+from benchmarks.diagnosis import beginnings, report, shakings, truth
 from benchmarks.diagnosis.cases import make
+from benchmarks.diagnosis.effects import CATALOGUE
 from benchmarks.diagnosis.imperfections import NAMES, SCATTER, Imperfections, autoregressive, draw, pink
 from benchmarks.diagnosis.laboratory import EACH, EFFECTS, suite
-from benchmarks.diagnosis.scores import Scored, score
 from benchmarks.diagnosis.suite import CaseDesign
+from diagnosis.prove.report import wrong
+from diagnosis.prove.scores import Scored, score
 from models.housner.model import MODEL
 from models.housner.reference.run import run as reference
 from models.runs import Request
@@ -153,4 +155,30 @@ def test_naming_the_laboratorys_own_instrument_is_no_false_alarm() -> None:
     assert found["detected"]["count"] == 2
     figures = report.by_imperfection(cases)
     assert figures["by_imperfection"]["ac_coupling"]["counts"]["false_alarm"] == [2, 3]
-    assert "ac_coupling" in report.tables(figures) and len(report.wrong(cases).splitlines()) == 3
+    assert "ac_coupling" in report.tables(figures) and len(wrong(cases).splitlines()) == 3
+
+
+def test_what_begins_acts_in_its_intervals_alone() -> None:
+    design = next(d for d in beginnings.suite(5) if d.beginning == "a sensor is knocked")
+    case = make(design, 5)
+    notes = case.key["recordings"]
+    assert notes["train_1"]["active"] == () and notes["train_1"]["strength"] < 1e-3
+    (begins, ends) = notes["train_2"]["active"][0]
+    assert 0.0 < begins < ends == notes["train_2"]["duration"] and notes["train_2"]["cycles"][0] > 0.0
+    assert notes["test_1"]["active"] == ((0.0, notes["test_1"]["duration"]),)
+    # at rest at the start, and at the end off by the offset
+    shift = case.key["effects"][0]["parameters"]["offset_over_peak"] * case.key["over_peak"]
+    rotation = case.channels["train_2"]["rotation_1"]
+    quiet = round(0.4 * case.sampling_hz)
+    noise = notes["train_2"]["noise_std"]["rotation_1"]
+    assert abs(np.mean(rotation[:quiet])) < 0.5 * noise
+    assert np.mean(rotation[-quiet:]) == pytest.approx(shift, abs=2.0 * noise)
+
+
+def test_every_kind_of_beginning_is_asked_for_alike() -> None:
+    designs = beginnings.suite(5)
+    counts = Counter(d.beginning for d in designs if d.beginning)
+    assert len(counts) == 10 and set(counts.values()) == {beginnings.EACH} and counts.total() >= 40
+    assert sum(d.kind == "null" for d in designs) == beginnings.NULLS
+    for name in beginnings.BEGINNINGS:
+        assert set(beginnings.BEGINNINGS[name].ends) <= set(CATALOGUE[beginnings.BEGINNINGS[name].effect].ends)

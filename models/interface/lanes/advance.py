@@ -20,11 +20,10 @@ from models.interface.lanes.rows import (
     GROWTH_V,
     LIFT_B,
     LIFT_T,
-    LOG_CLOSING_B,
-    LOG_OVER_1,
-    LOG_OVER_2,
+    LOG_CLOSING,
+    LOG_OVERTURNED,
     LOG_REST,
-    LOG_UPLIFT_B,
+    LOG_UPLIFT,
     N_WORK,
     Q_PERIOD,
     Q_STEPS,
@@ -37,44 +36,35 @@ from models.interface.lanes.rows import (
 )
 from models.interface.lanes.settle import HALF_TURN, at_rest, consistent, empty, finish, load, start
 from models.interface.lanes.step import step_all
+from models.lanes.arrays import Counts, Record, Table, Tables
 from models.lanes.compiler import called, compiled
-
-Table = Any
-
-
-@called
-def note(log: Table, count: Table, lane: int, time: float, kind: float) -> None:
-    """Write an event in the log of this lane, as long as there is room."""
-    if count[lane] < log.shape[1]:
-        log[lane, count[lane], 0] = time
-        log[lane, count[lane], 1] = kind
-    count[lane] += 1
+from models.lanes.events import note
 
 
 @called
-def note_joints(log: Table, count: Table, was: Table, w: Table, lane: int, slot: int) -> None:
+def note_joints(log: Table, count: Counts, was: Table, w: Table, lane: int, slot: int) -> None:
     """Write the uplifts and closings of the step just done; ``was`` (2, W) holds the heights before it."""
     for joint in range(2):
         before, now = was[joint, slot], w[LIFT_B + joint, slot]
         if (before > 0.0) != (now > 0.0):
             at = (w[CLOCK, slot] - now / (now - before)) * w[STEP, slot]
-            kind = LOG_UPLIFT_B if now > 0.0 else LOG_CLOSING_B
-            note(log, count, lane, at, float(kind + joint))
+            note(log, count, lane, at, LOG_UPLIFT if now > 0.0 else LOG_CLOSING, joint + 1.0)
 
 
 @compiled
 def advance(
-    record: Table, time_step: float, shaken: int, first: Table, last: Table, given: Table, result: Table,
-    sampled: bool, trace: Table, log: Table, count: Table, may_rest: bool, mixed: Any, laws: Any, rubber: Any,
+    record: Record, first: Counts, last: Counts, given: Table, tables: Tables, sampled: bool, mixed: Any, laws: Any,
+    rubber: Any,
 ) -> int:  # fmt: skip
     """Run every lane from sample ``first`` to ``last``; returns the number of lane-steps computed.
 
-    ``record`` (2, n): a and a_z every ``time_step`` (s), linear between; the shaking ends at sample
-    ``shaken``. Each lane takes its own number of steps per sample. ``trace`` (n, m, 8) takes q and q'
-    at every sample if ``sampled``. ``log`` (n, k, 2) takes uplifts, closings, rest and overturning.
-    ``may_rest``: a lane ends when it has come to rest. ``mixed``, ``laws``: see `step`;
+    The record is linear between its samples, and each lane takes its own number of steps per sample. The trace
+    (n, m, 8) takes q and q' at every sample if ``sampled``, else a lane ends when it has come to rest; the log takes
+    uplifts, closings, rest and overturning. ``mixed``, ``laws``: see `step`;
     ``rubber``: the `Rubber` of `models.interface.lanes.fibres` if there are laws.
     """
+    samples, time_step, shaken = record.samples, record.step, record.shaken
+    result, trace, log, count = tables.result, tables.trace, tables.log, tables.length
     n = given.shape[0]
     w = np.zeros((N_WORK if laws is None else N_WORK_LAWS, W))
     # the fibres' rows are looked up by place
@@ -100,7 +90,7 @@ def advance(
                     waiting += 1
                     at[slot], bound[slot], window[slot] = first[lane], first[lane], -1
                     per[slot] = int(given[lane, Q_STEPS])
-                    start(given, result, w, lane, slot, record, at[slot], time_step, logged, mixed, laws, rubber)
+                    start(given, result, w, lane, slot, samples, at[slot], time_step, logged, mixed, laws, rubber)
                 if at[slot] < bound[slot]:
                     break
                 i = at[slot]
@@ -113,8 +103,8 @@ def advance(
                 if i >= shaken and i >= window[slot]:
                     if at_rest(w, slot, CALM) and window[slot] >= 0:
                         if logged:
-                            note(log, count, lane, i * time_step, float(LOG_REST))
-                        ended = ended or may_rest
+                            note(log, count, lane, i * time_step, LOG_REST, 1.0)
+                        ended = ended or not sampled
                     window[slot] = i + 1 + int(given[lane, Q_PERIOD] / time_step)
                 if ended:
                     finish(result, w, lane, slot, False, laws, rubber)
@@ -124,7 +114,7 @@ def advance(
                 bound[slot] = min(last[lane], shaken if i < shaken else window[slot])
                 if sampled:
                     bound[slot] = i + 1
-                load(w, slot, record, i, shaken, float(per[slot]))
+                load(w, slot, samples, i, shaken, float(per[slot]))
                 break
             of[slot] = lane
             active += 1 if lane >= 0 else 0
@@ -161,8 +151,8 @@ def advance(
                         note_joints(log, count, was, w, lane, slot)
                     if not (abs(w[T1, slot]) < HALF_TURN and abs(w[T2, slot]) < HALF_TURN):
                         if logged:
-                            over = LOG_OVER_1 if abs(w[T1, slot]) >= HALF_TURN else LOG_OVER_2
-                            note(log, count, lane, w[CLOCK, slot] * w[STEP, slot], float(over))
+                            body = 1.0 if abs(w[T1, slot]) >= HALF_TURN else 2.0
+                            note(log, count, lane, w[CLOCK, slot] * w[STEP, slot], LOG_OVERTURNED, body)
                         finish(result, w, lane, slot, True, laws, rubber)
                         of[slot] = -1
                         empty(w, slot)
@@ -170,6 +160,6 @@ def advance(
             # --- lanes that have come to a sample take up its growth, whatever becomes of the others
             for slot in range(W):
                 if sub[slot] == 0 and of[slot] >= 0 and at[slot] < bound[slot]:
-                    load(w, slot, record, at[slot], shaken, float(per[slot]))
+                    load(w, slot, samples, at[slot], shaken, float(per[slot]))
             if settle:
                 break

@@ -12,7 +12,8 @@ from typing import Any, NamedTuple
 
 from models.interface.fibres import COUNT, NODES, WEIGHTS
 from models.interface.lanes import rows as r
-from models.interface.lanes.rows import Table, W
+from models.interface.lanes.rows import W
+from models.lanes.arrays import Table
 from models.lanes.compiler import called, inlined
 from models.lanes.elementary import sine_cosine
 from models.rubber import lanes as rubber
@@ -23,9 +24,11 @@ UNBOUNDED = 1e300
 
 # --- work beyond the rows of `rows`, base and top: u of every fibre at the last step, hidden states, numbers
 P_LAWS = tuple((r.N_WORK + joint * rubber.N_NUMBERS) * W for joint in range(2))
-LAST = tuple((r.N_WORK + 2 * rubber.N_NUMBERS + joint * (1 + rubber.N_HIDDEN) * COUNT) * W for joint in range(2))
-N_WORK_LAWS = r.N_WORK + 2 * rubber.N_NUMBERS + 2 * (1 + rubber.N_HIDDEN) * COUNT
-PLACES = [rubber.Places(LAST[joint] + COUNT * W, COUNT * W, P_LAWS[joint], W) for joint in range(2)]
+APART = COUNT + 1
+"""Rows between those of a fibre: not a power of two, at which a store would hold up the load of the next one."""
+LAST = tuple((r.N_WORK + 2 * rubber.N_NUMBERS + joint * (1 + rubber.N_HIDDEN) * APART) * W for joint in range(2))
+N_WORK_LAWS = r.N_WORK + 2 * rubber.N_NUMBERS + 2 * (1 + rubber.N_HIDDEN) * APART
+PLACES = [rubber.Places(LAST[joint] + APART * W, APART * W, P_LAWS[joint], W) for joint in range(2)]
 
 
 class Rubber(NamedTuple):
@@ -44,7 +47,7 @@ class Rubber(NamedTuple):
 
 @inlined
 def predicted_strips(w: Table, i: int) -> None:
-    """z, S, z', S' of both strips at the predictor of the coming step."""
+    """z, b S, c z', c b S' of both strips at the predictor of the coming step, and the least stress."""
     h = w[r.STEP * W + i]
     half = 0.5 * h * h
     v1, v2 = w[r.V1 * W + i] + h * w[r.A1 * W + i], w[r.V2 * W + i] + h * w[r.A2 * W + i]
@@ -54,45 +57,44 @@ def predicted_strips(w: Table, i: int) -> None:
     sr, cr = sine_cosine(t2 - t1)
     w[r.FZ_B * W + i] = w[r.Z1 * W + i] + h * w[r.Y1 * W + i] + half * w[r.AZ1 * W + i]
     w[r.FZ_T * W + i] = w[r.Z2 * W + i] + h * w[r.Y2 * W + i] + half * w[r.AZ2 * W + i]
-    w[r.FY_B * W + i], w[r.FY_T * W + i] = (
-        w[r.Y1 * W + i] + h * w[r.AZ1 * W + i],
-        w[r.Y2 * W + i] + h * w[r.AZ2 * W + i],
-    )
-    w[r.FS_B * W + i], w[r.FS_T * W + i] = s1, sr
-    w[r.FR_B * W + i], w[r.FR_T * W + i] = c1 * v1, cr * (v2 - v1)
+    cb, ct = w[r.CB * W + i], w[r.CT * W + i]
+    w[r.FY_B * W + i] = cb * (w[r.Y1 * W + i] + h * w[r.AZ1 * W + i])
+    w[r.FY_T * W + i] = ct * (w[r.Y2 * W + i] + h * w[r.AZ2 * W + i])
+    b1, bt = w[r.B1 * W + i], w[r.BT * W + i]
+    w[r.FS_B * W + i], w[r.FS_T * W + i] = b1 * s1, bt * sr
+    w[r.FR_B * W + i], w[r.FR_T * W + i] = cb * b1 * (c1 * v1), ct * bt * (cr * (v2 - v1))
+    w[r.FLOOR * W + i] = 0.0 if w[r.CLIP * W + i] > 0.0 else -UNBOUNDED
     for row in range(10):
         w[(r.FN_B + row) * W + i] = 0.0
 
 
-def _four(laws: Sequence[RubberLaw], joint: int, first: int) -> Callable[..., None]:
+def _four(laws: Sequence[RubberLaw], joint: int) -> Callable[..., None]:
     """Compiled ``(w, i)``: four fibres of a joint of one lane; what they add to its force, moment and slopes."""
     numbers, respond = rubber.responding(laws, PLACES[joint])
     looks_back, last = rubber.looks_back(laws), LAST[joint]
-    f0, f1, f2, f3 = range(first, first + 4)
 
     @inlined
     def fibre(w: Table, f: int, i: int, strip: Any, n: Any) -> tuple[float, float]:
         """Stress of one fibre of one lane beyond the linear one, both clipped under law B, and its slope."""
-        turn, z, turn_rate, z_rate, k, c, floor = strip
+        turn, z, turn_drag, drag, k, floor = strip
         down = NODES[f] * turn - z
         u, change, j = max(down, 0.0), 0.0, f * W + i
         if looks_back:
             change = u - w[last + j]
             w[last + j] = u
         more, slope = respond(w, j, u, change, k, n)
-        linear = k * u + c * (NODES[f] * turn_rate - z_rate)
+        linear = k * u + (NODES[f] * turn_drag - drag)
         total = linear + more
         touching = down > 0.0
         stress = max(total, floor) - max(linear, floor) if touching else 0.0
         return stress, slope if touching & (total > floor) else 0.0
 
     @inlined
-    def four(w: Table, i: int) -> None:
-        b = w[(r.B1 + joint) * W + i]
+    def four(w: Table, f0: int, i: int) -> None:
+        f1, f2, f3 = f0 + 1, f0 + 2, f0 + 3
         strip = (
-            b * w[(r.FS_B + joint) * W + i], w[(r.FZ_B + joint) * W + i],
-            b * w[(r.FR_B + joint) * W + i], w[(r.FY_B + joint) * W + i],
-            w[(r.KB + joint) * W + i], w[(r.CB + joint) * W + i], 0.0 if w[r.CLIP * W + i] > 0.0 else -UNBOUNDED,
+            w[(r.FS_B + joint) * W + i], w[(r.FZ_B + joint) * W + i], w[(r.FR_B + joint) * W + i],
+            w[(r.FY_B + joint) * W + i], w[(r.KB + joint) * W + i], w[r.FLOOR * W + i],
         )  # fmt: skip
         n = numbers(w, i)
         s0, d0 = fibre(w, f0, i, strip, n)
@@ -117,20 +119,15 @@ def _joint(laws: Sequence[RubberLaw], joint: int) -> Callable[..., None]:
             return
 
         return nothing
-    one, two, three, four = (_four(laws, joint, first) for first in range(0, COUNT, 4))
+    four = _four(laws, joint)
 
     @inlined
     def all_fibres(w: Table) -> None:
         # a length read at run time: else the compiler unrolls the loops instead of making vector code
         lanes = w.size // N_WORK_LAWS
-        for i in range(lanes):
-            one(w, i)
-        for i in range(lanes):
-            two(w, i)
-        for i in range(lanes):
-            three(w, i)
-        for i in range(lanes):
-            four(w, i)
+        for f in range(0, COUNT, 4):
+            for i in range(lanes):
+                four(w, f, i)
 
     return all_fibres
 
@@ -171,11 +168,11 @@ def fibres_at_start(w: Table, laws: Rubber, lane: int, slot: int) -> None:
     for joint in range(2):
         for row in range(rubber.N_NUMBERS):
             w[P_LAWS[joint] + row * W + slot] = laws.numbers[lane, joint, row]
-        turn = w[(r.B1 + joint) * W + slot] * w[(r.FS_B + joint) * W + slot]
+        turn = w[(r.FS_B + joint) * W + slot]
         for f in range(COUNT):
             w[LAST[joint] + f * W + slot] = max(NODES[f] * turn - w[(r.FZ_B + joint) * W + slot], 0.0)
             for row in range(rubber.N_HIDDEN):
-                w[LAST[joint] + ((row + 1) * COUNT + f) * W + slot] = laws.hidden[lane, joint, row, f]
+                w[LAST[joint] + ((row + 1) * APART + f) * W + slot] = laws.hidden[lane, joint, row, f]
     # in a table of its own, so that no history moves
     alone = w.copy()
     fibres_all(alone, laws.base, laws.top)
@@ -190,4 +187,4 @@ def fibres_at_end(w: Table, laws: Rubber, lane: int, slot: int) -> None:
     for joint in range(2):
         for row in range(rubber.N_HIDDEN):
             for f in range(COUNT):
-                laws.ended[lane, joint, row, f] = w[LAST[joint] + ((row + 1) * COUNT + f) * W + slot]
+                laws.ended[lane, joint, row, f] = w[LAST[joint] + ((row + 1) * APART + f) * W + slot]

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from models.interface.lanes import rows as r
+from models.lanes.arrays import Table
 from models.lanes.compiler import inlined
 
-Table = Any
 HALF_TURN = 1.5707963267948966
 NEVER = 1e300
 TINY = 1e-60

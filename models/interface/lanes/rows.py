@@ -1,9 +1,5 @@
 """Names of the rows of the lane kernel's tables: ``work`` (rows, W lanes), ``given``, ``result``."""
 
-from typing import Any
-
-Table = Any
-"""A table of the kernel."""
 W = 16
 """Lanes under way at once: two vectors of eight doubles, four of four."""
 
@@ -24,12 +20,13 @@ W = 16
     POWER_B, POWER_T, WORK_B, WORK_T, ALONG_B, ALONG_T, ACROSS_B, ACROSS_T,
     # bodies: peaks, kinetic energy (peak so far, peak of this window)
     PEAK_1, PEAK_2, KINETIC, WINDOW,
-    # strips at the predictor, and what the fibres add: force, moment, slopes times 1, x, x^2
-    FZ_B, FZ_T, FS_B, FS_T, FY_B, FY_T, FR_B, FR_T, FN_B, FN_T, FM_B, FM_T, F1_B, F1_T, F2_B, F2_T, F3_B, F3_T,
+    # strips at the predictor: z, b S, c z', c b S', the least stress; what the fibres add: force, moment, slopes
+    # times 1, x, x^2
+    FZ_B, FZ_T, FS_B, FS_T, FY_B, FY_T, FR_B, FR_T, FN_B, FN_T, FM_B, FM_T, F1_B, F1_T, F2_B, F2_T, F3_B, F3_T, FLOOR,
     # whether uplifts and closings are to be logged, whether the lane needs attention
     LOGGED, FLAG,
-) = range(93)  # fmt: skip
-N_WORK = 93
+) = range(94)  # fmt: skip
+N_WORK = 94
 CONSTANTS = tuple(range(SCALE, FREE_T + 1))
 """Rows copied from ``given``, in this order."""
 
@@ -50,4 +47,4 @@ N_RESULT = 23
 """R_LOST: work of the strips on the bodies, the energy of the layers not yet taken into account."""
 
 # kinds of events in a log, in the order of `models.interface.lanes.run.EVENTS`
-LOG_UPLIFT_B, LOG_UPLIFT_T, LOG_CLOSING_B, LOG_CLOSING_T, LOG_REST, LOG_OVER_1, LOG_OVER_2 = range(7)
+LOG_UPLIFT, LOG_CLOSING, LOG_REST, LOG_OVERTURNED = 0.0, 1.0, 2.0, 3.0

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -15,24 +14,16 @@ from models.interface.declaration import STATES
 from models.interface.lanes import rows as r
 from models.interface.lanes.advance import advance
 from models.interface.lanes.laws import given_laws, stored_in_layers
+from models.interface.lanes.sense import diverged
 from models.interface.layered import LayeredWall
-from models.shaking import Shaking
+from models.interface.observe import with_onset
+from models.lanes.record import recorded
+from models.lanes.tables import empty, filled, logged
+from models.runs import Request, Run
 
-EVENTS = (
-    ("uplift", 1), ("uplift", 2), ("closing", 1), ("closing", 2), ("rest", 1), ("overturned", 1), ("overturned", 2),
-)  # fmt: skip
+EVENTS = ("uplift", "closing", "rest", "overturned")
 LARGEST_PHASE = (0.1, 0.4)
 """Largest omega h of a step (rad) of the second mode of the rotations and of the slowest vertical one."""
-
-
-@dataclass(frozen=True)
-class Lanes:
-    """What the kernel returns for n lanes: results, samples of q and q' (n, m, 8), events (time, kind, body)."""
-
-    result: NDArray[np.float64]
-    samples: NDArray[np.float64]
-    events: tuple[tuple[tuple[float, str, int], ...], ...]
-    steps: int
 
 
 def substeps(wall: LayeredWall, squares: FloatArray, time_step: float) -> NDArray[np.int64]:
@@ -44,27 +35,16 @@ def substeps(wall: LayeredWall, squares: FloatArray, time_step: float) -> NDArra
     return np.maximum(1, np.ceil(needed - 1e-9)).astype(np.int64)
 
 
-def padded(shaking: Shaking, tail: float) -> FloatArray:
-    """The record (2, samples) with its quiet tail and one sample to spare."""
-    quiet = int(np.ceil(tail / shaking.time_step - 1e-9))
-    record = np.zeros((2, shaking.horizontal.size + quiet + 1))
-    for row, channel in enumerate((shaking.horizontal, shaking.vertical)):
-        if channel is not None:
-            record[row, : channel.size] = channel
-    return record
-
-
 def given_table(
     wall: LayeredWall, scale: FloatArray, initial: Mapping[str, FloatArray], rest: FloatArray
 ) -> FloatArray:
     """The constants and the state at the start of the lanes, a line a lane; ``rest`` (n, 4) is the static one."""
-    table = np.zeros((wall.size, r.N_GIVEN))
     toe = 1.0 if wall.toe_held else 0.0
     clip = 1.0 if wall.clip else 0.0
     free_b, free_t = float(wall.joints != "top"), float(wall.joints != "base")
     late_b = np.divide(wall.base_damping, wall.base_stiffness, out=np.zeros(wall.size), where=wall.base_stiffness > 0.0)
     late_t = np.divide(wall.top_damping, wall.top_stiffness, out=np.zeros(wall.size), where=wall.top_stiffness > 0.0)
-    constants: dict[int, Any] = {
+    constants = {
         r.SCALE: scale, r.OFFSET: wall.offset, r.GRAVITY: wall.gravity, r.VSCALE: wall.vertical_factor * scale,
         r.M1: wall.mass_1, r.H1: wall.centre_1, r.I1: wall.inertia_1, r.M2: wall.mass_2, r.H2: wall.centre_2,
         r.I2: wall.inertia_2, r.HEIGHT: wall.height_1 + wall.top_thickness_in_height, r.B1: wall.base_half_width,
@@ -72,64 +52,35 @@ def given_table(
         r.KB: wall.base_stiffness, r.KT: wall.top_stiffness, r.CB: wall.base_damping, r.CT: wall.top_damping,
         r.LATE_B: clip * late_b, r.LATE_T: clip * late_t, r.CLIP: clip, r.FREE_B: free_b, r.FREE_T: free_t,
     }  # fmt: skip
-    for row, values in constants.items():
-        table[:, row - r.SCALE] = values
+    table = filled(wall.size, r.N_GIVEN, {row - r.SCALE: values for row, values in constants.items()})
     for k, name in enumerate(STATES):
         table[:, r.Q_STATE + k] = initial.get(name, rest[:, k] if k < 4 else 0.0)
     return table
 
 
-def run(
-    wall: LayeredWall,
-    shaking: Shaking,
-    scale: FloatArray,
-    *,
-    tail: float = 0.0,
-    initial: Mapping[str, FloatArray] | None = None,
-    first: NDArray[np.int64] | None = None,
-    last: NDArray[np.int64] | None = None,
-    samples: int = 0,
-    log: int = 0,
-    may_rest: bool = True,
-    refinement: int = 1,
-) -> Lanes:
-    """Run n lanes of ``wall`` under ``scale`` (n,) times the shaking.
-
-    ``first`` and ``last`` (n,) are samples of the shaking between which each lane runs (default: all,
-    and the tail); ``samples`` > 0 returns q and q' (n, samples, 8) at the samples from ``first`` on;
-    ``log`` > 0 returns up to that many events a lane. ``refinement`` divides every step.
-    """
-    n = wall.size
-    record = padded(shaking, tail)
-    begun = {k: np.broadcast_to(np.asarray(v, float), (n,)) for k, v in (initial or {}).items()}
+def run(wall: LayeredWall, request: Request, refinement: int = 1) -> Run:
+    """Run n lanes of ``wall`` as requested; ``refinement`` divides every step. Samples: q, q'."""
+    shaking = request.shaking
+    record = recorded(shaking, 1, request.tail)
     rest = modes.static_state(wall)
     squares = modes.at_rest(wall, rest).squares
-    given = given_table(wall, scale, begun, rest)
+    given = given_table(wall, request.scale, request.initial, rest)
     given[:, r.Q_PERIOD] = 2.0 * np.pi / np.sqrt(np.abs(squares[:, 0]))
     given[:, r.Q_STEPS] = substeps(wall, squares, shaking.time_step) * refinement
     laws = given_laws(wall, rest, shaking.time_step / given[:, r.Q_STEPS])
-    result, trace = np.zeros((n, r.N_RESULT)), np.zeros((n, samples, 8))
-    written, count = np.zeros((n, log, 2)), np.zeros(n, np.int64)
+    tables = empty(request, r.N_RESULT, 8)
     steps = advance(
-        record, shaking.time_step, shaking.horizontal.size - 1,
-        np.zeros(n, np.int64) if first is None else first,
-        np.full(n, record.shape[1] - 2) if last is None else last,
-        given, result, samples > 0, trace, written, count, may_rest, None if wall.joints == "both" else True,
-        None if laws is None else True, laws,
+        record, *request.steps(1, record.end), given, tables, request.history,
+        None if wall.joints == "both" else True, None if laws is None else True, laws,
     )  # fmt: skip
     before = stored_in_layers(wall, given[:, r.Q_STATE : r.Q_STATE + 4], None if laws is None else laws.hidden)
+    result = tables.result
     with np.errstate(invalid="ignore", over="ignore"):
         after = stored_in_layers(wall, result[:, r.R_END_1 : r.R_END_Z2 + 1], None if laws is None else laws.ended)
         result[:, r.R_LOST_B : r.R_LOST_T + 1] += before - after
-    return Lanes(result, trace, decoded(written, count), steps)
-
-
-def decoded(log: NDArray[np.float64], count: NDArray[np.int64]) -> tuple[tuple[tuple[float, str, int], ...], ...]:
-    """Events (time, kind, body) of every lane from a kernel's ``log`` (n, k, 2) and how many it meant to write."""
-    return tuple(
-        tuple((t, *EVENTS[int(kind)]) for t, kind in lane[: min(k, log.shape[1])])
-        for lane, k in zip(log, count, strict=True)
-    )
+    lost = diverged(wall, request, result)
+    result[:, r.R_FAILED] = np.maximum(result[:, r.R_FAILED], lost)
+    return Run(outputs(wall, result), tables.trace, with_onset(logged(tables, EVENTS)), steps)
 
 
 def outputs(wall: LayeredWall, table: NDArray[np.float64]) -> dict[str, NDArray[Any]]:

@@ -60,9 +60,9 @@ from models.interface.lanes.rows import (
     Z2,
 )  # fmt: skip
 from models.interface.lanes.step import AM, BETA, GAMMA, step_one
+from models.lanes.arrays import Table
 from models.lanes.compiler import called, inlined
 
-Table = Any
 HALF_TURN = 1.5707963267948966
 NEVER = 1e300
 

@@ -22,10 +22,10 @@ from models.interface.lanes import rows as r
 from models.interface.lanes.reading import account_joints, read_bodies, read_joints
 from models.interface.lanes.rows import W
 from models.interface.lanes.strip import resultants, slopes
+from models.lanes.arrays import Table
 from models.lanes.compiler import inlined
 from models.lanes.elementary import sine_cosine
 
-Table = Any
 DISSIPATION = 0.8
 """Spectral radius at infinite frequency: 1 no numerical dissipation, 0 the most."""
 AM = (DISSIPATION - 1.0) / (DISSIPATION + 1.0)

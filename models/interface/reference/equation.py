@@ -193,12 +193,6 @@ class Equation:
         rate = np.asarray(v)
         return float(0.5 * rate @ self.mass(self.kinematics(q, v)) @ rate)
 
-    def potential(self, q: Sequence[float], hidden: FloatArray | None = None) -> float:
-        """Of the constant gravity and the layers, in J; ``hidden``: the laws' state, else relaxed."""
-        at, wall = self.kinematics(q, (0.0,) * 4), self.wall
-        weight: float = wall.gravity * (wall.mass_1 * at.centre_1[1] + wall.mass_2 * at.centre_2[1])
-        return weight + sum(self.stored(q, self.relaxed() if hidden is None else hidden))
-
 
 def power(strips: tuple[Strip, Strip], q: Sequence[float], v: Sequence[float]) -> Pair:
     """Power of each strip on the bodies, in W."""

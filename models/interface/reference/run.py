@@ -3,55 +3,29 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from models.base import Event, FloatArray
+from models.base import FloatArray
 from models.ground import Piece, pieces
 from models.interface import modes
 from models.interface.declaration import CALM, STATES
 from models.interface.layered import LayeredWall
+from models.interface.observe import with_onset
 from models.interface.reference import watch
 from models.interface.reference.account import Account
 from models.interface.reference.equation import Equation, power
-from models.shaking import Shaking
+from models.runs import Request, Run
 
 
-@dataclass(frozen=True)
-class ReferenceResult:
-    """Outputs by name, and the history at the shaking's time step: q, q' ``(8, n_times)``, events."""
-
-    outputs: dict[str, float]
-    time: FloatArray
-    state: FloatArray
-    events: tuple[Event, ...]
-
-
-def run(
-    wall: LayeredWall,
-    shaking: Shaking,
-    scale: float = 1.0,
-    *,
-    tail: float = 10.0,
-    initial: Mapping[str, float] | None = None,
-    duration: float | None = None,
-    rtol: float = 1e-10,
-) -> ReferenceResult:
-    """One wall (a `LayeredWall` of one lane) under ``scale`` times the shaking.
-
-    ``tail``: free motion after the record at most, in s; ``duration`` replaces record plus tail and
-    goes on through rest. ``initial``: values by the names of `STATES`, the others as at rest.
-    """
-    until = shaking.duration + tail if duration is None else duration
-    grid = shaking.time_step * np.arange(round(until / shaking.time_step) + 1, dtype=np.float64)
-    body = _Run(wall, grid, rtol, may_rest=duration is None)
+def run(wall: LayeredWall, request: Request, rtol: float = 1e-10) -> Run:
+    """One wall (a `LayeredWall` of one lane) as requested, from the start of the shaking. Samples: q, q'."""
+    body = _Run(wall, request.times, rtol, may_rest=not request.history)
     rest = dict(zip(STATES, [*modes.static_state(wall)[0], 0.0, 0.0, 0.0, 0.0], strict=True))
-    body.begin(np.array([(initial or {}).get(name, rest[name]) for name in STATES]))
-    for piece in pieces(wall, shaking, scale, until):
-        body.advance(piece, shaken=piece.start < shaking.duration)
+    body.begin(np.array([request.start.get(name, rest[name]) for name in STATES]))
+    for piece in pieces(wall, request.shaking, float(request.scale[0]), request.until):
+        body.advance(piece, shaken=piece.start < request.shaking.duration)
         if body.finished:
             break
     return body.result()
@@ -153,7 +127,7 @@ class _Run:
     def _at_rest(self) -> bool:
         return self.time - self.calm_since >= self.period or self.most == 0.0
 
-    def result(self) -> ReferenceResult:
+    def result(self) -> Run:
         q, v = self.spread(self.y)
         self.history[:, self.written :] = np.concatenate([q, v])[:, None]
         if self.account.fallen:
@@ -161,4 +135,4 @@ class _Run:
             self.history[4:, self.written :] = 0.0
         elif not self.account.failed:
             self.account.close(self.time, watch.toppled(self.equation, q.tolist(), v.tolist()))
-        return ReferenceResult(self.account.outputs(q), self.grid, self.history, tuple(self.account.events))
+        return Run.of_one(self.account.outputs(q), self.history.T, *with_onset([tuple(self.account.events)]))

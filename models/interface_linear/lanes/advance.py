@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.interface.declaration import CALM
 from models.interface.lanes import rows as kept
@@ -15,9 +15,11 @@ from models.interface_linear.lanes.gather import gather, look, stored
 from models.interface_linear.lanes.locate import first_crossing, may_cross
 from models.interface_linear.lanes.propagate import COLUMNS, ORDER, along, build, read, series, step
 from models.interface_linear.lanes.switch import successor
+from models.lanes.arrays import Counts, Record, Table, Tables
 from models.lanes.compiler import called, compiled, inlined
+from models.lanes.events import note
 
-Table = Any
+Flags = NDArray[np.bool_]
 HALF_TURN = 0.5 * math.pi
 NEVER = 1e300
 ROUNDING = 1e-20
@@ -28,16 +30,7 @@ GOES_ON, FALLEN, LOST = range(3)
 
 
 @called
-def note(log: Table, count: Table, lane: int, time: float, kind: int) -> None:
-    """Write an event in the log of this lane, as long as there is room."""
-    if count[lane] < log.shape[1]:
-        log[lane, count[lane], 0] = time
-        log[lane, count[lane], 1] = kind
-    count[lane] += 1
-
-
-@called
-def enter(system: Table, table: Table, built: Table, c: int, levels: int, unit: float, now: Table, then: Table) -> None:
+def enter(system: Table, table: Table, built: Flags, c: int, levels: int, unit: float, now: Table, then: Table) -> None:
     """Have the propagators of a configuration at hand."""
     if not built[c]:
         build(table, system, c, levels, unit, now, then)
@@ -46,8 +39,8 @@ def enter(system: Table, table: Table, built: Table, c: int, levels: int, unit: 
 
 @called
 def switch(
-    given: Table, lane: int, system: Table, place: Table, event: int, x: Table, gathered: Table, time: float,
-    log: Table, count: Table,
+    given: Table, lane: int, system: Table, place: Counts, event: int, x: Table, gathered: Table, time: float,
+    log: Table, count: Counts,
 ) -> None:  # fmt: skip
     """The joint of watched value ``event`` changes its state: energies, uplift, closing."""
     joint = event // 2
@@ -59,17 +52,17 @@ def switch(
     gathered[r.LOST_B + joint] += before - stored(given, lane, joint, state, x)
     if was == FULL:
         gathered[r.ONSET_B + joint] = min(gathered[r.ONSET_B + joint], time)
-        note(log, count, lane, time, kept.LOG_UPLIFT_B + joint)
+        note(log, count, lane, time, kept.LOG_UPLIFT, joint + 1.0)
     elif state == FULL:
         gathered[r.CLOSED_B + joint] += 1.0
-        note(log, count, lane, time, kept.LOG_CLOSING_B + joint)
+        note(log, count, lane, time, kept.LOG_CLOSING, joint + 1.0)
 
 
 @inlined
 def cross(
-    given: Table, lane: int, system: Table, table: Table, built: Table, time: float, levels: int, unit: float,
-    place: Table, gathered: Table, x: Table, to: Table, before: Table, after: Table, motion: Table, watched: Table,
-    now: Table, then: Table, log: Table, count: Table,
+    given: Table, lane: int, system: Table, table: Table, built: Flags, time: float, levels: int, unit: float,
+    place: Counts, gathered: Table, x: Table, to: Table, before: Table, after: Table, motion: Table, watched: Table,
+    now: Table, then: Table, log: Table, count: Counts,
 ) -> int:  # fmt: skip
     """One of the equal steps into which a sample of the record is divided, switches included.
 
@@ -173,21 +166,23 @@ def close(result: Table, given: Table, gathered: Table, lane: int, x: Table, tim
         result[lane, kept.R_LOST_B + end] = gathered[r.LOST_B + end]
         along, across = gathered[r.ALONG_B + end], gathered[r.ACROSS_B + end]
         result[lane, kept.R_FRICTION_B + end] = along / across if across > 0.0 else NEVER
-        result[lane, kept.R_END_1 + end] = x[end]
+        result[lane, kept.R_END_1 + end], result[lane, kept.R_END_Z1 + end] = x[end], x[2 + end]
         result[lane, kept.R_EDGE_B + end] = gathered[r.EDGE_B + end]
 
 
 @compiled
 def advance(
-    record: Table, time_step: float, shaken: int, first: Table, last: Table, given: Table, systems: Table,
-    most_levels: int, result: Table, sampled: bool, trace: Table, log: Table, count: Table, may_rest: bool,
+    record: Record, first: Counts, last: Counts, given: Table, systems: Table, most_levels: int, tables: Tables,
+    sampled: bool,
 ) -> int:  # fmt: skip
     """Run every lane from sample ``first`` to ``last``; returns the number of whole steps taken.
 
-    ``record`` (2, n): a and a_z every ``time_step`` (s), linear between; the shaking ends at sample
-    ``shaken``. ``systems`` (n, 25, 10, N_ROWS): `equation.systems`, transposed. ``trace`` (n, m, 8) takes q
-    and q' at every sample if ``sampled``; ``log`` (n, k, 2) uplifts, closings, rest and overturning.
+    The record is linear between its samples. ``systems`` (n, 25, 10, N_ROWS): `equation.systems`, transposed. The
+    trace (n, m, 8) takes q and q' at every sample if ``sampled``, else a lane ends when it has come to rest; the
+    log takes uplifts, closings, rest and overturning.
     """
+    samples, time_step, shaken = record.samples, record.step, record.shaken
+    result, trace, log, count = tables.result, tables.trace, tables.log, tables.length
     table = np.zeros((STATES * STATES, most_levels + 1, COLUMNS, 8))
     built, gathered, place = np.zeros(STATES * STATES, np.bool_), np.zeros(r.N_GATHERED), np.zeros(4, np.int64)
     x, to = np.zeros(r.N_STATE), np.zeros(r.N_STATE)
@@ -218,12 +213,12 @@ def advance(
                 gathered[r.ONSET_B + joint] = i * time_step
         while True:
             shaking = i < shaken
-            x[r.A] = given[lane, r.OFFSET] + given[lane, r.SCALE] * record[0, i]
-            x[r.G] = given[lane, r.GRAVITY] + given[lane, r.VSCALE] * record[1, i]
+            x[r.A] = given[lane, r.OFFSET] + given[lane, r.SCALE] * samples[0, i]
+            x[r.G] = given[lane, r.GRAVITY] + given[lane, r.VSCALE] * samples[1, i]
             x[r.A_SLOPE], x[r.G_SLOPE] = 0.0, 0.0
             if shaking:
-                x[r.A_SLOPE] = given[lane, r.SCALE] * (record[0, i + 1] - record[0, i]) / time_step
-                x[r.G_SLOPE] = given[lane, r.VSCALE] * (record[1, i + 1] - record[1, i]) / time_step
+                x[r.A_SLOPE] = given[lane, r.SCALE] * (samples[0, i + 1] - samples[0, i]) / time_step
+                x[r.G_SLOPE] = given[lane, r.VSCALE] * (samples[1, i + 1] - samples[1, i]) / time_step
             else:
                 # beyond the record's last sample the base is at rest: it may jump there
                 x[r.A], x[r.G] = given[lane, r.OFFSET], given[lane, r.GRAVITY]
@@ -236,8 +231,8 @@ def advance(
             ended = i >= last[lane]
             if not shaking and i >= window:
                 if gathered[r.WINDOW] <= CALM * gathered[r.KINETIC] + noise and window >= 0:
-                    note(log, count, lane, i * time_step, kept.LOG_REST)
-                    ended = ended or may_rest
+                    note(log, count, lane, i * time_step, kept.LOG_REST, 1.0)
+                    ended = ended or not sampled
                 gathered[r.WINDOW] = 0.0
                 window = i + 1 + int(given[lane, r.PERIOD] / time_step)
             if ended:
@@ -246,27 +241,9 @@ def advance(
             for part in range(per):
                 now = i * time_step + part * length
                 how = cross(
-                    given,
-                    lane,
-                    system,
-                    table,
-                    built,
-                    now,
-                    levels,
-                    unit,
-                    place,
-                    gathered,
-                    x,
-                    to,
-                    before,
-                    after,
-                    motion,
-                    watched,
-                    powers,
-                    sums,
-                    log,
-                    count,
-                )
+                    given, lane, system, table, built, now, levels, unit, place, gathered, x, to, before, after, motion,
+                    watched, powers, sums, log, count,
+                )  # fmt: skip
                 steps += 1
                 if how != GOES_ON:
                     break
@@ -274,6 +251,6 @@ def advance(
                 break
             i += 1
         if how == FALLEN:
-            note(log, count, lane, gathered[r.WINDOW], kept.LOG_OVER_1 + place[3])
+            note(log, count, lane, gathered[r.WINDOW], kept.LOG_OVERTURNED, place[3] + 1.0)
         close(result, given, gathered, lane, x, i * time_step, how, place[3])
     return steps

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from models.interface_linear.equation import FULL, HELD_RIGHT, STATES
 from models.interface_linear.lanes import rows as r
 from models.interface_linear.lanes.rows import ACC, RATE, VALUE, A, G
+from models.lanes.arrays import Table
 from models.lanes.compiler import inlined
-
-Table = Any
 
 
 @inlined

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from models.interface_linear.lanes.propagate import ORDER
 from models.interface_linear.lanes.rows import RATE, VALUE
+from models.lanes.arrays import Table
 from models.lanes.compiler import called, inlined
 
-Table = Any
 TOUCH = 1e-12
 """A watched value (over its size at rest) counts as positive above this: rounding switches nothing."""
 DOUBT = 0.02

@@ -7,13 +7,11 @@ start, x(t) = [exp(F t) | g0 | g1 | ...] (x, a, a', G, G'). The smallest step, s
 
 from __future__ import annotations
 
-from typing import Any
-
 from models.interface_linear.equation import ACCELERATION, WATCH
 from models.interface_linear.lanes.rows import A_SLOPE, ACC, G_SLOPE, RATE, A, G
+from models.lanes.arrays import Table
 from models.lanes.compiler import called, inlined
 
-Table = Any
 ORDER = 14
 NORM = 0.5
 """0.5^15/15! = 2e-17: the series' remainder is below rounding."""

@@ -12,15 +12,19 @@ from models.base import STATUS, FloatArray
 from models.interface import modes
 from models.interface.declaration import STATES
 from models.interface.lanes import rows as kept
-from models.interface.lanes.run import Lanes, decoded, padded
+from models.interface.lanes.run import EVENTS
 from models.interface.lanes.run import outputs as of_layers
+from models.interface.lanes.sense import diverged
 from models.interface.layered import LayeredWall
+from models.interface.observe import with_onset
 from models.interface_linear import equation
 from models.interface_linear.declaration import BRIEF
 from models.interface_linear.lanes import rows as r
 from models.interface_linear.lanes.advance import advance
 from models.interface_linear.lanes.propagate import NORM
-from models.shaking import Shaking
+from models.lanes.record import recorded
+from models.lanes.tables import empty, filled, logged, part
+from models.runs import Request, Run
 
 LARGEST_PHASE = 1.5
 """Largest turn (rad) within a step of any mode that oscillates: a step is exact, but watched by a cubic."""
@@ -31,10 +35,9 @@ LANES_AT_ONCE = 256
 
 def given_table(wall: LayeredWall, scale: FloatArray, initial: Mapping[str, FloatArray]) -> FloatArray:
     """The constants and the state at the start of the lanes, a line a lane; `divide` fills in the steps."""
-    table = np.zeros((wall.size, r.N_GIVEN))
     mass = equation.matrices(wall, (0, 0))[0]
     compression, sigma = equation.sizes(wall)
-    constants: dict[int, Any] = {
+    constants = {
         r.SCALE: scale, r.OFFSET: wall.offset, r.GRAVITY: wall.gravity, r.VSCALE: wall.vertical_factor * scale,
         r.M1: wall.mass_1, r.M2: wall.mass_2, r.H1: wall.centre_1, r.H2: wall.centre_2, r.LEVER: equation.lever(wall),
         r.I11: mass[:, 0, 0], r.I12: mass[:, 0, 1], r.I22: mass[:, 1, 1],
@@ -44,8 +47,7 @@ def given_table(wall: LayeredWall, scale: FloatArray, initial: Mapping[str, Floa
         r.SIGMA_B: sigma[:, 0], r.SIGMA_T: sigma[:, 1],
         r.RUBBER_B: float(wall.joints != "top"), r.RUBBER_T: float(wall.joints != "base"),
     }  # fmt: skip
-    for column, values in constants.items():
-        table[:, column] = values
+    table = filled(wall.size, r.N_GIVEN, constants)
     rest = modes.static_state(wall)
     for k, name in enumerate(STATES):
         table[:, r.START + k] = initial.get(name, rest[:, k] if k < 4 else 0.0)
@@ -78,44 +80,27 @@ def fastest_rate(wall: LayeredWall) -> FloatArray:
     return np.asarray(np.sqrt(fastest) + modes.modes(wall, mass, damping).squares[:, -1])
 
 
-def run(
-    wall: LayeredWall,
-    shaking: Shaking,
-    scale: FloatArray,
-    *,
-    tail: float = 0.0,
-    initial: Mapping[str, FloatArray] | None = None,
-    first: NDArray[np.int64] | None = None,
-    last: NDArray[np.int64] | None = None,
-    samples: int = 0,
-    log: int = 0,
-    may_rest: bool = True,
-    refinement: int = 1,
-    brief: float = BRIEF,
-) -> Lanes:
-    """Run n lanes of ``wall`` under ``scale`` (n,) times the shaking; see `models.interface.lanes.run.run`.
+def run(wall: LayeredWall, request: Request, refinement: int = 1, brief: float = BRIEF) -> Run:
+    """Run n lanes of ``wall`` as requested; ``refinement`` divides every step. Samples: q, q'.
 
     ``brief``: shortest excursion from the switch of a joint, times the fastest rate; shorter ones are held.
     """
-    n = wall.size
-    record = padded(shaking, tail)
-    begun = {k: np.broadcast_to(np.asarray(v, float), (n,)) for k, v in (initial or {}).items()}
-    given = given_table(wall, scale, begun)
-    divide(given, wall, shaking.time_step, refinement, brief)
-    result, trace = np.zeros((n, kept.N_RESULT)), np.zeros((n, samples, 8))
-    written, count = np.zeros((n, log, 2)), np.zeros(n, np.int64)
-    begin = np.zeros(n, np.int64) if first is None else first
-    end = np.full(n, record.shape[1] - 2) if last is None else last
+    record = recorded(request.shaking, 1, request.tail)
+    given = given_table(wall, request.scale, request.initial)
+    divide(given, wall, request.shaking.time_step, refinement, brief)
+    tables = empty(request, kept.N_RESULT, 8)
+    first, last = request.steps(1, record.end)
     steps = 0
-    for start in range(0, n, LANES_AT_ONCE):
+    for start in range(0, wall.size, LANES_AT_ONCE):
         some = slice(start, start + LANES_AT_ONCE)
         systems = np.ascontiguousarray(np.swapaxes(equation.systems(wall.take(some)), 2, 3))
         steps += advance(
-            record, shaking.time_step, shaking.horizontal.size - 1, begin[some], end[some], given[some], systems,
-            int(given[some, r.LEVELS].max()), result[some], samples > 0, trace[some], written[some], count[some],
-            may_rest,
+            record, first[some], last[some], given[some], systems, int(given[some, r.LEVELS].max()),
+            part(tables, some), request.history,
         )  # fmt: skip
-    return Lanes(result, trace, decoded(written, count), steps)
+    lost = diverged(wall, request, tables.result)
+    tables.result[:, kept.R_FAILED] = np.maximum(tables.result[:, kept.R_FAILED], lost)
+    return Run(outputs(wall, tables.result), tables.trace, with_onset(logged(tables, EVENTS)), steps)
 
 
 def outputs(wall: LayeredWall, table: NDArray[np.float64]) -> dict[str, NDArray[Any]]:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from models.interface_linear.equation import (
     FULL,
     HALF_LEFT,
@@ -14,9 +12,8 @@ from models.interface_linear.equation import (
     STATES,
 )
 from models.interface_linear.lanes.rows import B_B, BRIEF, A, G
+from models.lanes.arrays import Table
 from models.lanes.compiler import called, inlined
-
-Table = Any
 
 
 @inlined

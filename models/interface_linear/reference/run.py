@@ -6,7 +6,7 @@ The rules of the switches are those of `models.interface_linear.equation`.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -16,37 +16,25 @@ from models.ground import Piece, pieces
 from models.interface.declaration import CALM, STATES
 from models.interface.layered import LayeredWall
 from models.interface.modes import static_state
+from models.interface.observe import with_onset
 from models.interface.reference.account import Account
-from models.interface.reference.run import ReferenceResult
 from models.interface_linear import equation
 from models.interface_linear.declaration import BRIEF
 from models.interface_linear.lanes.run import fastest_rate
 from models.interface_linear.reference.plain import Equation, Joint
-from models.shaking import Shaking
+from models.runs import Request, Run
 
 TOUCH = 1e-12
 """A watched value (over its size at rest) counts as positive above this."""
 
 
-def run(
-    wall: LayeredWall,
-    shaking: Shaking,
-    scale: float = 1.0,
-    *,
-    tail: float = 10.0,
-    initial: Mapping[str, float] | None = None,
-    duration: float | None = None,
-    rtol: float = 1e-10,
-    brief: float = BRIEF,
-) -> ReferenceResult:
-    """One wall under ``scale`` times the shaking; see `models.interface.reference.run.run`."""
-    until = shaking.duration + tail if duration is None else duration
-    grid = shaking.time_step * np.arange(round(until / shaking.time_step) + 1, dtype=np.float64)
-    body = _Run(wall, grid, rtol, brief, may_rest=duration is None)
+def run(wall: LayeredWall, request: Request, rtol: float = 1e-10, brief: float = BRIEF) -> Run:
+    """One wall (a `LayeredWall` of one lane) as requested, from the start of the shaking. Samples: q, q'."""
+    body = _Run(wall, request.times, rtol, brief, may_rest=not request.history)
     rest = dict(zip(STATES, [*static_state(wall)[0], 0.0, 0.0, 0.0, 0.0], strict=True))
-    body.begin(np.array([(initial or {}).get(name, rest[name]) for name in STATES]))
-    for piece in pieces(wall, shaking, scale, until):
-        body.advance(piece, shaken=piece.start < shaking.duration)
+    body.begin(np.array([request.start.get(name, rest[name]) for name in STATES]))
+    for piece in pieces(wall, request.shaking, float(request.scale[0]), request.until):
+        body.advance(piece, shaken=piece.start < request.shaking.duration)
         if body.finished:
             break
     return body.result()
@@ -189,7 +177,7 @@ class _Run:
             self.history[:, self.written : stop] = dense(self.grid[self.written : stop])[:8]
             self.written = stop
 
-    def result(self) -> ReferenceResult:
+    def result(self) -> Run:
         self.history[:, self.written :] = self.y[:8, None]
         if self.account.fallen:
             self.history[:4, self.written :] = np.clip(self.y[:4], -math.pi / 2.0, math.pi / 2.0)[:, None]
@@ -199,4 +187,4 @@ class _Run:
         outputs = self.account.outputs(self.y[:4])
         if outputs["minimum_contact"] == 0.0 and not self.account.failed:
             outputs["status"] = float(STATUS.index("outside_model"))
-        return ReferenceResult(outputs, self.grid, self.history, tuple(self.account.events))
+        return Run.of_one(outputs, self.history.T, *with_onset([tuple(self.account.events)]))

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
-from models.base import FloatArray
+from models.base import Event, FloatArray
 from models.isolated import bearing
 from models.isolated.account import energy, status
 from models.isolated.chain import Chain
@@ -17,25 +14,16 @@ from models.isolated.lanes import rows as r
 from models.isolated.lanes.advance import advance
 from models.isolated.lanes.tables import Given, Records
 from models.isolated.modes import exact_step, modes
+from models.lanes.sense import CREATED, impulse
+from models.lanes.tables import groups
 from models.rubber import lanes as rubber
+from models.runs import Request, Run
 from models.shaking import Shaking
 
 LARGEST_PHASE = (0.1, 0.4)
 """Largest omega h of a step (rad): of the first mode, for the laws; of the second, to find the peaks."""
 MOST_STEPS = 8
 """Steps a sample at most: modes far above what the record can hold follow it without a motion of their own."""
-
-
-@dataclass(frozen=True)
-class Lanes:
-    """What the kernel returns for n lanes: results by name, samples (n, m, 2 most levels + 1), steps computed.
-
-    A sample holds x, then x', of the most levels (0 where there is none), and the bearings' force.
-    """
-
-    result: Mapping[str, FloatArray]
-    samples: FloatArray
-    steps: int
 
 
 def substeps(omega: FloatArray, time_step: float) -> NDArray[np.int64]:
@@ -63,43 +51,25 @@ def memory_table(chain: Chain, u: FloatArray, rate: FloatArray, memory: bearing.
     return np.stack([u, rate, memory.amplitude, memory.crossings, worn], axis=1)
 
 
-def run(
-    chain: Chain,
-    shaking: Shaking,
-    scale: FloatArray,
-    *,
-    tail: float = 0.0,
-    initial: Mapping[str, FloatArray] | None = None,
-    first: NDArray[np.int64] | None = None,
-    last: NDArray[np.int64] | None = None,
-    samples: int = 0,
-    may_rest: bool = True,
-    refinement: int = 1,
-) -> Lanes:
-    """Run n lanes of ``chain`` under ``scale`` (n,) times the shaking.
+def run(chain: Chain, request: Request, refinement: int = 1) -> Run:
+    """Run n lanes of ``chain`` as requested; ``refinement`` divides every step.
 
-    ``first`` and ``last`` (n,) are samples of the shaking between which each lane runs (default: all, and
-    the tail); ``samples`` > 0 returns the states at the samples from ``first`` on. ``refinement`` divides
-    every step. Lanes of one length and step run together; none depends on the others.
+    Lanes of one length and step run together; none depends on the others. A sample holds x, then x', of the most
+    levels (0 where there is none), and the bearings' force.
     """
-    n = chain.size
-    shaken = shaking.horizontal.size - 1
-    quiet = int(np.ceil(tail / shaking.time_step - 1e-9))
-    given = {k: np.broadcast_to(np.asarray(v, float), (n,)) for k, v in (initial or {}).items()}
-    displaced, moving = (given.get(name, np.zeros(n)) for name in STATES)
-    first = np.zeros(n, np.int64) if first is None else first
-    last = np.full(n, shaken + quiet) if last is None else last
+    n, shaking = chain.size, request.shaking
+    displaced, moving = (request.initial.get(name, np.zeros(n)) for name in STATES)
+    quiet = int(np.ceil(request.tail / shaking.time_step - 1e-9))
+    first, last = request.steps(1, shaking.horizontal.size - 1 + quiet)
     found: dict[str, FloatArray] = {}
-    trace, steps = np.zeros((n, samples, 2 * MOST_LEVELS + 1)), 0
-    for levels in np.unique(chain.levels).tolist():
-        of_length = np.flatnonzero(chain.levels == levels)
+    trace, steps = np.zeros((n, request.samples, 2 * MOST_LEVELS + 1)), 0
+    for (levels,), of_length in groups(chain.levels):
         omega = modes(chain.take(of_length), levels)[0]
-        each = substeps(omega, shaking.time_step) * refinement
-        for per in np.unique(each).tolist():
-            lanes = of_length[each == per]
-            period = np.asarray(2.0 * np.pi / omega[each == per, 0] / shaking.time_step, np.int64)
-            group = _Group(chain.take(lanes), levels, shaking, per, displaced[lanes], moving[lanes], samples)
-            ended = group.run(scale[lanes], first[lanes], last[lanes], period, may_rest)
+        for (per,), members in groups(substeps(omega, shaking.time_step) * refinement):
+            lanes = of_length[members]
+            period = np.asarray(2.0 * np.pi / omega[members, 0] / shaking.time_step, np.int64)
+            group = _Group(chain.take(lanes), levels, shaking, per, displaced[lanes], moving[lanes], request.samples)
+            ended = group.run(request.take(lanes), first[lanes], last[lanes], period)
             steps += group.steps
             for name, values in ended.items():
                 found.setdefault(name, np.zeros(n))[lanes] = values
@@ -107,7 +77,8 @@ def run(
             trace[lanes, :, :levels] = group.trace[:, :, :levels]
             trace[lanes, :, MOST_LEVELS : MOST_LEVELS + levels] = group.trace[:, :, size : size + levels]
             trace[lanes, :, -1] = group.trace[:, :, -1]
-    return Lanes(found, trace, steps)
+    rested = found.pop("rest_time").tolist()
+    return Run(found, trace, tuple((Event(time, "rest"),) if time == time else () for time in rested), steps)
 
 
 class _Group:
@@ -147,15 +118,14 @@ class _Group:
         return links, masses
 
     def run(
-        self, scale: FloatArray, first: NDArray[np.int64], last: NDArray[np.int64], period: NDArray[np.int64],
-        may_rest: bool,
+        self, request: Request, first: NDArray[np.int64], last: NDArray[np.int64], period: NDArray[np.int64]
     ) -> dict[str, FloatArray]:  # fmt: skip
         """Results by name (n,)."""
         chain, levels = self.chain, self.levels
         u, rate = self.y[:, 0], self.y[:, levels]
         links, masses = self._links()
         scalars = np.zeros((chain.size, r.N_SCALAR))
-        scalars[:, r.SCALE], scalars[:, r.STEP], scalars[:, r.FORCE] = scale, self.h, self.force
+        scalars[:, r.SCALE], scalars[:, r.STEP], scalars[:, r.FORCE] = request.scale, self.h, self.force
         # all levels start alike: only the slab is accelerated
         start = chain.stiffness * u + chain.damping * rate + self.force
         scalars[:, r.PEAK_U], scalars[:, r.PEAK_ACCELERATION] = np.abs(u), np.abs(start / chain.masses[:, 0])
@@ -175,21 +145,26 @@ class _Group:
         )  # fmt: skip
         self.steps = advance(
             self.shaking.horizontal, self.shaking.time_step, self.shaking.horizontal.size - 1, self.per, first, last,
-            period, given, records, may_rest, (None,) * self.size, rubber.variant_for(laws) if chain.laws else None,
+            period, given, records, not request.history, (None,) * self.size,
+            rubber.variant_for(laws) if chain.laws else None,
         )  # fmt: skip
         at_end, result = records.states, records.result
         at_end = np.concatenate([at_end[:, :levels], at_end[:, self.size : self.size + levels]], axis=1)
         hidden = rubber.hidden_states(laws, records.hidden)
         memory = bearing.Memory(hidden, records.memory[:, r.AMPLITUDE], records.memory[:, r.CROSSINGS])
-        work = result[:, r.R_WORK]
+        before, work = energy(chain, levels, self.y, self.memory), result[:, r.R_WORK]
         with np.errstate(invalid="ignore", over="ignore"):
-            lost = energy(chain, levels, self.y, self.memory) + work - energy(chain, levels, at_end, memory)
+            after = energy(chain, levels, at_end, memory)
+            lost = before + work - after
+            # the energy of a passive body grows at most as the shaking's impulse lets its velocity
+            reach = (np.sqrt(before) + np.sqrt(0.5 * chain.mass) * impulse(request)) ** 2
+            failed = ~((after <= (1.0 + CREATED) * reach) & (lost >= -CREATED * reach) & (result[:, r.R_FAILED] == 0.0))
         return {
             "peak_bearing_displacement": result[:, r.R_PEAK_U],
             "peak_level_acceleration": result[:, r.R_PEAK_ACCELERATION],
             "peak_drift": result[:, r.R_PEAK_DRIFT],
             "residual_displacement": at_end[:, 0],
             "dissipated_energy": lost,
-            "status": status(result[:, r.R_FAILED] != 0.0, result[:, r.R_PEAK_U] > 0.0),
+            "status": status(failed, result[:, r.R_PEAK_U] > 0.0),
             "rest_time": result[:, r.R_REST],
         }

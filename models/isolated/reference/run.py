@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -19,35 +18,14 @@ from models.isolated.account import energy, status
 from models.isolated.chain import Chain
 from models.isolated.declaration import CALM, MOST_LEVELS, STATES
 from models.isolated.modes import modes, tridiagonal
+from models.runs import Request, Run
 from models.shaking import Shaking
 
 
-@dataclass(frozen=True)
-class ReferenceResult:
-    """Outputs by name, and samples ``(n_times, 2 most levels + 1)`` at the shaking's time step; events."""
-
-    outputs: dict[str, float]
-    samples: FloatArray
-    events: tuple[Event, ...]
-
-
-def run(
-    chain: Chain,
-    shaking: Shaking,
-    scale: float = 1.0,
-    *,
-    tail: float = 10.0,
-    initial: Mapping[str, float] | None = None,
-    duration: float | None = None,
-    rtol: float = 1e-10,
-) -> ReferenceResult:
-    """One building (a `Chain` of one lane) under ``scale`` times the shaking.
-
-    ``tail``: free motion after the record at most, in s; ``duration`` replaces record plus tail and
-    goes on through rest. ``initial``: values by the names of `STATES`.
-    """
-    until = shaking.duration + tail if duration is None else duration
-    body = _Run(chain, shaking, scale, until, initial or {}, rtol)
+def run(chain: Chain, request: Request, rtol: float = 1e-10) -> Run:
+    """One building (a `Chain` of one lane) as requested, from the start of the shaking; samples as of the lanes."""
+    shaking, until = request.shaking, request.until
+    body = _Run(chain, shaking, float(request.scale[0]), until, request.start, rtol)
     step, count = shaking.time_step, shaking.horizontal.size
     knots = step * np.concatenate([[0], np.flatnonzero(np.diff(shaking.horizontal, n=2)) + 1, [count - 1]])
     for start, end in pairwise(
@@ -56,7 +34,7 @@ def run(
         body.through(start, end)
     body.quiet = True
     start = shaking.duration
-    while start < until - 1e-12 and not (body.at_rest() and duration is None):
+    while start < until - 1e-12 and not (body.at_rest() and not request.history):
         end = min(start + body.period, until)
         body.through(start, end)
         start = end
@@ -198,7 +176,7 @@ class _Run:
             self.rest_time = self.time
         return still
 
-    def result(self) -> ReferenceResult:
+    def result(self) -> Run:
         n = self.n
         self.samples[self.written :] = self.samples[max(self.written - 1, 0)]
         left = float(energy(self.chain, n, self.y[None, : 2 * n], self.memory(self.y[2 * n + 1 :]))[0])
@@ -208,4 +186,4 @@ class _Run:
         outputs["dissipated_energy"] = self.first + float(self.y[2 * n]) - left
         outputs["status"] = float(status(np.array(False), np.array(self.peaks[0] > 0.0)))
         events = () if math.isnan(self.rest_time) else (Event(self.rest_time, "rest"),)
-        return ReferenceResult(outputs, self.samples, events)
+        return Run.of_one(outputs, self.samples, events)

@@ -13,6 +13,7 @@ from models.interface.observe import observe
 from models.interface.reference import run as reference
 from models.shaking import Shaking
 from tests.models.interface.walls import MODEL, SHORT, block_on_strip, random_wall, stacked, undamped, wall
+from tests.models.requests import asked
 from tests.models.strategies import random_motion
 
 
@@ -34,7 +35,7 @@ def test_lanes_agree_with_the_reference_on_random_walls(kinematics: str, dashpot
     scale = 9.81 * values["aspect_ratio"] * rng.uniform(0.5, 1.2, 64)
     many = wall(values, kinematics=kinematics, dashpot=dashpot).replace(vertical_factor=1.0)
     own, fine, near = (
-        lanes.run(many, shaking, scale * more, samples=151, refinement=n)
+        lanes.run(many, asked(shaking, scale * more, samples=151), n)
         for n, more in ((1, 1.0), (8, 1.0), (8, 1.0 + 1e-5))
     )
     size = np.max(np.abs(fine.samples[:, :, :2]), axis=1)
@@ -45,11 +46,11 @@ def test_lanes_agree_with_the_reference_on_random_walls(kinematics: str, dashpot
     assert np.mean(error < 1e-2 + 100 * apart) > 0.85
     calm = apart < 1e-4
     assert np.median(error[calm]) < 2e-3
-    k = int(np.flatnonzero(calm & (lanes.outputs(many, fine.result)["minimum_contact_base"] < 0.7))[0])
-    slow = reference.run(many.take(slice(k, k + 1)), shaking, float(scale[k]), duration=1.5, rtol=1e-7)
+    k = int(np.flatnonzero(calm & (fine.outputs["minimum_contact_base"] < 0.7))[0])
+    slow = reference.run(many.take([k]), asked(shaking, scale[k], duration=1.5), 1e-7)
     for ran, share in ((own, 1e-2), (fine, 1e-3)):
-        assert np.max(np.abs(ran.samples[k].T - slow.state)[:2]) < share * np.max(size[k])
-        outputs = {name: v[k] for name, v in lanes.outputs(many, ran.result).items()}
+        assert np.max(np.abs(ran.samples[k] - slow.samples[0])[:, :2]) < share * np.max(size[k])
+        outputs = {name: v[k] for name, v in ran.outputs.items()}
         for name in NAMED:
             assert outputs[name] == pytest.approx(slow.outputs[name], rel=share, abs=1e-4), name
         assert outputs["dissipated_energy"] == pytest.approx(slow.outputs["dissipated_energy"], rel=10 * share)
@@ -76,9 +77,9 @@ def test_rubber_at_one_joint_only(joints: str) -> None:
     values, shaking = random_wall(rng), burst(rng)
     scale = 9.81 * values["aspect_ratio"]
     one = wall(values, joints=joints)
-    slow = reference.run(one.replace(vertical_factor=1.0), shaking, scale, duration=1.5, rtol=1e-7)
+    slow = reference.run(one.replace(vertical_factor=1.0), asked(shaking, scale, duration=1.5), 1e-7)
     fast = MODEL.simulate(values, shaking, scale=scale, options={"joints": joints})
-    expected = {k: v[0] for k, v in observe(one, slow.state.T[None]).items()}
+    expected = {k: v[0] for k, v in observe(one, slow.samples).items()}
     for name in ("rotation_1", "rotation_2", "compression_base", "compression_top"):
         np.testing.assert_allclose(
             fast.channels[name], expected[name], rtol=0, atol=4e-3 * np.max(np.abs(expected[name])) + 1e-15
@@ -95,7 +96,7 @@ def test_rubber_at_one_joint_only(joints: str) -> None:
 def test_the_step_rule_is_of_second_order_in_full_contact() -> None:
     one = wall(SHORT)
     shaking = Shaking(0.01, 0.3 * np.sin(2 * np.pi * 1.2 * 0.01 * np.arange(101)))
-    found = [lanes.run(one, shaking, np.ones(1), samples=101, refinement=n).samples[0, :, :2] for n in (1, 2, 4, 32)]
+    found = [lanes.run(one, asked(shaking, samples=101), n).samples[0, :, :2] for n in (1, 2, 4, 32)]
     errors = [np.max(np.abs(f - found[-1])) for f in found[:-1]]
     assert 3.0 < errors[0] / errors[1] < 6.0
     assert 3.0 < errors[1] / errors[2] < 6.0
@@ -107,15 +108,14 @@ def test_a_stiff_axial_mode_sets_no_bound_on_the_step() -> None:
     shaking = Shaking(0.005, 1.9 * np.sin(2 * np.pi * 1.2 * 0.005 * np.arange(401)))
     step = 0.005 / int(lanes.substeps(one, modes.at_rest(one).squares, 0.005)[0])
     assert step > 5 * 0.11e-3
-    coarse = lanes.run(one, shaking, np.ones(1), samples=401).samples[0]
-    fine = lanes.run(one, shaking, np.ones(1), samples=401, refinement=16).samples[0]
+    coarse = lanes.run(one, asked(shaking, samples=401)).samples[0]
+    fine = lanes.run(one, asked(shaking, samples=401), 16).samples[0]
     assert np.max(np.abs(coarse - fine)[:, :2]) < 2e-3 * np.max(np.abs(fine[:, :2]))
 
 
 def test_energy_of_free_rocking_hardly_decays_without_dashpots() -> None:
     one = wall(undamped(block_on_strip(1e8)), joints="base")
-    outcome = lanes.run(one, Shaking.silence(2.0, 0.01), np.ones(1), initial={"rotation_1": 0.1}, refinement=4)
-    found = lanes.outputs(one, outcome.result)
+    found = lanes.run(one, asked(Shaking.silence(2.0, 0.01), initial={"rotation_1": 0.1}), 4).outputs
     assert abs(found["dissipated_energy"][0]) < 2e-2 * 1000.0 * 9.81 * 0.02
 
 
@@ -139,11 +139,12 @@ def test_a_neighbour_that_overturns_changes_nothing() -> None:
     one = wall(SHORT)
     scale = np.linspace(1.5, 3.5, 48)
     many = one.take(np.zeros(48, int))
-    together = lanes.run(many, shaking, scale, tail=4.0).result
-    fell = np.isfinite(lanes.outputs(many, together)["overturning_time"])
+    together = lanes.run(many, asked(shaking, scale, tail=4.0)).outputs
+    fell = np.isfinite(together["overturning_time"])
     assert 8 < fell.sum() < 40
     for k in range(48):
-        np.testing.assert_array_equal(lanes.run(one, shaking, scale[[k]], tail=4.0).result[0], together[k])
+        for name, value in lanes.run(one, asked(shaking, scale[k], tail=4.0)).outputs.items():
+            np.testing.assert_array_equal(value[0], together[name][k], err_msg=name)
 
 
 def test_an_overturned_wall_and_one_that_comes_to_rest() -> None:
@@ -165,9 +166,9 @@ def test_at_rest_ends_the_run_early_and_changes_nothing() -> None:
     time = 0.01 * np.arange(101)
     shaking = Shaking(0.01, 1.5 * np.sin(2 * np.pi * time))
     one = wall(SHORT)
-    short, long = (lanes.run(one, shaking, np.ones(1), tail=tail) for tail in (60.0, 90.0))
+    short, long = (lanes.run(one, asked(shaking, tail=tail)) for tail in (60.0, 90.0))
     assert short.steps == long.steps
-    assert lanes.run(one, shaking, np.ones(1), tail=60.0, may_rest=False).steps > short.steps
+    assert lanes.run(one, asked(shaking, tail=60.0, samples=1)).steps > short.steps
 
 
 def test_vertical_shaking_alone_turns_nothing() -> None:
@@ -175,7 +176,7 @@ def test_vertical_shaking_alone_turns_nothing() -> None:
     time = 0.01 * np.arange(101)
     shaking = Shaking(0.01, 1e-12 * np.sin(2 * np.pi * 3.0 * time), 4.0 * np.sin(2 * np.pi * 5.0 * time))
     one = wall(SHORT).replace(vertical_factor=1.0)
-    fast = lanes.run(one, shaking, np.ones(1), samples=101, refinement=4).samples[0].T
-    slow = reference.run(one, shaking, duration=1.0, rtol=1e-7).state
+    fast = lanes.run(one, asked(shaking, samples=101), 4).samples[0].T
+    slow = reference.run(one, asked(shaking, duration=1.0), 1e-7).samples[0].T
     assert np.max(np.abs(fast[:2])) < 1e-11
     assert np.max(np.abs(fast[2:4] - slow[2:4])) < 1e-3 * np.max(np.abs(slow[2:4]))

@@ -8,6 +8,7 @@ from models.interface.lanes import run as lanes
 from models.interface.strip import stored, strip
 from models.shaking import Shaking
 from tests.models.interface.walls import SHORT, block_on_strip, wall
+from tests.models.requests import asked
 from tests.models.strategies import random_motion
 
 SHAKING = random_motion(np.random.default_rng(2), duration=3.0)
@@ -73,7 +74,7 @@ def test_without_an_upper_block_the_wall_is_one_block_on_a_strip() -> None:
     light = {**block, "top_layer_thickness": 0.01, "top_stiffness": 1e4, "top_damping": 10.0}
     alone, with_top = wall(block, joints="base"), wall(light)
     scale, n = np.array([2.0]), 301
-    expected, found = (lanes.run(one, SHAKING, scale, samples=n, refinement=4).samples[0] for one in (alone, with_top))
+    expected, found = (lanes.run(one, asked(SHAKING, scale, samples=n), 4).samples[0] for one in (alone, with_top))
     assert np.max(np.abs(expected[:, 0])) > 0.01
     np.testing.assert_allclose(found[:, 0], expected[:, 0], atol=2e-3 * np.max(np.abs(expected[:, 0])))
 
@@ -91,7 +92,7 @@ def test_equal_rotations_do_not_know_where_the_body_is_cut() -> None:
 
     low, high = wall(cut(1.9), joints="base"), wall(cut(0.7), joints="base")
     np.testing.assert_allclose(modes.at_rest(low).squares, modes.at_rest(high).squares, rtol=1e-11)
-    one, other = (lanes.run(w, SHAKING, np.array([2.0]), samples=301).samples[0] for w in (low, high))
+    one, other = (lanes.run(w, asked(SHAKING, 2.0, samples=301)).samples[0] for w in (low, high))
     np.testing.assert_allclose(one[:, 0], one[:, 1], rtol=1e-13, atol=1e-16)
     np.testing.assert_allclose(other[:, [0, 2]], one[:, [0, 2]], atol=1e-6 * np.max(np.abs(one[:, 0])))
 
@@ -115,9 +116,8 @@ def test_a_kelvin_voigt_strip_is_no_impact_law(mode: str, ratio: float, least: f
         one = wall(block_on_strip(stiffness, damping), joints="base").take(np.zeros(3, int))
         balance = np.sin(swing) * (0.25 - np.sqrt(2 * 1000 * 9.81 / (stiffness * np.sin(swing))))
         start = {"rotation_1": swing, "rotation_2": swing, "displacement_z_1": balance}
-        turned = lanes.run(
-            one, Shaking.silence(4.0, 0.0025), np.ones(3), initial=start, samples=1600, refinement=4, may_rest=False
-        ).samples[:, :, 0]
+        request = asked(Shaking.silence(4.0, 0.0025), np.ones(3), initial=start, samples=1600)
+        turned = lanes.run(one, request, 4).samples[:, :, 0]
         for begun, theta in zip(swing, turned, strict=True):
             first, second = np.flatnonzero(theta[:-1] * theta[1:] < 0.0)[:2]
             reached = np.max(np.abs(theta[first:second]))

@@ -15,6 +15,7 @@ from tests.models.interface.walls import LONG, SHORT, random_wall, undamped
 from tests.models.interface.walls import MODEL as FULL_MODEL
 from tests.models.interface.walls import wall as full_wall
 from tests.models.interface_linear.walls import MODEL, by_exponential, energy, wall
+from tests.models.requests import asked, outputs_of
 from tests.models.strategies import SEEDS, random_motion
 
 NAMES = [q.name for q in MODEL.outputs]
@@ -32,7 +33,7 @@ def case(seed: int, duration: float = 0.8):
 def test_small_motions_are_those_of_the_matrix_exponential(values) -> None:
     rng = np.random.default_rng(1)
     one, shaking = wall(values), Shaking(0.01, 0.02 * rng.standard_normal(101))
-    found = lanes.run(one, shaking, np.ones(1), samples=101).samples[0]
+    found = lanes.run(one, asked(shaking, samples=101)).samples[0]
     state = found[0]
     size = np.max(np.abs(state)) * np.repeat([1.0, float(lanes.fastest_rate(one)[0])], 4)
     for k in range(100):
@@ -46,18 +47,18 @@ def test_the_step_does_not_matter(seed: int) -> None:
     """Switches included: found twice as coarse and four times as fine, the state is the same."""
     one, shaking, scale = case(seed)
     count = shaking.horizontal.size
-    one_step, four = (lanes.run(one, shaking, np.array([scale]), samples=count, refinement=n, log=999) for n in (1, 4))
+    one_step, four = (lanes.run(one, asked(shaking, scale, samples=count, log=999), n) for n in (1, 4))
     assert len(one_step.events[0]) > 10
     size = np.max(np.abs(one_step.samples[0]), axis=0)
     assert np.max(np.abs(one_step.samples - four.samples)[0] / size) < 1e-9
-    np.testing.assert_allclose([e[0] for e in one_step.events[0]], [e[0] for e in four.events[0]], atol=1e-10)
+    np.testing.assert_allclose([e.time for e in one_step.events[0]], [e.time for e in four.events[0]], atol=1e-10)
 
 
 def test_the_first_switch_is_where_the_exponential_says() -> None:
     one = wall(SHORT)
     shaking = Shaking(0.01, np.concatenate([np.linspace(0.0, 1.2, 41), np.full(20, 1.2)]))
-    ran = lanes.run(one, shaking, np.ones(1), samples=61, log=10)
-    at = ran.events[0][0][0]
+    ran = lanes.run(one, asked(shaking, samples=61, log=10))
+    at = ran.events[0][0].time
     k = int(at / 0.01)
     a = shaking.horizontal[k], (shaking.horizontal[k + 1] - shaking.horizontal[k]) / 0.01
     times = np.linspace(0.0, at - 0.01 * k, 50)
@@ -67,7 +68,7 @@ def test_the_first_switch_is_where_the_exponential_says() -> None:
         rises.append(state[2] + one.base_half_width[0] * abs(state[0]))
     assert abs(rises[-1]) < 1e-11 * float(equation.sizes(one)[0][0, 0])
     assert np.all(np.array(rises[:-1]) < 0.0)
-    assert lanes.outputs(one, ran.result)["onset_time"][0] == at
+    assert ran.outputs["onset_time"][0] == at
 
 
 @settings(max_examples=3, deadline=None, suppress_health_check=[HealthCheck.too_slow])
@@ -75,28 +76,25 @@ def test_the_first_switch_is_where_the_exponential_says() -> None:
 def test_lanes_agree_with_the_reference_on_random_walls(seed: int) -> None:
     one, shaking, scale = case(seed, 0.4)
     count = shaking.horizontal.size
-    slow = reference.run(one, shaking, scale, duration=shaking.duration, rtol=1e-9)
+    slow = reference.run(one, asked(shaking, scale, duration=shaking.duration), 1e-9)
     # a wall that amplifies a change of the motion by 1e-9 says nothing about the lanes
-    near, ran = (
-        lanes.run(one, shaking, np.array([s]), samples=count, log=9999, may_rest=False)
-        for s in (scale * (1.0 + 1e-9), scale)
-    )
-    size = np.max(np.abs(slow.state), axis=1)
+    near, ran = (lanes.run(one, asked(shaking, s, samples=count, log=9999)) for s in (scale * (1.0 + 1e-9), scale))
+    size = np.max(np.abs(slow.samples[0]), axis=0)
     amplified = np.max(np.abs(near.samples - ran.samples)[0].T[:4].max(axis=1) / size[:4])
     bound = 1e-6 + 100.0 * amplified
-    assert np.max(np.abs(ran.samples[0].T - slow.state)[:4].max(axis=1) / size[:4]) < bound
-    found = {name: float(v[0]) for name, v in lanes.outputs(one, ran.result).items()}
+    assert np.max(np.abs(ran.samples - slow.samples)[0].T[:4].max(axis=1) / size[:4]) < bound
+    found, expected = outputs_of(ran), outputs_of(slow)
     for name in ("uplift_duration_base", "uplift_duration_top", "onset_time_base", "onset_time_top", "status"):
-        assert found[name] == pytest.approx(slow.outputs[name], rel=1e-5 + bound, abs=1e-6, nan_ok=True), name
-    assert found["minimum_contact"] == slow.outputs["minimum_contact"]
+        assert found[name] == pytest.approx(expected[name], rel=1e-5 + bound, abs=1e-6, nan_ok=True), name
+    assert found["minimum_contact"] == expected["minimum_contact"]
     for joint in ("base", "top"):
         name = f"peak_strain_{joint}"
-        assert found[name] == pytest.approx(slow.outputs[name], rel=1e-3 + bound), name
+        assert found[name] == pytest.approx(expected[name], rel=1e-3 + bound), name
     for name in ("peak_rotation_1", "peak_rotation_2"):
-        assert found[name] == pytest.approx(slow.outputs[name], rel=1e-3 + bound), name
+        assert found[name] == pytest.approx(expected[name], rel=1e-3 + bound), name
     for name in ("dissipated_energy_base", "dissipated_energy_top"):
-        work = abs(slow.outputs["dissipated_energy_base"]) + abs(slow.outputs["dissipated_energy_top"])
-        assert found[name] == pytest.approx(slow.outputs[name], abs=(1e-2 + bound) * work), name
+        work = abs(expected["dissipated_energy_base"]) + abs(expected["dissipated_energy_top"])
+        assert found[name] == pytest.approx(expected[name], abs=(1e-2 + bound) * work), name
 
 
 def test_events_are_told_alike_by_both_routes() -> None:
@@ -110,13 +108,10 @@ def test_events_are_told_alike_by_both_routes() -> None:
 def test_energy_of_free_motion_without_dashpots_is_kept_between_switches() -> None:
     one = wall(undamped(SHORT))
     start = {"rotation_1": 2.5e-3, "rotation_2": 2.7e-3}
-    ran = lanes.run(
-        one, Shaking.silence(2.0, 0.01), np.ones(1), samples=201, log=9, may_rest=False,
-        initial={k: np.array([v]) for k, v in start.items()},
-    )  # fmt: skip
+    ran = lanes.run(one, asked(Shaking.silence(2.0, 0.01), samples=201, log=9, initial=start))
     assert not ran.events[0]
     found = energy(one, (0, 0), ran.samples[0])
-    still = energy(one, (0, 0), lanes.run(one, Shaking.silence(0.01, 0.01), np.ones(1), samples=1).samples[0])
+    still = energy(one, (0, 0), lanes.run(one, asked(Shaking.silence(0.01, 0.01), samples=1)).samples[0])
     assert np.ptp(found) < 1e-9 * (found[0] - still[0])
 
 
@@ -127,12 +122,10 @@ def test_dissipated_energy_is_what_the_mechanical_energy_loses() -> None:
     start = {"rotation_1": 0.02, "rotation_2": 0.02, "displacement_z_1": -weight / (k * b) + 0.5 * b * 0.02}
     errors = []
     for refinement in (1, 4):
-        ran = lanes.run(
-            one, Shaking.silence(3.0, 0.01), np.ones(1), samples=301, log=9999, may_rest=False, refinement=refinement,
-            initial={name: np.array([value]) for name, value in start.items()},
-        )  # fmt: skip
-        assert sum(kind == "closing" for _, kind, _ in ran.events[0]) > 2
-        lost = lanes.outputs(one, ran.result)["dissipated_energy"][0]
+        request = asked(Shaking.silence(3.0, 0.01), samples=301, log=9999, initial=start)
+        ran = lanes.run(one, request, refinement)
+        assert sum(event.kind == "closing" for event in ran.events[0]) > 2
+        lost = ran.outputs["dissipated_energy"][0]
         first, last = ran.samples[0, 0], ran.samples[0, -1]
         assert observe(one, ran.samples)["contact_1"][0, [0, -1]].tolist() == [0.5, 1.0]
         expected = energy(one, (1, 0), first) - energy(one, (0, 0), last)
@@ -143,9 +136,9 @@ def test_dissipated_energy_is_what_the_mechanical_energy_loses() -> None:
 def test_agrees_with_the_full_model_in_full_contact() -> None:
     rng = np.random.default_rng(4)
     shaking = Shaking(0.01, 0.005 * rng.standard_normal(201))
-    linear = lanes.run(wall(SHORT), shaking, np.ones(1), samples=201).samples[0]
+    linear = lanes.run(wall(SHORT), asked(shaking, samples=201)).samples[0]
     full = full_wall(SHORT, kinematics="midpoint_held", dashpot="A")
-    expected = full_lanes.run(full, shaking, np.ones(1), samples=201, refinement=4).samples[0]
+    expected = full_lanes.run(full, asked(shaking, samples=201), 4).samples[0]
     # L in place of l at rest: .6 parts in a thousand of the lever, so of the frequency too
     assert np.max(np.abs(linear - expected)[:, :2]) < 1e-2 * np.max(np.abs(expected[:, :2]))
 
@@ -155,7 +148,7 @@ def test_mirrored_shaking_mirrors_the_motion() -> None:
     one, shaking, scale = case(3)
     count = shaking.horizontal.size
     there, back = (
-        lanes.run(one, Shaking(0.01, s * shaking.horizontal, shaking.vertical), np.array([scale]), samples=count)
+        lanes.run(one, asked(Shaking(0.01, s * shaking.horizontal, shaking.vertical), scale, samples=count))
         for s in (1.0, -1.0)
     )
     mirror = np.array([-1.0, -1.0, 1.0, 1.0, -1.0, -1.0, 1.0, 1.0])
@@ -166,7 +159,7 @@ def test_holding_a_joint_at_the_switch_is_the_limit_of_its_excursions() -> None:
     one, shaking, scale = case(2)
     count = shaking.horizontal.size
     fine, used, coarse = (
-        lanes.run(one, shaking, np.array([scale]), samples=count, log=9999, brief=b) for b in (0.0125, 0.2, 0.4)
+        lanes.run(one, asked(shaking, scale, samples=count, log=9999), brief=b) for b in (0.0125, 0.2, 0.4)
     )
     assert len(fine.events[0]) > 3 * len(used.events[0]) > 3
     errors = [np.max(np.abs(x.samples - fine.samples)[0, :, :2]) for x in (used, coarse)]
@@ -177,9 +170,9 @@ def test_holding_a_joint_at_the_switch_is_the_limit_of_its_excursions() -> None:
 def test_switches_without_end_are_flagged() -> None:
     """Never held, a joint in slow uplift alternates faster and faster: given up, not waited for."""
     shaking = Shaking(0.01, np.concatenate([np.linspace(0.0, 0.7, 101), np.full(20, 0.7)]))
-    never, held = (lanes.run(wall(SHORT), shaking, np.ones(1), brief=b) for b in (0.0, 0.2))
-    assert lanes.outputs(wall(SHORT), never.result)["status"][0] == STATUS.index("not_converged")
-    assert lanes.outputs(wall(SHORT), held.result)["status"][0] == STATUS.index("rocking")
+    never, held = (lanes.run(wall(SHORT), asked(shaking), brief=b) for b in (0.0, 0.2))
+    assert never.outputs["status"][0] == STATUS.index("not_converged")
+    assert held.outputs["status"][0] == STATUS.index("rocking")
 
 
 @pytest.mark.parametrize("joints", ["base", "top"])
@@ -187,10 +180,11 @@ def test_rubber_at_one_joint_only(joints: str) -> None:
     rng = np.random.default_rng(11)
     values, shaking = random_wall(rng), random_motion(rng, duration=0.6)
     scale = 9.81 * values["aspect_ratio"]
-    slow = reference.run(wall(values, joints).replace(vertical_factor=1.0), shaking, scale, duration=0.6, rtol=1e-9)
+    vertical = wall(values, joints).replace(vertical_factor=1.0)
+    slow = reference.run(vertical, asked(shaking, scale, duration=0.6), 1e-9).samples[0].T
     fast = MODEL.simulate(values, shaking, scale=scale, options={"joints": joints})
     for row, name in enumerate(("rotation_1", "rotation_2")):
-        np.testing.assert_allclose(fast.channels[name], slow.state[row], rtol=0, atol=1e-7 * np.max(abs(slow.state[1])))
+        np.testing.assert_allclose(fast.channels[name], slow[row], rtol=0, atol=1e-7 * np.max(abs(slow[1])))
     bonded = "top" if joints == "base" else "base"
     assert fast.outputs[f"uplift_duration_{bonded}"] == 0.0
     assert fast.outputs[f"minimum_contact_{bonded}"] == 1.0
@@ -206,9 +200,8 @@ def test_what_can_become_of_a_wall() -> None:
 
     def become(scale: float = 0.0, shaking: Shaking = quiet, tail: float = 30.0, **initial: float):
         one = wall(SHORT)
-        begun = {k: np.array([v]) for k, v in initial.items()}
-        ran = lanes.run(one, shaking, np.array([scale]), tail=tail, initial=begun)
-        return {k: v[0] for k, v in lanes.outputs(one, ran.result).items()}, ran.steps
+        ran = lanes.run(one, asked(shaking, scale, tail=tail, initial=initial))
+        return outputs_of(ran), ran.steps
 
     rest, steps = become()
     assert rest["status"] == 1 and np.isnan(rest["onset_time"]) and rest["peak_rotation"] < 1e-15

@@ -9,6 +9,7 @@ from models.isolated.lanes import run as lanes
 from models.isolated.reference import run as reference
 from models.shaking import Shaking
 from tests.models.isolated.buildings import BODY, HOUSE, LAWS, MODEL, NULLS, chain, random_building, two_tones
+from tests.models.requests import asked, outputs_of
 from tests.models.strategies import random_motion
 
 NAMES = [q.name for q in MODEL.outputs]
@@ -18,22 +19,23 @@ NAMES = [q.name for q in MODEL.outputs]
 def test_lanes_agree_with_the_reference_on_random_buildings(seed: int) -> None:
     rng = np.random.default_rng(seed)
     values, shaking = random_building(rng), random_motion(rng, duration=4.0, vertical=False)
-    slow = reference.run(chain(values), shaking, 3.0, duration=4.0, rtol=1e-8)
-    peak = slow.outputs["peak_bearing_displacement"]
+    slow = reference.run(chain(values), asked(shaking, 3.0, duration=4.0), 1e-8)
+    expected = outputs_of(slow)
+    peak = expected["peak_bearing_displacement"]
     for refinement, share in ((1, 2e-3), (4, 1.5e-4)):
-        fast = lanes.run(chain(values), shaking, np.full(1, 3.0), samples=401, may_rest=False, refinement=refinement)
-        assert np.max(np.abs(fast.samples[0] - slow.samples)[:, :MOST_LEVELS]) < share * peak
+        fast = lanes.run(chain(values), asked(shaking, 3.0, samples=401), refinement)
+        assert np.max(np.abs(fast.samples - slow.samples)[0, :, :MOST_LEVELS]) < share * peak
         for name in ("peak_bearing_displacement", "residual_displacement"):
-            assert fast.result[name][0] == pytest.approx(slow.outputs[name], abs=share * peak), name
+            assert fast.outputs[name][0] == pytest.approx(expected[name], abs=share * peak), name
         for name in ("peak_level_acceleration", "dissipated_energy", "peak_drift"):
-            assert fast.result[name][0] == pytest.approx(slow.outputs[name], rel=10 * share), name
-        assert fast.result["status"][0] == slow.outputs["status"] == 2
+            assert fast.outputs[name][0] == pytest.approx(expected[name], rel=10 * share), name
+        assert fast.outputs["status"][0] == expected["status"] == 2
 
 
 @pytest.mark.parametrize("name", LAWS)
 def test_the_step_rule_is_of_second_order(name: str) -> None:
     one, shaking = chain({**BODY, **LAWS[name]}), two_tones()
-    found = [lanes.run(one, shaking, np.ones(1), samples=301, refinement=n).samples[0, :, 0] for n in (1, 2, 4, 64)]
+    found = [lanes.run(one, asked(shaking, samples=301), n).samples[0, :, 0] for n in (1, 2, 4, 64)]
     errors = [np.max(np.abs(f - found[-1])) for f in found[:-1]]
     # kinks and jumps fall on other places of the steps each time, so the ratios scatter about four
     assert errors[0] / errors[2] > 9.0
@@ -42,7 +44,7 @@ def test_the_step_rule_is_of_second_order(name: str) -> None:
 
 def test_the_linear_chain_has_no_error_of_the_step() -> None:
     one, shaking = chain(HOUSE), two_tones()
-    coarse, fine = (lanes.run(one, shaking, np.ones(1), samples=301, refinement=n).samples for n in (1, 8))
+    coarse, fine = (lanes.run(one, asked(shaking, samples=301), n).samples for n in (1, 8))
     np.testing.assert_allclose(coarse, fine, rtol=0, atol=1e-11 * np.max(np.abs(fine)))
 
 
@@ -83,12 +85,13 @@ def test_a_lane_does_not_depend_on_the_others(laws: dict[str, float]) -> None:
 def test_rest_ends_a_run_and_changes_little() -> None:
     shaking = two_tones()
     values = {**HOUSE, "bearing_damping": 1e6}
-    short, long = (lanes.run(chain(values), shaking, np.ones(1), tail=tail) for tail in (60.0, 90.0))
+    short, long = (lanes.run(chain(values), asked(shaking, tail=tail)) for tail in (60.0, 90.0))
     assert short.steps == long.steps
-    assert 3.0 < short.result["rest_time"][0] < 60.0
-    slow = reference.run(chain(values), shaking, tail=60.0, rtol=1e-8)
-    assert slow.events[0].kind == "rest"
-    assert slow.events[0].time == pytest.approx(short.result["rest_time"][0], abs=0.1)
+    ((rested,),) = short.events
+    assert 3.0 < rested.time < 60.0
+    slow = reference.run(chain(values), asked(shaking, tail=60.0), 1e-8)
+    assert slow.events[0][0].kind == rested.kind == "rest"
+    assert slow.events[0][0].time == pytest.approx(rested.time, abs=0.1)
     still = MODEL.evaluate(values, Shaking.silence(1.0, 0.01), np.ones(1), outputs=NAMES, tail=1.0)
     assert still["status"][0] == 1 and still["peak_level_acceleration"][0] == 0.0
 

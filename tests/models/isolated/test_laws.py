@@ -11,6 +11,7 @@ from models.isolated import bearing
 from models.isolated.lanes import run as lanes
 from models.shaking import Shaking
 from tests.models.isolated.buildings import BODY, HOUSE, LAWS, MODEL, chain, two_tones
+from tests.models.requests import asked
 
 TURNS = st.lists(st.floats(-0.15, 0.15), min_size=2, max_size=4)
 
@@ -137,6 +138,6 @@ def test_shaking_never_takes_energy_out_of_bearings() -> None:
     for name, law in LAWS.items():
         values = {**HOUSE, **law, "bearing_damping": 0.0, "storey_damping": 0.0}
         one = chain({**values, "bearing_stiffness": rng.uniform(1e6, 6e6, 16)})
-        outcome = lanes.run(one, two_tones(step=0.005), rng.uniform(0.2, 1.5, 16)).result
+        outcome = lanes.run(one, asked(two_tones(step=0.005), rng.uniform(0.2, 1.5, 16))).outputs
         size = one.stiffness * outcome["peak_bearing_displacement"] ** 2
         assert np.all(outcome["dissipated_energy"] > -2e-4 * size), name

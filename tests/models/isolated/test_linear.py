@@ -8,6 +8,7 @@ from models.isolated.observe import observe
 from models.isolated.reference import run as reference
 from models.shaking import Shaking
 from tests.models.isolated.buildings import BODY, HOUSE, MODEL, chain, two_tones
+from tests.models.requests import asked
 from tests.models.strategies import random_motion
 
 
@@ -71,10 +72,10 @@ def test_stiff_storeys_make_a_rigid_body_and_set_no_bound_on_the_step() -> None:
     shaking = two_tones()
     body = MODEL.simulate(BODY, shaking).channels["bearing_displacement"]
     stiff = chain({**HOUSE, "storey_stiffness": 3e12, "storey_damping": 0.0})
-    ran = lanes.run(stiff, shaking, np.ones(1), samples=301)
+    ran = lanes.run(stiff, asked(shaking, samples=301))
     assert ran.steps <= 8 * 301
     np.testing.assert_allclose(ran.samples[0, :, 0], body, rtol=0, atol=1e-5 * np.max(np.abs(body)))
-    assert ran.result["peak_drift"][0] < 1e-6
+    assert ran.outputs["peak_drift"][0] < 1e-6
 
 
 def test_unequal_masses() -> None:
@@ -87,8 +88,8 @@ def test_unequal_masses() -> None:
     )
     heavy = {**given, **alike, "level_mass_6": 1e5}
     found = MODEL.simulate(heavy, shaking)
-    slow = reference.run(chain(heavy), shaking, duration=3.0)
-    channels = {k: v[0] for k, v in observe(chain(heavy), slow.samples[None]).items()}
+    slow = reference.run(chain(heavy), asked(shaking, duration=3.0))
+    channels = {k: v[0] for k, v in observe(chain(heavy), slow.samples).items()}
     for name in ("level_displacement_x", "level_acceleration_x"):
         size = np.max(np.abs(channels[name]))
         np.testing.assert_allclose(found.channels[name], channels[name], rtol=0, atol=1e-9 * size)

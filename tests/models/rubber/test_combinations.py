@@ -12,6 +12,7 @@ from models.rubber import LAWS
 from models.rubber.layer import Layer
 from models.shaking import Shaking
 from tests.models.isolated.buildings import BODY, chain
+from tests.models.requests import asked
 from tests.models.rubber.test_laws import alone, numbers
 
 K = 6.21e7
@@ -72,6 +73,6 @@ def test_bearings_with_yielding_and_softening_do_not_run_away() -> None:
     }  # fmt: skip
     time = 0.01 * np.arange(1001)
     shaking = Shaking(0.01, 4.0 * np.sin(2 * np.pi * 0.7 * time) * np.exp(-0.2 * time))
-    found = lanes.run(chain(values), shaking, np.ones(64)).result
+    found = lanes.run(chain(values), asked(shaking, np.ones(64))).outputs
     assert np.all(found["peak_bearing_displacement"] < 2.0)
     assert np.all(found["dissipated_energy"] > 0.0)

@@ -12,6 +12,7 @@ from models.interface.reference.equation import Equation
 from models.rubber import LAWS
 from models.shaking import Shaking
 from tests.models.interface.walls import SHORT, undamped, wall
+from tests.models.requests import asked, outputs_of
 from tests.models.rubber.test_laws import GIVEN, alone, laden
 from tests.models.strategies import random_motion
 
@@ -62,7 +63,7 @@ def test_layers_of_random_walls_never_give_energy(name: str, dashpot: str) -> No
     values = laden(name, rng, 64)
     many = wall(values, dashpot=dashpot).replace(vertical_factor=1.0)
     scale = 9.81 * values["aspect_ratio"] * rng.uniform(0.3, 2.5, 64)
-    found = lanes.outputs(many, lanes.run(many, random_motion(rng, duration=2.5), scale, tail=1.0).result)
+    found = lanes.run(many, asked(random_motion(rng, duration=2.5), scale, tail=1.0)).outputs
     assert np.sum(found["minimum_contact"] < 0.7) > 20
     assert not np.any(found["status"] == 5)
     counted = found["overturned"] == 0 if name == "locking" else np.full(64, True)
@@ -77,13 +78,13 @@ def test_springs_that_only_store_lose_nothing(name: str) -> None:
     """No dashpots, no flow: to rounding in the reference, with the second order of the step in the lanes."""
     rigid = {"permanent_set.strain_limit": 50.0} if name == "permanent_set" else {}
     one = wall({**undamped(SHORT), **GIVEN[name], **rigid})
-    slow = reference.run(one, HARD, duration=0.35, rtol=1e-9)
+    slow = reference.run(one, asked(HARD, duration=0.35), 1e-9)
     assert slow.outputs["minimum_contact_base"] < 0.5
     equation = Equation(one)
-    exchanged = max(sum(equation.stored(q, equation.relaxed())) for q in slow.state[:4].T.tolist())
+    exchanged = max(sum(equation.stored(q, equation.relaxed())) for q in slow.samples[0, :, :4].tolist())
     errors = []
     for refinement in (1, 4):
-        found = lanes.outputs(one, lanes.run(one, HARD, np.ones(1), refinement=refinement).result)
+        found = lanes.run(one, asked(HARD), refinement).outputs
         errors.append(max(abs(found[f"dissipated_energy_{joint}"][0]) for joint in JOINTS))
     for joint in JOINTS:
         assert abs(slow.outputs[f"dissipated_energy_{joint}"]) < 1e-8 * exchanged
@@ -98,9 +99,9 @@ def test_both_routes_dissipate_alike(name: str) -> None:
     one = wall({k: float(v[0]) for k, v in laden(name, rng, 1).items()})
     lean = 4.0 * float(modes.uplift_rotation(one, modes.static_state(one))[0])
     start = {"rotation_1": lean, "rotation_2": lean}
-    slow = reference.run(one, Shaking.silence(0.3, 0.01), initial=start, duration=0.3, rtol=1e-7).outputs
-    ran = lanes.run(one, Shaking.silence(0.3, 0.01), np.ones(1), initial=start, refinement=8, may_rest=False)
-    fast = {k: float(v[0]) for k, v in lanes.outputs(one, ran.result).items()}
+    request = asked(Shaking.silence(0.3, 0.01), initial=start, duration=0.3)
+    ran = reference.run(one, request, 1e-7), lanes.run(one, request, 8)
+    slow, fast = (outputs_of(each) for each in ran)
     assert slow["minimum_contact_base"] < 0.8
     for joint in JOINTS:
         part = slow[f"dissipated_energy_{joint}"]

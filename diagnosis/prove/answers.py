@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import hashlib
+import json
+import os
 import time
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from benchmarks.diagnosis.files import read_json, write_json
 from diagnosis.answer.result import Diagnosis, Effect
 
-ROOMS = ("models", "grids/recordings", "diagnosis")
+ROOMS = ("models", "grids", "diagnosis")
 ROOT = Path(__file__).resolve().parents[2]
 NOTHING: dict[str, Any] = {"effects": [], "rivals": [], "constancy": [], "located": [], "base": {}}
 
@@ -32,7 +33,7 @@ def fingerprint() -> str:
 
 def diagnosed(folder: Path) -> dict[str, Any]:
     """What `diagnosis.diagnose` says of a case folder."""
-    from diagnosis import diagnose
+    from diagnosis.answer.diagnose import diagnose
     from grids.recordings import read_recording
     from grids.specimen import read_specimen
 
@@ -89,3 +90,16 @@ def answer(folder: Path, path: Path, answering: Answering = diagnosed) -> dict[s
 def sha256(path: Path) -> str:
     """Of a file."""
     return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def write_json(path: Path, content: Mapping[str, Any]) -> None:
+    """Whole or not at all."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    partial = path.with_suffix(".partial")
+    partial.write_text(json.dumps(content, indent=1), encoding="utf-8")
+    os.replace(partial, path)
+
+
+def read_json(path: Path) -> dict[str, Any]:
+    content: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    return content

@@ -33,9 +33,20 @@ class Scored:
         return str(self.answer["verdict"])
 
     @property
+    def imperfections(self) -> list[str]:
+        """Names of a laboratory's errors in the recordings."""
+        given = self.key.get("imperfections", {})
+        return list(given.get("names", given))
+
+    @property
     def effects(self) -> list[Mapping[str, Any]]:
-        """Effects of the answer, without instruments that the key calls rightly named beside what is hidden."""
-        known = set(self.key.get("named_rightly", ())) - {effect["name"] for effect in self.key["effects"]}
+        """Effects of the answer, without what the key calls rightly named (``named_rightly``) beside what is hidden.
+
+        Without that entry it is an imperfection that is itself in the catalogue.
+        """
+        known = set(self.key.get("named_rightly", self.imperfections)) - {
+            effect["name"] for effect in self.key["effects"]
+        }
         return [effect for effect in self.answer["effects"] if effect["name"] not in known]
 
     @property
@@ -114,7 +125,7 @@ def covered(case: Scored) -> list[bool]:
 
 def base_covered(case: Scored) -> list[bool]:
     """Whether the intervals of the calibrated base parameters hold the truth."""
-    truth = case.key["true_parameters"]
+    truth = case.key.get("true_parameters", {})
     return [v["low95"] <= truth[n] <= v["high95"] for n, v in case.answer["base"].items() if n in truth]
 
 

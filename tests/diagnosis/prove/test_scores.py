@@ -6,12 +6,12 @@ import json
 import math
 from pathlib import Path
 
-import numpy as np
 import pytest
 
-from benchmarks.diagnosis import concealed, report
-from benchmarks.diagnosis.answers import NOTHING, answer, sha256
-from benchmarks.diagnosis.scores import Scored, Share, base_covered, confusion, covered, score
+from diagnosis.prove import report
+from diagnosis.prove.answers import NOTHING, answer, sha256
+from diagnosis.prove.figures import draw_confusion
+from diagnosis.prove.scores import Scored, Share, base_covered, confusion, covered, score
 
 FIRST = "tilt"
 
@@ -108,18 +108,12 @@ def test_confusion_counts_every_case_but_pairs_once() -> None:
     assert counts[rows.index("nothing_missing"), columns.index("nothing_missing")] == 1
 
 
-def test_groups_carry_their_suffix_and_models(tmp_path: Path) -> None:
-    half = [Scored("20", said("missing", [FIRST]), key("single", FIRST, noise=0.03, size=0.5))]
-    figures = report.grouped([*CASES, *half])
-    assert figures["cases"] == len(CASES)
-    assert figures["half_size_3_percent"]["class_first_half"] == 1.0
-    assert figures["by_model"]["housner"]["false_alarm"] == 0.5
-    assert figures["nominal_size_half_percent"]["class_first"] is None
+def test_tables_lines_and_figures_hold_every_case(tmp_path: Path) -> None:
+    figures = report.summary(CASES)
+    json.dumps(figures, allow_nan=False)
     assert "class_first " in report.table(figures, "x")
     assert len(report.wrong(CASES).splitlines()) == 8
-    json.dumps(figures, allow_nan=False)
-    report.draw_confusion(CASES, tmp_path / "confusion.png")
-    assert (tmp_path / "confusion.png").stat().st_size > 1000
+    assert draw_confusion(CASES, tmp_path / "confusion.png").stat().st_size > 1000
 
 
 def test_answers_are_kept_and_failures_are_answers(tmp_path: Path) -> None:
@@ -131,20 +125,3 @@ def test_answers_are_kept_and_failures_are_answers(tmp_path: Path) -> None:
     before = sha256(tmp_path / "a" / "1.json")
     again = answer(tmp_path, tmp_path / "a" / "1.json", lambda folder: {"verdict": "missing"})
     assert again == first and sha256(tmp_path / "a" / "1.json") == before
-
-
-def test_halves_of_a_folder_part_the_blocks_by_number(tmp_path: Path) -> None:
-    for number, model in ((1, "housner"), (2, "housner"), (3, "interface"), (5, "housner")):
-        (tmp_path / f"case_{number:02d}").mkdir()
-        (tmp_path / f"case_{number:02d}" / "specimen.toml").write_text(f'model = "{model}"\n')
-    assert [p.name for p in concealed.folders(tmp_path, "odd")] == ["case_01", "case_05"]
-    assert [p.name for p in concealed.folders(tmp_path, "even")] == ["case_02"]
-
-
-def test_weights_of_the_weak_form_integrate_by_parts() -> None:
-    from benchmarks.diagnosis.weak_form import _test_function
-
-    step, time = 1e-3, 1e-3 * np.arange(201)
-    test, curve = _test_function(201, step)
-    theta = np.sin(9.0 * time)
-    assert step * curve @ theta == pytest.approx(step * test @ (-81.0 * theta), rel=1e-4)

@@ -1,0 +1,215 @@
+"""Runs whose parameters change at given samples: cut there, each part begun from the state in which the last one ended.
+
+A state is handed over whole: what `Model.resume` gives, motion and memories. A model says in `Model.resumes_with` with
+which mechanisms its states are all that a run remembers; with others a run cannot be cut and is refused.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import reduce
+from operator import or_
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.base import Event, FloatArray, History, Values
+from models.errors import InputError
+from models.shaking import Shaking
+
+if TYPE_CHECKING:
+    from models.model import Model
+
+FIRST, LARGEST, LEAST, TOTAL, LAST, BITS = "first", "largest", "least", "total", "last", "bits"
+OVER_PARTS = {
+    "onset_time": FIRST, "overturning_time": FIRST, "peak_": LARGEST, "friction_demand": LARGEST,
+    "overturned": LARGEST, "configurations": BITS, "minimum_contact": LEAST, "uplift_duration": TOTAL,
+    "time_in_": TOTAL, "impacts": TOTAL, "dissipated_energy": TOTAL, "residual_": LAST, "status": LAST,
+}  # fmt: skip
+"""How an output of a whole run follows from those of its parts, by the start of its name."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """Values that hold from sample ``first`` of the shaking on."""
+
+    first: int
+    values: Values
+
+
+def check(model: Model[Any], parts: Sequence[Values]) -> None:
+    """Raises InputError where a run with one of these sets of values cannot be cut."""
+    allowed = model.resumes_with
+    if allowed is None:
+        raise InputError(
+            f"a run of model '{model.name}' cannot be cut at an instant: its states do not hold all that it "
+            "remembers; leave the stages out."
+        )
+    used = {name.partition(".")[0] for values in parts for name in values if "." in name}
+    if kept := sorted(used - set(allowed)):
+        raise InputError(
+            f"a run with {kept[0]} cannot be cut at an instant: {kept[0]} remembers more than the motion; leave the "
+            f"stages out, or {kept[0]}."
+        )
+
+
+def simulate(
+    model: Model[Any],
+    parts: Sequence[Part],
+    shaking: Shaking,
+    *,
+    scale: float = 1.0,
+    initial: Mapping[str, float] | None = None,
+    duration: float | None = None,
+    tail: float = 0.0,
+    options: Mapping[str, str] | None = None,
+    integrator: str = "lanes",
+) -> History:
+    """As `Model.simulate`, with the values of each part from its first sample on (the first part's is 0)."""
+    step = shaking.time_step
+    last = round((shaking.duration + tail if duration is None else duration) / step)
+    parts = [one for one in parts if one.first < last or one.first == 0]
+    if len(parts) > 1:
+        check(model, [one.values for one in parts])
+    ends = [*(one.first for one in parts[1:]), last]
+    state: Mapping[str, Any] = {name: np.array([value], float) for name, value in (initial or {}).items()}
+    found: list[History] = []
+    for one, end in zip(parts, ends, strict=True):
+        if found and _lies(found[-1]):
+            found.append(_lying(found[-1], end - one.first))
+            continue
+        history, state = model.simulate_from(
+            one.values, begun_at(shaking, one.first), initial=state, samples=end - one.first, scale=scale,
+            options=options, integrator=integrator,
+        )  # fmt: skip
+        found.append(history)
+    return _joined(found, [one.first for one in parts], step)
+
+
+def begun_at(shaking: Shaking, first: int) -> Shaking:
+    """The shaking from sample ``first`` on; the base at rest beyond its end."""
+
+    def part(samples: FloatArray) -> FloatArray:
+        left = samples[first:]
+        return left if left.size > 1 else np.append(left, np.zeros(2 - left.size))
+
+    vertical = None if shaking.vertical is None else part(shaking.vertical)
+    return replace(shaking, horizontal=part(shaking.horizontal), vertical=vertical)
+
+
+def _lies(part: History) -> bool:
+    """Whether a part ends with a wall that has fallen: overturned, and nothing moves any more."""
+    still = all(np.array_equal(x[..., -1], x[..., -2]) for x in part.channels.values())
+    return bool(part.outputs.get("overturned")) and still
+
+
+def _lying(before: History, samples: int) -> History:
+    """What has overturned stays where it lies."""
+    channels = {name: np.repeat(x[..., -1:], samples + 1, axis=-1) for name, x in before.channels.items()}
+    nothing = {name: value for name, value in before.outputs.items() if _rule(name) in (LARGEST, LEAST, LAST)}
+    return History(before.time[: samples + 1], channels, (), nothing)
+
+
+def _joined(parts: Sequence[History], firsts: Sequence[int], step: float) -> History:
+    """Parts as one history; the sample between two of them is that of the later one."""
+    kept = [slice(None, -1)] * (len(parts) - 1) + [slice(None)]
+    channels = {
+        name: np.concatenate([p.channels[name][..., k] for p, k in zip(parts, kept, strict=True)], axis=-1)
+        for name in parts[0].channels
+    }
+    begins = [step * first for first in firsts]
+    events = tuple(
+        replace(event, time=event.time + begin)
+        for part, begin in zip(parts, begins, strict=True)
+        for event in part.events
+        if (event.time > 0.0 or begin == 0.0) and not (begin > 0.0 and _first_uplift(event, part))
+    )
+    outputs = {name: _over(name, [p.outputs.get(name, math.nan) for p in parts], begins) for name in parts[0].outputs}
+    count = next(iter(channels.values())).shape[-1]
+    return History(step * np.arange(count, dtype=np.float64), channels, _once(events), outputs)
+
+
+def _first_uplift(event: Event, part: History) -> bool:
+    """Whether an onset is only the first uplift of its part; walls on layers have one onset in a run."""
+    return event.kind == "onset" and any(e.kind == "uplift" and e.time == event.time for e in part.events)
+
+
+def _once(events: tuple[Event, ...]) -> tuple[Event, ...]:
+    """Events to the first overturning of each body."""
+    seen: set[int] = set()
+    found = []
+    for event in events:
+        if event.kind == "overturned":
+            if event.body in seen:
+                continue
+            seen.add(event.body)
+        found.append(event)
+    return tuple(found)
+
+
+def _rule(name: str) -> str:
+    return next(rule for start, rule in OVER_PARTS.items() if name.startswith(start))
+
+
+def _over(name: str, values: Sequence[float], begins: Sequence[float]) -> float:
+    """An output of the whole from those of the parts, which begin at ``begins`` (s)."""
+    rule = _rule(name)
+    if rule == FIRST:
+        times = [value + begin for value, begin in zip(values, begins, strict=True) if not math.isnan(value)]
+        return times[0] if times else math.nan
+    if rule == LAST:
+        return values[-1]
+    known = [value for value in values if not math.isnan(value)]
+    if not known:
+        return math.nan
+    if rule == TOTAL:
+        return math.fsum(known)
+    if rule == BITS:
+        return float(reduce(or_, (int(value) for value in known)))
+    return max(known) if rule == LARGEST else min(known)
+
+
+def trajectories(
+    model: Model[Any],
+    parts: Sequence[Values],
+    changes: NDArray[np.int64],
+    shaking: Shaking,
+    *,
+    first: NDArray[np.int64],
+    samples: int,
+    initial: Mapping[str, FloatArray],
+    options: Mapping[str, str] | None = None,
+) -> dict[str, FloatArray]:
+    """As `Model.trajectories`; lane k goes from part j to part j + 1 at sample ``changes[k, j]``.
+
+    The change may lie before or after the lane's window, which then is of one part.
+    """
+    if len(parts) == 1:
+        return model.trajectories(parts[0], shaking, first=first, samples=samples, initial=initial, options=options)
+    n, end = first.size, first + samples - 1
+    edges = [first, *(np.clip(changes[:, j], first, end) for j in range(len(parts) - 1)), end]
+    if np.any(np.count_nonzero(np.diff(edges, axis=0) > 0, axis=0) > 1):
+        check(model, parts)
+    state = {name: np.broadcast_to(np.asarray(v, float), (n,)).copy() for name, v in initial.items()}
+    found: dict[str, FloatArray] = {}
+    for values, start, stop in zip(parts, edges[:-1], edges[1:], strict=True):
+        lanes = np.flatnonzero(stop > start)
+        if not lanes.size:
+            continue
+        length = stop[lanes] - start[lanes]
+        own = {k: np.broadcast_to(np.asarray(v, float), (n,))[lanes] for k, v in values.items()}
+        channels, after = model.follow(
+            own, shaking, first=start[lanes], steps=length,
+            initial={name: v[lanes] for name, v in state.items()}, options=options,
+        )  # fmt: skip
+        for name, channel in channels.items():
+            whole = found.setdefault(name, np.full((n, *channel.shape[1:-1], samples), np.nan))
+            for row, lane in enumerate(lanes):
+                at = start[lane] - first[lane]
+                whole[lane, ..., at : at + length[row] + 1] = channel[row, ..., : length[row] + 1]
+        for name, after_lanes in after.items():
+            state.setdefault(name, np.zeros(n))[lanes] = after_lanes
+    return found

@@ -1,0 +1,33 @@
+"""``rocking prove DIR``: the whole chain on concealed cases, answered before the key is opened."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def prove(
+    folder: Annotated[Path, typer.Argument(help="Folder with case_01, case_02 ... and answers.json, the key.")],
+    out: Annotated[
+        Path | None, typer.Option(help="Folder of answers and scores.  [default: results/prove/DIR]")
+    ] = None,
+    half: Annotated[str, typer.Option(help="all, odd or even: which cases, by their numbers.")] = "all",
+    model: Annotated[str | None, typer.Option(help="Only cases whose specimen is of this model.")] = None,
+    jobs: Annotated[int, typer.Option(help="Cases at once, one core each.", min=1)] = 2,
+    minutes: Annotated[float, typer.Option(help="Begin no case after this time.", min=0.0)] = 600.0,
+) -> None:
+    """Diagnose concealed cases, hash the answers, then open the key and score them.
+
+    Writes answers, their hashes, prove.json (every share with its binomial interval), a list of wrong answers, and
+    figures: confusion matrix, evidence against the size of the effect, said against true intervals. It goes on
+    where it stopped; the key is opened only when every case is answered.
+    """
+    from diagnosis.prove.chain import prove as prove_folder
+    from rocking.commands.diagnose import make_folder
+
+    place = out or Path("results/prove") / f"{folder.resolve().name}{'' if half == 'all' else f'_{half}'}"
+    make_folder(place)
+    if prove_folder(folder, place, half=half, model=model, jobs=jobs, minutes=minutes, say=typer.echo):
+        typer.echo(f"written: {place / 'prove.json'} and figures", err=True)

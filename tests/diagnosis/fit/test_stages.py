@@ -1,0 +1,72 @@
+"""Windows of a recording in which something begins: before, after, and over the instant."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import models
+from diagnosis.fit.prediction import Point, Predictor
+from diagnosis.fit.setup import measure
+from grids.recordings.base import Recording
+from grids.stages import Stage
+from models.errors import InputError
+from models.piecewise import Part, simulate
+from tests.diagnosis.made import SPECIMEN, TIME_STEP, TRUE, motion
+
+CHANGE = {"restitution.factor_on_housner": 0.9}
+OFFSET = 0.004
+MODEL = models.get("housner")
+SHAKING = motion(3)
+
+
+def made(first: int) -> tuple[Recording, np.ndarray]:
+    """A recording in which impacts lose more, and the sensor is off, from a sample on; and the states."""
+    ran = simulate(MODEL, [Part(0, TRUE), Part(first, {**TRUE, **CHANGE})], SHAKING, integrator="reference")
+    states = np.stack([ran.channels["rotation_1"], ran.channels["rotation_rate_1"]], axis=-1)
+    seen = states[:, 0] + OFFSET * (np.arange(states.shape[0]) >= first)
+    rng = np.random.default_rng(0)
+    noisy = seen + 1e-5 * rng.normal(size=seen.size)
+    channels = {"base_acceleration_x": SHAKING.horizontal, "rotation_1": noisy}
+    return Recording("shake_2", TIME_STEP, TIME_STEP * np.arange(seen.size), channels), states
+
+
+def test_every_window_is_predicted_with_what_acts_in_it() -> None:
+    plain = measure(SPECIMEN, [made(100_000)[0]])
+    first = int(plain.first[len(plain.first) // 2]) + 40  # within a window
+    recording, states = made(first)
+    measured = measure(SPECIMEN, [recording], reference_peak=1.0)
+    held = (measured.first < first) & (measured.first + [w.samples for w in measured.windows] > first)
+    assert held.any() and np.any(measured.first > first)
+    stages = {name: (Stage("shake_2", (first - 0.5) * TIME_STEP),) for name in ("restitution", "offset")}
+    values = {**TRUE, **CHANGE, "offset.offset_over_peak": OFFSET}
+    points = [Point(values, states[measured.first]), Point({**TRUE}, states[measured.first])]
+
+    def misses(predictor: Predictor, k: int = 0) -> np.ndarray:
+        wrong = np.abs(predictor.predict(points)[k] - measured.values)
+        return np.where(measured.mask, wrong, 0.0).max(axis=(1, 2))
+
+    noise = 6e-5
+    assert np.all(misses(Predictor(measured, stages=stages)) < noise)
+    assert np.max(misses(Predictor(measured))) > 20 * noise  # acts always
+    before = measured.first + [w.samples for w in measured.windows] <= first
+    assert np.all(misses(Predictor(measured, stages=stages), 1)[before] < noise)
+    assert np.max(misses(Predictor(measured, stages=stages), 1)) > 20 * noise  # never acts
+
+
+def test_a_recording_without_it_has_none_of_it() -> None:
+    recording, states = made(100_000)
+    measured = measure(SPECIMEN, [recording])
+    point = Point({**TRUE, **CHANGE}, states[measured.first])
+    nowhere = Predictor(measured, stages={"restitution": (Stage("shake_2", 0.0, 0.0), Stage("shake_3"))})
+    np.testing.assert_array_equal(
+        nowhere.predict([point]), Predictor(measured).predict([Point({**TRUE}, states[measured.first])])
+    )
+
+
+def test_a_clock_cannot_change_within_a_recording() -> None:
+    recording, states = made(100_000)
+    measured = measure(SPECIMEN, [recording])
+    point = Point({**TRUE, "clock.rate": 0.01}, states[measured.first])
+    with pytest.raises(InputError, match="clock"):
+        Predictor(measured, stages={"clock": (Stage("shake_2", 2.0),)}).predict([point])

@@ -1,0 +1,88 @@
+"""A folder of concealed cases: answered, hashed, only then scored, and resumed."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+from diagnosis.prove.chain import cases_in, prove
+from models.errors import InputError
+from rocking.commands import app
+
+
+def answer_by_title(folder: Path) -> dict[str, Any]:
+    """Says what stands in the specimen's title, and that no key lies open beside the answers yet."""
+    text = (folder / "specimen.toml").read_text()
+    name = text.partition("title = ")[2].partition("\n")[0].strip('"')
+    effects = [{"name": name, "class": name, "parameters": {}, "evidence": 80.0}] if name else []
+    located = [{"recording": "train_1", "start": 2.0, "end": 6.0}, {"recording": "train_1", "start": 5.0, "end": 8.0}]
+    return {
+        "verdict": "missing" if name else "nothing_missing", "effects": effects, "rivals": [], "constancy": [],
+        "located": located if name else [], "base": {},
+    }  # fmt: skip
+
+
+def entry(kind: str, *names: str, **of_train_1: Any) -> dict[str, Any]:
+    effects = [{"name": name, "class": name, "parameters": {}} for name in names]
+    return {"kind": kind, "model": "housner", "effects": effects, "recordings": {"train_1": of_train_1}}
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """Two cases right, one wrong, and a wall."""
+    place = tmp_path / "concealed"
+    cases = {
+        "case_01": ("", "housner", entry("null")),
+        "case_02": ("tilt", "housner", entry("single", "tilt", strength=9.0, duration=10.0, active=[[4.0, 10.0]])),
+        "case_03": ("gain", "housner", entry("single", "delay", strength=12.0)),
+        "case_05": ("", "interface", entry("null")),
+    }
+    for name, (title, model, _) in cases.items():
+        (place / name).mkdir(parents=True)
+        (place / name / "specimen.toml").write_text(f'title = "{title}"\nmodel = "{model}"\n')
+    (place / "answers.json").write_text(json.dumps({"cases": {name: key for name, (_, _, key) in cases.items()}}))
+    return place
+
+
+def test_answers_are_hashed_then_scored_and_kept(folder: Path, tmp_path: Path) -> None:
+    out, lines = tmp_path / "out", []
+    figures = prove(folder, out, model="housner", jobs=2, say=lines.append, answering=answer_by_title)
+    assert figures["cases"] == 3 and figures["class_first"] == 0.5 and figures["false_alarm"] == 0.0
+    assert figures["overlap_mean"] == pytest.approx(4.0 / 8.0)  # 2 to 8 s said, 4 to 10 s true
+    hashes = json.loads((out / "sha256.json").read_text())
+    answer = out / "answers" / "case_02.json"
+    assert hashes["case_02"] == hashlib.sha256(answer.read_bytes()).hexdigest() == figures["answers_sha256"]["case_02"]
+    assert "case_03 single: delay" in (out / "wrong.txt").read_text()
+    for name in ("confusion.png", "evidence.png", "located.png"):
+        assert (out / name).stat().st_size > 1000
+    written = answer.stat().st_mtime_ns
+    again: list[str] = []
+    prove(folder, out, model="housner", jobs=2, say=again.append, answering=answer_by_title)
+    assert again[0] == "3 of 3 cases were answered before" and answer.stat().st_mtime_ns == written
+
+
+def test_the_key_stays_shut_while_cases_are_left(folder: Path, tmp_path: Path) -> None:
+    (folder / "answers.json").write_text("no key yet")
+    lines: list[str] = []
+    assert prove(folder, tmp_path / "out", minutes=0.0, say=lines.append, answering=answer_by_title) == {}
+    assert lines[-1].startswith("4 cases are left") and not (tmp_path / "out" / "prove.json").exists()
+
+
+def test_halves_and_models_part_the_cases(folder: Path) -> None:
+    assert [p.name for p in cases_in(folder, "odd")] == ["case_01", "case_03", "case_05"]
+    assert [p.name for p in cases_in(folder, "even")] == ["case_02"]
+    assert [p.name for p in cases_in(folder, model="interface")] == ["case_05"]
+    with pytest.raises(InputError, match="take one of all, odd, even"):
+        cases_in(folder, "first")
+    with pytest.raises(InputError, match="no case of"):
+        cases_in(folder, "even", "interface")
+
+
+def test_the_command_says_what_a_folder_needs(tmp_path: Path) -> None:
+    found = CliRunner().invoke(app, ["prove", str(tmp_path), "--out", str(tmp_path / "out")])
+    assert found.exit_code == 2 and "no concealed cases" in found.output and "answers.json" in found.output
