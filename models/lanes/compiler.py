@@ -16,6 +16,7 @@ import numba
 from numba.extending import overload, register_jitable
 
 from models.lanes import elementary
+from models.lanes.sealed_cache import seal_cache
 
 F = TypeVar("F", bound=Callable[..., object])
 _ROOT = Path(__file__).resolve().parent.parent.parent
@@ -93,7 +94,9 @@ def compiled(function: F) -> F:
     if not os.environ.get("NUMBA_CACHE_DIR"):
         numba.config.CACHE_DIR = str(cache_folder(function.__module__))
     try:
-        return cast(F, numba.njit(**_SETTINGS)(function))
+        dispatcher = numba.njit(**_SETTINGS)(function)
+        seal_cache(dispatcher)
+        return cast(F, dispatcher)
     finally:
         numba.config.CACHE_DIR = given
 

@@ -1,0 +1,53 @@
+"""Numba's files of machine code with a checksum: what is damaged is compiled anew, never executed."""
+
+from __future__ import annotations
+
+import hashlib
+import logging
+import pickle
+from pathlib import Path
+from typing import Any
+
+from numba.core.caching import IndexDataCacheFile
+
+_LOG = logging.getLogger(__name__)
+_SIZE = hashlib.sha256().digest_size
+
+
+class SealedFiles(IndexDataCacheFile):  # type: ignore[misc]
+    """Index and code of one kernel; every pickle is followed by its SHA-256, which pickle itself passes over."""
+
+    def _dump(self, obj: Any) -> bytes:
+        data: bytes = super()._dump(obj)
+        return data + hashlib.sha256(data).digest()
+
+    def _load_index(self) -> Any:
+        path = Path(self._index_path)
+        try:
+            data = path.read_bytes()
+        except OSError:
+            return {}
+        version = pickle.dumps(self._version, protocol=-1)  # stands first, so that another numba reads no further
+        if data.startswith(version) and _intact(data[len(version) :]):
+            return super()._load_index()
+        _LOG.warning("%s is damaged: compiled anew", path)
+        return {}
+
+    def _load_data(self, name: str) -> Any:
+        path = Path(self._data_path(name))
+        data = path.read_bytes()
+        if not _intact(data):
+            _LOG.warning("%s is damaged: compiled anew", path)
+            raise OSError  # as if the file were gone
+        return pickle.loads(data)
+
+
+def seal_cache(dispatcher: Any) -> None:
+    """Let a compiled function that keeps its machine code keep it in sealed files."""
+    cache = dispatcher._cache
+    stamp = cache._impl.locator.get_source_stamp()
+    cache._cache_file = SealedFiles(cache._cache_path, cache._impl.filename_base, stamp)
+
+
+def _intact(data: bytes) -> bool:
+    return len(data) > _SIZE and hashlib.sha256(data[:-_SIZE]).digest() == data[-_SIZE:]

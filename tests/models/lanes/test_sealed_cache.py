@@ -1,0 +1,70 @@
+"""A damaged file of machine code is found, said and compiled anew."""
+
+from __future__ import annotations
+
+import logging
+import random
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+KERNEL = """
+import numba, os, sys
+from models.lanes.sealed_cache import seal_cache
+@numba.njit(cache=True)
+def kernel(x):
+    return 2.0 * x + 1.0
+seal_cache(kernel)
+kernel(3.0)
+print(kernel(20.0), sum(kernel.stats.cache_hits.values()))
+"""
+
+
+@pytest.fixture
+def kernel(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[], tuple[str, str]]:
+    """Calls a kernel in a fresh process; its result with the number of kernels taken from files, and what it says."""
+    script = tmp_path / "script.py"
+    script.write_text(KERNEL)
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
+    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).resolve().parents[3]))
+
+    def call() -> tuple[str, str]:
+        done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, check=True)
+        return done.stdout.strip(), done.stderr
+
+    return call
+
+
+def test_files_are_used_until_they_are_damaged(kernel: Callable[[], tuple[str, str]], tmp_path: Path) -> None:
+    assert kernel() == ("41.0 0", "")
+    assert kernel() == ("41.0 1", "")
+    for suffix, damage in (
+        ("nbi", lambda data: b""),
+        ("nbc", lambda data: data[: len(data) // 2] + b"\0" + data[len(data) // 2 + 1 :]),
+    ):
+        (path,) = (tmp_path / "cache").rglob(f"*.{suffix}")
+        path.write_bytes(damage(path.read_bytes()))
+        result, said = kernel()
+        assert result == "41.0 0" and "is damaged: compiled anew" in said
+        assert kernel() == ("41.0 1", "")
+
+
+def test_no_flipped_bit_is_executed(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    from models.lanes.sealed_cache import SealedFiles
+
+    files = SealedFiles(str(tmp_path), "kernel", "stamp")
+    files.save("key", {"code": bytes(range(200))})
+    draw = random.Random(5)
+    for path in tmp_path.iterdir():
+        whole = path.read_bytes()
+        for _ in range(100):
+            data = bytearray(whole)
+            data[draw.randrange(len(data))] ^= 1 << draw.randrange(8)
+            path.write_bytes(data)
+            with caplog.at_level(logging.ERROR):
+                assert files.load("key") is None
+        path.write_bytes(whole)
+    assert files.load("key") == {"code": bytes(range(200))}
