@@ -40,6 +40,12 @@ class Part:
     values: Values
 
 
+def in_force(parts: Sequence[Part], first: int) -> list[Part]:
+    """The parts of a run that begins at sample ``first``, their samples counted from there."""
+    begun = max(k for k, one in enumerate(parts) if one.first <= first)
+    return [Part(max(0, one.first - first), one.values) for one in parts[begun:]]
+
+
 def check(model: Model[Any], parts: Sequence[Values]) -> None:
     """Raises InputError where a run with one of these sets of values cannot be cut."""
     allowed = model.resumes_with
@@ -86,7 +92,7 @@ def simulate(
             options=options, integrator=integrator,
         )  # fmt: skip
         found.append(history)
-    return _joined(found, [one.first for one in parts], step)
+    return found[0] if len(found) == 1 else _joined(found, [one.first for one in parts], step)
 
 
 def begun_at(shaking: Shaking, first: int) -> Shaking:

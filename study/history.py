@@ -11,8 +11,9 @@ import numpy as np
 import xarray as xr
 
 import models
-from grids.instruments import INSTRUMENTS, moved, recorded
+from grids.instruments import INSTRUMENTS
 from grids.instruments.base import Surroundings
+from grids.instruments.staged import moved_in_stages, recorded_in_stages
 from grids.netcdf_lock import NETCDF_LOCK
 from grids.recordings.base import SHARE
 from grids.specimen import Specimen
@@ -61,7 +62,7 @@ def simulate_specimen(
     history = simulate(
         model,
         _parts(specimen, ways),
-        _base(read, ways),
+        moved_in_stages(read, ways),
         initial=dict(specimen.initial) or None,
         duration=duration,
         tail=tail,
@@ -116,15 +117,6 @@ def _parts(specimen: Specimen, ways: Ways) -> list[Part]:
     return found
 
 
-def _base(read: Shaking, ways: Ways) -> Shaking:
-    """What the base did, when ``read`` is what its accelerometers say."""
-    found = moved(read, ways[0][1])
-    horizontal = found.horizontal.copy()
-    for first, acting in ways[1:]:
-        horizontal[first:] = moved(read, acting).horizontal[first:]
-    return replace(found, horizontal=horizontal)
-
-
 def _recorded(
     model: Model, history: History, read: Shaking, ways: Ways, reference_peak: float | None
 ) -> dict[str, FloatArray]:
@@ -132,11 +124,7 @@ def _recorded(
     units = {quantity.name: quantity.unit for quantity in model.observables}
     around = Surroundings(read.time_step, _at(history, read, read.horizontal), reference_peak)
     signals = {name: x for name, x in history.channels.items() if units[name] != SHARE}
-    found = {name: np.array(x) for name, x in signals.items()}
-    for first, acting in ways:
-        for name, seen in recorded(signals, acting, around).items():
-            found[name][..., first:] = seen[..., first:]
-    return {**history.channels, **found}
+    return {**history.channels, **recorded_in_stages(signals, ways, around)}
 
 
 def _at(history: History, read: Shaking, component: FloatArray) -> FloatArray:

@@ -217,7 +217,7 @@ def _screened(found: Search) -> tuple[Screened, ...]:
 
 
 def _horizons(shown: Sequence[Shown], specimen: Specimen) -> dict[str, tuple[float, float]]:
-    return {k: v for s in shown for k, v in horizons(s, dict(specimen.options)).items()}
+    return {k: v for s in shown for k, v in horizons(s, specimen).items()}
 
 
 def _provenance(specimen: Specimen, found: Search, tested: Sequence[Tested], seed: int) -> Mapping[str, Any]:

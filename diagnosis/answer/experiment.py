@@ -18,7 +18,6 @@ from diagnosis.answer.whole_runs import sensed_run
 from diagnosis.data.measured import arrange
 from diagnosis.fit.intervals import covariances
 from diagnosis.fit.misfit import Misfit, reduce
-from diagnosis.fit.prediction import Predictor
 from diagnosis.fit.solver import fit
 from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.search.candidates import Candidate
@@ -99,8 +98,7 @@ def _expected(truth: Explanation, rival: Explanation, made: Recording) -> float:
         windows = arrange(measured.model, [made], acts, measured.lengths, measured.reference_peak)
     except InputError:
         return 0.0
-    options = fitted.misfit.predictor.options
-    predictor = Predictor(windows, options)
+    predictor = replace(fitted.misfit.predictor, measured=windows)
     misfit = Misfit(predictor, sensor_noise_only(predictor), fitted.misfit.unknowns, fitted.misfit.fixed)
     true = truth.fitted
     own = Misfit(predictor, misfit.whitening, true.misfit.unknowns, true.misfit.fixed)

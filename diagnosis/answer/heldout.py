@@ -21,6 +21,7 @@ from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.solver import fit_thoroughly
 from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.search.refit import Explanation
+from grids.specimen import Specimen
 from models.base import FloatArray
 
 HORIZON = 4.0
@@ -45,7 +46,7 @@ def frozen(explanation: Explanation, measured: Measured) -> tuple[Point, FloatAr
     """The explanation's parameters on other windows: the point with fitted states, and channels (W, C, N)."""
     misfit = explanation.fitted.misfit
     fixed = {**misfit.fixed, **explanation.fitted.values}
-    predictor = Predictor(measured, misfit.predictor.options)
+    predictor = replace(misfit.predictor, measured=measured)
     states = measured.states
     for _ in range(2):
         alone = Misfit(predictor, sensor_noise_only(predictor), (), fixed)
@@ -135,7 +136,7 @@ def traces_of(shown: Shown, held_out: bool) -> list[Trace]:
     return found
 
 
-def horizons(shown: Shown, options: dict[str, str]) -> dict[str, tuple[float, float]]:
+def horizons(shown: Shown, specimen: Specimen) -> dict[str, tuple[float, float]]:
     """By recording: median seconds from a window's start until a prediction leaves the noise."""
     from scipy.ndimage import uniform_filter1d
 
@@ -143,7 +144,7 @@ def horizons(shown: Shown, options: dict[str, str]) -> dict[str, tuple[float, fl
     longer = lengthened(m)
     times = []
     for point in (shown.point_before, shown.point_after):
-        predicted = Predictor(longer, options).predict([point])[0]
+        predicted = Predictor(longer, specimen.options, specimen.stages).predict([point])[0]
         rest = np.where(longer.mask, predicted - longer.values, 0.0) / longer.sigma[..., None]
         smooth = uniform_filter1d(rest, AVERAGED, axis=-1)
         out = np.any(np.abs(smooth) > LEAVES, axis=1)

@@ -10,12 +10,13 @@ import numpy as np
 from diagnosis.answer.heldout import Shown, traces_of
 from diagnosis.answer.result import Trace
 from diagnosis.data.measured import Measured
-from diagnosis.fit.unknowns import instruments_of, without_instruments
+from diagnosis.fit.unknowns import instruments_of
 from diagnosis.search.refit import Explanation
-from grids.instruments import moved, recorded
 from grids.instruments.base import Surroundings
+from grids.instruments.staged import moved_in_stages, recorded_in_stages
 from grids.recordings.base import REQUIRED, FloatArray, Recording
 from grids.specimen import Specimen
+from models.piecewise import simulate
 
 
 def with_runs_from_rest(
@@ -46,16 +47,18 @@ def sensed_run(
     """Channels of one run under the recording's base motion, as the instruments would record them."""
     misfit = explanation.fitted.misfit
     values = {**misfit.fixed, **explanation.fitted.values}
-    instruments = instruments_of(values)
     like = measured.shakings[0]
     shaking = recording.shaking(like.vertical is not None, vertical_acts=like.vertical_acts)
-    history = measured.model.simulate(
-        without_instruments(values),
-        moved(shaking, instruments),
+    predictor = misfit.predictor
+    sets = predictor.sets(instruments_of(values), recording)
+    history = simulate(
+        measured.model,
+        predictor.parts(values, recording),
+        moved_in_stages(shaking, sets),
         initial=dict(initial or {}) or None,
         duration=shaking.duration,
-        options=misfit.predictor.options,
+        options=predictor.options,
     )
     found = {c: np.asarray(history.channels[c]).reshape(-1) for c in channels}
     around = Surroundings(shaking.time_step, recording.channels[REQUIRED], measured.reference_peak)
-    return dict(recorded(found, instruments, around))
+    return dict(recorded_in_stages(found, sets, around))

@@ -17,9 +17,10 @@ from diagnosis.data.measured import Measured
 from diagnosis.data.windows import Window
 from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.unknowns import instruments_of, without_instruments
-from grids.instruments import moved
+from grids.instruments.staged import moved_in_stages
 from models.base import Event, FloatArray
 from models.identification import Count
+from models.piecewise import in_force, simulate
 
 
 def counted(predictor: Predictor, point: Point) -> Measured:
@@ -49,15 +50,16 @@ def _events(
 ) -> list[tuple[Event, ...]]:
     """Events along each piece, from its state on."""
     m = predictor.measured
-    values, instruments = without_instruments(point.values), instruments_of(point.values)
+    instruments = instruments_of(point.values)
     found = []
     for piece, state in zip(pieces, states, strict=True):
-        shaking = moved(m.shakings[piece.recording], instruments)
+        recording = m.recordings[piece.recording]
+        shaking = moved_in_stages(m.shakings[piece.recording], predictor.sets(instruments, recording))
         part = slice(piece.first, piece.first + piece.samples + 1)
         vertical = None if shaking.vertical is None else shaking.vertical[part]
         cut = replace(shaking, horizontal=shaking.horizontal[part], vertical=vertical)
         initial = {name: float(x) for name, x in zip(m.model.states, state, strict=True)}
-        found.append(
-            m.model.simulate(values, cut, initial=initial, duration=cut.duration, options=predictor.options).events
-        )
+        acting = in_force(predictor.parts(point.values, recording), piece.first)
+        ran = simulate(m.model, acting, cut, initial=initial, duration=cut.duration, options=predictor.options)
+        found.append(ran.events)
     return found

@@ -9,20 +9,20 @@ state (`models.piecewise`), and what instruments do to it changes at that sample
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.data.measured import Measured
 from diagnosis.fit.unknowns import instruments_of, without_instruments
-from grids.instruments.base import Channels, Surroundings, Switched
+from grids.instruments.base import Surroundings, Switched
+from grids.instruments.staged import moved_in_stages, recorded_in_stages
 from grids.instruments.windowed import moved_in_windows, recorded_in_windows, same_base, seconds_ahead
 from grids.recordings.base import Recording
 from grids.stages import Stage, changes, first_sample
 from models.base import FloatArray
-from models.errors import InputError
-from models.piecewise import trajectories
+from models.piecewise import Part, trajectories
 from models.shaking import Shaking
 
 
@@ -56,10 +56,9 @@ class Predictor:
             if not windows.size:
                 continue
             given = m.shakings[r] if shakings is None else shakings[r]
-            ways = self._ways(recording)
             for members in groups.values():
-                shaking = _moved(given, instruments[members[0]], ways)
-                self._run(points, members, windows, shaking, complete, recording.time_step, instruments, ways, out)
+                shaking = moved_in_stages(given, self.sets(instruments[members[0]], recording), moved_in_windows)
+                self._run(points, members, windows, shaking, complete, recording, instruments, out)
         return out
 
     def _complete(self, points: Sequence[Point]) -> list[dict[str, float]]:
@@ -87,12 +86,11 @@ class Predictor:
         windows: NDArray[np.intp],
         shaking: Shaking,
         complete: Sequence[Mapping[str, float]],
-        time_step: float,
+        recording: Recording,
         instruments: Sequence[Switched],
-        ways: Ways,
         out: FloatArray,
     ) -> None:
-        m = self.measured
+        m, time_step, ways = self.measured, recording.time_step, self._ways(recording)
         compared = max(m.windows[w].samples for w in windows)
         ahead = max(seconds_ahead(instruments[p]) for p in members)
         samples = compared + int(np.ceil(ahead / time_step))
@@ -112,15 +110,27 @@ class Predictor:
         around = Surroundings(time_step, base, m.reference_peak, start)
         for k, p in enumerate(members):
             true = {c: found[c][k] for c in m.channels}
-            recorded = _recorded(true, instruments[p], around, ways, m.first[windows])
+            recorded = recorded_in_stages(true, self.sets(instruments[p], recording), around, recorded_in_windows)
             for c, channel in enumerate(m.channels):
                 out[p, windows, c, :compared] = recorded[channel][:, :compared]
 
-    def _ways(self, recording: Recording) -> Ways:
+    def _ways(self, recording: Recording) -> list[tuple[int, frozenset[str]]]:
         """From which sample of a recording on which mechanisms with stages do not act."""
         step = recording.time_step
         found = changes(self.stages.keys(), self.stages, recording.name)
         return [(first_sample(time, step), frozenset(self.stages) - acting) for time, acting in found]
+
+    def sets(self, instruments: Switched, recording: Recording) -> list[tuple[int, Switched]]:
+        """From which sample of a recording on which of the instruments act."""
+        return [
+            (first, {name: values for name, values in instruments.items() if name not in off})
+            for first, off in self._ways(recording)
+        ]
+
+    def parts(self, values: Mapping[str, float], recording: Recording) -> list[Part]:
+        """A point's values of the wall from sample to sample of a recording."""
+        plain = without_instruments(values)
+        return [Part(first, self._values([plain], off, 1)) for first, off in self._ways(recording)]
 
     def _values(
         self, points: Sequence[Mapping[str, float]], off: frozenset[str], windows: int
@@ -134,37 +144,6 @@ class Predictor:
                 column[:] = self.measured.model.mechanisms[mechanism].parameter(parameter).null
             values[name] = column[0] if np.all(column == column[0]) else np.repeat(column, windows)
         return values
-
-
-Ways = Sequence[tuple[int, frozenset[str]]]
-"""From which sample of a recording on which mechanisms are off."""
-
-
-def _without(instruments: Switched, off: frozenset[str]) -> Switched:
-    return {name: values for name, values in instruments.items() if name not in off}
-
-
-def _moved(given: Shaking, instruments: Switched, ways: Ways) -> Shaking:
-    """The motion that the base makes, on the clock of the responses."""
-    moved = [moved_in_windows(given, _without(instruments, off)) for _, off in ways]
-    if any(one.time_step != moved[0].time_step for one in moved):
-        raise InputError("the clock of a recording cannot change within it; give 'clock' stages of whole recordings.")
-    horizontal = moved[0].horizontal.copy()
-    for (first, _), one in zip(ways[1:], moved[1:], strict=True):
-        horizontal[first:] = one.horizontal[first:]
-    return replace(moved[0], horizontal=horizontal)
-
-
-def _recorded(
-    true: Channels, instruments: Switched, around: Surroundings, ways: Ways, first: NDArray[np.int64]
-) -> Channels:
-    """Channels (W, N) as recorded in windows that begin at samples ``first`` of the recording."""
-    found = dict(recorded_in_windows(true, _without(instruments, ways[0][1]), around))
-    index = first[:, None] + np.arange(around.base_acceleration.shape[-1])
-    for begin, off in ways[1:]:
-        later = recorded_in_windows(true, _without(instruments, off), around)
-        found = {c: np.where(index >= begin, later[c], x) for c, x in found.items()}
-    return found
 
 
 def _held(channel: FloatArray, shaking: Shaking, first: NDArray[np.int64]) -> FloatArray:

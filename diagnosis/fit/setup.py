@@ -35,11 +35,6 @@ def measure(specimen: Specimen, recordings: Sequence[Recording], reference_peak:
     """
     if not recordings:
         raise InputError("no recording to learn from: name at least one.")
-    for name in specimen.stages:
-        raise InputError(
-            f"[mechanisms.{name}] has stages: a mechanism that is given acts always where parameters are fitted; leave "
-            "its stages out, or the mechanism for it to be found."
-        )
     model = models.get(specimen.model)
     windows = identification_of(model).windows
     lengths = None
@@ -52,7 +47,7 @@ def measure(specimen: Specimen, recordings: Sequence[Recording], reference_peak:
 
 def base_fit(specimen: Specimen, measured: Measured, seed: int = 0) -> Fitted:
     """The calibrated base: first against sensor noise alone, then with the noise of the base motion."""
-    predictor = Predictor(measured, specimen.options)
+    predictor = Predictor(measured, specimen.options, specimen.stages)
     unknowns = of_specimen(specimen, measured.model)
     plain = Misfit(predictor, sensor_noise_only(predictor), unknowns, fixed_values(specimen))
     first = calibrate_base(plain, seed)

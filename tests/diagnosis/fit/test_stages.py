@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import models
+from diagnosis.answer.whole_runs import sensed_run
 from diagnosis.fit.prediction import Point, Predictor
-from diagnosis.fit.setup import measure
+from diagnosis.fit.setup import base_fit, measure
+from diagnosis.search.refit import Explanation
 from grids.recordings.base import Recording
 from grids.stages import Stage
 from models.errors import InputError
@@ -70,3 +74,20 @@ def test_a_clock_cannot_change_within_a_recording() -> None:
     point = Point({**TRUE, "clock.rate": 0.01}, states[measured.first])
     with pytest.raises(InputError, match="clock"):
         Predictor(measured, stages={"clock": (Stage("shake_2", 2.0),)}).predict([point])
+
+
+def test_a_specimen_with_stages_is_fitted_as_it_acts() -> None:
+    recording, _ = made(600)
+    acts = replace(
+        SPECIMEN, mechanisms={"restitution": {"factor_on_housner": 0.9}, "offset": {"offset_over_peak": OFFSET}},
+        stages={name: (Stage("shake_2", 599.5 * TIME_STEP),) for name in ("restitution", "offset")}, reference_peak=1.0,
+    )  # fmt: skip
+    right = base_fit(acts, measure(acts, [recording]))
+    always = replace(acts, stages={})
+    assert right.loss < base_fit(always, measure(always, [recording])).loss - 1000.0
+    assert abs(right.values["width"] - TRUE["width"]) < 1e-4
+    explanation = Explanation((), right)
+    seen = sensed_run(explanation, right.measured, recording, ["rotation_1"])["rotation_1"]
+    peak = np.max(np.abs(recording.channels["rotation_1"]))
+    np.testing.assert_allclose(seen[:400], recording.channels["rotation_1"][:400], atol=0.02 * peak)
+    assert 598 <= int(np.argmax(np.abs(np.diff(seen, 2)))) <= 599  # the sensor's jump stands where it begins
