@@ -100,6 +100,8 @@ def _form(mechanism: Mechanism) -> str:
             for p in mechanism.parameters
         ),
     )
+    if mechanism.tabulated:
+        parameters = "In a specimen `file` names its table, and a study takes it with the specimen (see Plans)."
     source = f" Source: {mechanism.source}." if mechanism.source else ""
     return f"`{mechanism.equation}`.{source}\n\nLeft out, it shows: {mechanism.signature}.\n\n{parameters}"
 

@@ -36,6 +36,7 @@ from pydantic import Field
 from grids.consistency import check_laws, check_names
 from grids.files import Schema, check, parse_toml, read_text
 from grids.instruments import INSTRUMENTS
+from grids.law_table import read_law
 from grids.plan_checks import check_cells, check_vertical
 from grids.stages import Stage, StageTable, read_stages
 from grids.targets import Targets, find_model
@@ -99,13 +100,13 @@ def read_specimen(path: str | Path) -> Specimen:
     path = Path(path)
     text = read_text(path, "specimen")
     try:
-        return parse_specimen(text)
+        return parse_specimen(text, path.resolve().parent)
     except InputError as error:
         raise InputError(f"{path.name}: {error}") from None
 
 
-def parse_specimen(text: str) -> Specimen:
-    """The specimen of a TOML text. Raises InputError."""
+def parse_specimen(text: str, folder: Path = Path()) -> Specimen:
+    """The specimen of a TOML text, whose files lie in ``folder``. Raises InputError."""
     file = check(SpecimenFile, parse_toml(text))
     model = find_model(file.model, "model")
     targets = Targets(model, with_instruments=True)
@@ -117,7 +118,7 @@ def parse_specimen(text: str) -> Specimen:
             table = "[options]" if target.words else "[mechanisms]"
             raise InputError(f"{where}: this does not belong to [parameters]; put it in {table}.")
         parameters[name] = target.number(value, where)
-    mechanisms = _mechanisms(file, targets)
+    mechanisms = _mechanisms(file, targets, folder)
     calibrate = {name: _range(name, entry, targets) for name, entry in targets.flatten(file.calibrate).items()}
     known = {*parameters, *(f"{m}.{p}" for m, values in mechanisms.items() for p in values)}
     if twice := sorted(known & calibrate.keys()):
@@ -155,13 +156,16 @@ def _reference_peak(table: InstrumentsTable) -> float | None:
     return peak
 
 
-def _mechanisms(file: SpecimenFile, targets: Targets) -> dict[str, dict[str, float]]:
+def _mechanisms(file: SpecimenFile, targets: Targets, folder: Path) -> dict[str, dict[str, float]]:
     mechanisms: dict[str, dict[str, float]] = {}
     for name, table in file.mechanisms.items():
-        targets.mechanism(name, f"[mechanisms.{name}]")
+        mechanism = targets.mechanism(name, f"[mechanisms.{name}]")
         values = {parameter: value for parameter, value in table.items() if parameter != STAGES}
         if not values:
             raise InputError(f"[mechanisms.{name}] is empty; give its parameters or leave the table out.")
+        if mechanism.tabulated:
+            mechanisms[name] = _law(name, values, folder)
+            continue
         mechanisms[name] = {}
         for parameter, value in values.items():
             where = f"[mechanisms.{name}] {parameter}"
@@ -178,6 +182,13 @@ def _stages(file: SpecimenFile) -> dict[str, tuple[Stage, ...]]:
         if stages := read_stages(name, [check(StageTable, entry) for entry in entries]):
             found[name] = stages
     return found
+
+
+def _law(name: str, table: Mapping[str, Any], folder: Path) -> dict[str, float]:
+    """The values of a law in a table, from its file."""
+    if list(table) != ["file"] or not isinstance(table["file"], str):
+        raise InputError(f'[mechanisms.{name}] has {", ".join(table)}: give file = "law.csv", and nothing else.')
+    return read_law(folder / table["file"])
 
 
 def _tolerance(file: SpecimenFile, parameters: Mapping[str, float], targets: Targets) -> dict[str, float]:

@@ -7,11 +7,16 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
+from grids.law_table import LAW_FILE
 from grids.specimen import Specimen
+from models.mechanisms.table_force import MECHANISM as LAW
 
 
 def specimen_text(specimen: Specimen) -> str:
-    """The TOML that `grids.specimen.read_specimen` reads back equal: SI units, floats with all their digits."""
+    """The TOML that `grids.specimen.read_specimen` reads back equal: SI units, floats with all their digits.
+
+    A law in a table is named by its file, `grids.law_table.LAW_FILE`, which is written beside it.
+    """
     head = {"title": specimen.title, "model": specimen.model}
     tables: dict[str, Mapping[str, Any]] = {
         "parameters": specimen.parameters,
@@ -25,7 +30,8 @@ def specimen_text(specimen: Specimen) -> str:
     parts = [_lines(head)]
     parts += [f"[{name}]\n{_lines(table)}" for name, table in tables.items() if table or name == "parameters"]
     for name, values in specimen.mechanisms.items():
-        parts.append(f"[mechanisms.{name}]\n{_lines(values)}")
+        named = {"file": LAW_FILE} if name == LAW.name else values
+        parts.append(f"[mechanisms.{name}]\n{_lines(named)}")
         parts += [f"[[mechanisms.{name}.stages]]\n{_lines(vars(one))}" for one in specimen.stages.get(name, ())]
     return "\n".join(parts)
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.answer.phases import MOSTLY, phases, share_at_events
-from diagnosis.answer.result import Located
+from diagnosis.answer.result import Located, Visited
 from diagnosis.data.measured import Measured
 from diagnosis.forces.action import Action
 from models.base import FloatArray
@@ -22,6 +22,8 @@ LEAST = 0.01
 """Share of its largest value under which an action counts as none."""
 ROUNDING = 1e-9
 """Share of the largest rate under which an impulse is rounding."""
+MOST_POINTS = 500
+"""Samples of a law that are kept to be drawn."""
 PAUSE = 0.1
 """s that an action may pass through zero within one interval."""
 
@@ -64,6 +66,39 @@ def acts(measured: Measured, action: Action) -> tuple[Located, ...]:
                     )
                 )  # fmt: skip
     return tuple(sorted(found, key=lambda place: -place.share))
+
+
+def visited(measured: Measured, action: Action) -> Visited:
+    """The law of an effect as it acted: its force over the leading channel, its jump over the rate before, its error.
+
+    A jump is given over the rate after the event without the effect. At most MOST_POINTS samples, evenly chosen.
+    """
+    size = _relative(measured, action).sum(axis=1)
+    lead = measured.identification.leads[0].channel
+    unit = next(q.unit for q in measured.model.observables if q.name == lead)
+    inside = np.asarray(measured.mask.all(axis=1))
+    inside[:, :-1] &= inside[:, 1:]
+    inside[:, -1] = False
+    amount, rate = action.amount.sum(axis=1), action.motion.rate
+    step = np.array([measured.recordings[w.recording].time_step for w in measured.windows])[:, None]
+    at, over, at_unit = action.motion.coordinate, lead.replace("_", " "), unit
+    if action.kind == "error":
+        what, value, of_value = (
+            f"error of {lead.replace('_', ' ')}",
+            action.amount[:, measured.channels.index(lead)],
+            unit,
+        )
+    elif share_at_events(size, action.event) >= MOSTLY:
+        inside &= action.event
+        without = np.roll(rate, -1, axis=1) - amount
+        value = amount / np.where(np.abs(without) > ROUNDING, without, np.inf)
+        what, of_value, at, over, at_unit = "relative change of the rate", "1", rate, "rate before", f"{unit} s-1"
+    else:
+        inside &= ~action.event
+        what, value, of_value = "force over inertia", amount / step, f"{unit} s-2"
+    x, y = at[inside], value[inside]
+    some = slice(None, None, max(1, -(-x.size // MOST_POINTS)))
+    return Visited(action.effect, over, x[some], at_unit, what, y[some], of_value)
 
 
 def _relative(measured: Measured, action: Action) -> FloatArray:

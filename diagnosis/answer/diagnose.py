@@ -12,8 +12,9 @@ from diagnosis.answer.experiment import next_experiment
 from diagnosis.answer.heldout import Shown, compare, fit_figures, horizons, traces_of, windows_of
 from diagnosis.answer.judgement import explains, p_of_effects, p_of_missing, undecided, verdict_of
 from diagnosis.answer.located import located
+from diagnosis.answer.missing_force import missing_force
 from diagnosis.answer.rescale import over_peak, true_peak
-from diagnosis.answer.result import Diagnosis, Effect, Located, Rival, Screened
+from diagnosis.answer.result import Diagnosis, Effect, Located, Rival, Screened, Visited
 from diagnosis.answer.shows import shows
 from diagnosis.answer.statement import statement
 from diagnosis.answer.whole_runs import with_runs_from_rest
@@ -24,11 +25,11 @@ from diagnosis.fit.intervals import Estimate, estimates
 from diagnosis.fit.setup import measure
 from diagnosis.forces.columns import Forces, forces
 from diagnosis.forces.constancy import Tested, flags, tests
-from diagnosis.forces.missing_force import missing_force
 from diagnosis.progress import Progress, Stages, silent
 from diagnosis.search import bootstrap as bootstrapping
 from diagnosis.search.candidates import candidates
 from diagnosis.search.found import Search, misfit_per_sample, rivals
+from diagnosis.search.law import Law, estimate
 from diagnosis.search.refit import Explanation
 from diagnosis.search.select import search, take_best_single
 from diagnosis.search.weighing import evidence
@@ -108,15 +109,22 @@ def _assemble(
             lambda: bootstrapping.p_value(specimen, found, draws, seed, progress),
             lambda: score_p,
         )
+    law: Law | None = None
+    if verdict == "not_in_library" and not unexplained:
+        progress("the missing force as a model", 0.88)
+        law = stages.optional("the missing force as a model", lambda: estimate(chosen), lambda: None)
+    final = law.explanation if law else chosen
+    if law:
+        shown = [stages.needed(lambda: compare(found.base, final, measured))]
     effects, base = stages.optional(
         "the profile likelihood (the intervals are symmetric instead)",
-        lambda: _estimates(found, gains, p_value, progress),
-        lambda: _estimates(found, gains, p_value, None),
+        lambda: _estimates(found, final, gains, p_value, None if law else progress),
+        lambda: _estimates(found, final, gains, p_value, None),
     )
 
     def of_held(recordings: Measured) -> Shown:
         progress("before and after", 0.95)
-        return compare(found.base, chosen, recordings)
+        return compare(found.base, final, recordings)
 
     held = stages.needed(lambda: of_held(to_show)) if to_show else None
     if held:
@@ -127,21 +135,23 @@ def _assemble(
 
     explained = found.best is not None and verdict != "not_in_library"
 
-    def places() -> tuple[Located, ...]:
+    def places() -> tuple[tuple[Located, ...], tuple[Visited, ...]]:
         progress("where it acts", 0.97)
-        return located(found.base, chosen if explained else None, seed) if missing else ()
+        return located(found.base, chosen if explained else None, seed) if missing else ((), ())
 
     experiment, force = None, None
     if finished and verdict == "cannot_tell_apart":
         experiment = stages.optional("the next experiment", lambda: next_experiment(found, near), lambda: None)
-    if verdict == "not_in_library" and not unexplained:
-        force = stages.optional("the shape of the missing force", lambda: missing_force(about), lambda: None)
+    if law:
+        force = missing_force(found, law)
+    acting = stages.optional("where it acts", places, lambda: ((), ()))
     answer = Diagnosis(
         verdict=verdict,
         statement="",
         effects=effects,
         rivals=tuple(Rival(c.name, c.effect_class, gap) for _, c, gap in near),
-        located=stages.optional("where it acts", places, tuple),
+        located=acting[0],
+        visited=acting[1],
         shows=shows(shown[0], explained, seed) if missing else (),
         constancy=flagged,
         train=train,
@@ -154,7 +164,7 @@ def _assemble(
         windows=tuple(w for k, s in enumerate(shown) for w in windows_of(s, k == 1)),
         traces=stages.optional(
             "runs from rest",
-            lambda: with_runs_from_rest(specimen, shown, found.base, chosen),
+            lambda: with_runs_from_rest(specimen, shown, found.base, final),
             lambda: tuple(t for k, s in enumerate(shown) for t in traces_of(s, k == 1)),
         ),
         prediction_horizon=stages.optional("prediction horizons", lambda: _horizons(shown, specimen), dict),
@@ -172,10 +182,9 @@ def _assemble(
 
 
 def _estimates(
-    found: Search, gains: Sequence[float], p_missing: float | None, progress: Progress | None
+    found: Search, chosen: Explanation, gains: Sequence[float], p_missing: float | None, progress: Progress | None
 ) -> tuple[tuple[Effect, ...], dict[str, Estimate]]:
     """Effects, strongest first, and base parameters; by profile likelihood with a ``progress`` to call."""
-    chosen = found.chosen
     if progress:
         progress("intervals", 0.9)
     named = [x.name for c in chosen.candidates for x in c.unknowns[:1]]
@@ -192,7 +201,8 @@ def _estimates(
             parameters[short] = Estimate(value, value, value, candidate.mechanism.parameter(short).unit)
         parameters = over_peak(parameters, candidate, chosen.measured.reference_peak, peak)
         effects.append(Effect(candidate.name, candidate.effect_class, parameters, gain, chance))
-    return tuple(effects), values
+    tabulated = tuple(f"{name}." for name, m in chosen.measured.model.mechanisms.items() if m.tabulated)
+    return tuple(effects), {name: value for name, value in values.items() if not name.startswith(tabulated)}
 
 
 def _screened(found: Search) -> tuple[Screened, ...]:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from diagnosis.answer.acts import acts
+from diagnosis.answer.acts import acts, visited
 from diagnosis.answer.phases import EVERYWHERE
-from diagnosis.answer.result import Located
+from diagnosis.answer.result import Located, Visited
 from diagnosis.fit.solver import Fitted
 from diagnosis.forces.action import action
 from diagnosis.forces.columns import forces
@@ -14,19 +14,22 @@ from diagnosis.forces.scan import Missing, missing
 from diagnosis.search.refit import Explanation
 
 
-def located(base: Explanation, explained: Explanation | None, seed: int = 0) -> tuple[Located, ...]:
-    """Intervals by effect, recording and channel, the largest share first; ``explained``: an adequate model."""
+def located(
+    base: Explanation, explained: Explanation | None, seed: int = 0
+) -> tuple[tuple[Located, ...], tuple[Visited, ...]]:
+    """Intervals by effect, recording and channel, the largest share first, and the laws found over what was visited.
+
+    ``explained``: an adequate model; without one there are no laws.
+    """
     if explained is not None:
         fitted = explained.fitted
-        return tuple(
-            place
-            for name in explained.names
-            for place in acts(fitted.measured, action(fitted.misfit.predictor, fitted.point, name))
-        )
+        actions = [action(fitted.misfit.predictor, fitted.point, name) for name in explained.names]
+        places = tuple(place for one in actions for place in acts(fitted.measured, one))
+        return places, tuple(visited(fitted.measured, one) for one in actions)
     if not base.measured.identification.forces:
-        return ()
+        return (), ()
     found = missing(forces(base.fitted), seed)
-    return () if found is None else _without_a_name(base.fitted, found)
+    return (() if found is None else _without_a_name(base.fitted, found)), ()
 
 
 def _without_a_name(fitted: Fitted, found: Missing) -> tuple[Located, ...]:

@@ -73,6 +73,21 @@ class Located:
 
 
 @dataclass(frozen=True)
+class Visited:
+    """What a named effect does along the fitted motion: ``value`` (``what``, in ``unit``) ``over`` a variable ``at``
+    its values, arrays (n,).
+    """
+
+    effect: str
+    over: str
+    at: NDArray[np.float64]
+    at_unit: str
+    what: str
+    value: NDArray[np.float64]
+    unit: str
+
+
+@dataclass(frozen=True)
 class Fit:
     """Relative rms misfit over windows and channels before and after, on one set of recordings.
 
@@ -158,7 +173,9 @@ class Diagnosis:
     prediction_horizon: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """By recording: seconds until the prediction from a window's start leaves the noise, before and after."""
     missing_force: Mapping[str, Any] | None = None
-    """Shape of the force that is not in the library: terms along the motion and curves."""
+    """The force that is not in the library, as a law in a table (`diagnosis.answer.missing_force`)."""
+    visited: tuple[Visited, ...] = ()
+    """The force, jump or error of each named effect over what was visited."""
     reference_peak: float | None = None
     """Rotation (rad) over which levels of instruments among the effects are given; None without such an effect."""
     errors: ErrorModel | None = None

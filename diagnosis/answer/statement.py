@@ -48,6 +48,9 @@ def statement(found: Diagnosis, model: Model) -> str:
     if found.verdict == "not_in_library" and not found.unexplained:
         parts.append("That does not settle it: what is missing is not in the library of mechanisms.")
         parts += [_flag(flag, declared) for flag in _distinct(found.constancy)[:2]]
+        if found.missing_force:
+            what = " and a ".join(term["meaning"] for term in found.missing_force["terms"])
+            parts.append(f"A law in a table, estimated in its place, is part of extended.toml: a {what}.")
     if found.verdict == "cannot_tell_apart" and found.rivals:
         names = ", ".join(f"{r.name.replace('_', ' ')} ({r.evidence_gap:.1f} less)" for r in found.rivals)
         parts.append(f"These recordings cannot tell it apart from: {names}.")

@@ -56,6 +56,8 @@ class Misfit:
     whitening: Whitening
     unknowns: tuple[Unknown, ...]
     fixed: Mapping[str, float]
+    smooth: FloatArray | None = None
+    """Rows (p, k) of a prior smooth u ~ N(0, 1) on the coordinates, such as the bends of a curve."""
 
     @property
     def measured(self) -> Measured:
@@ -89,7 +91,10 @@ class Misfit:
                 slope = np.zeros(len(self.unknowns))
                 slope[i] = unknown.scale / sd
                 slopes.append(slope)
-        return np.array(rows), np.array(slopes).reshape(len(rows), len(self.unknowns))
+        found = np.array(rows), np.array(slopes).reshape(len(rows), len(self.unknowns))
+        if self.smooth is None:
+            return found
+        return np.concatenate([found[0], self.smooth @ u]), np.concatenate([found[1], self.smooth])
 
     def loss(self, u: FloatArray, states: FloatArray) -> float:
         return float(self.losses(self.residuals([self.point(u, states)])).sum()) + self.prior(u)

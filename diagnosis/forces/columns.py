@@ -57,17 +57,25 @@ class Forces:
         return self.screen.reduced(self.fitted.misfit.whitening(predicted))[0]
 
 
+def motion_of(fitted: Fitted) -> Motion:
+    """The leading coordinate along the windows of a fit."""
+    m = fitted.measured
+    lead = m.channels.index(m.identification.leads[0].channel)
+    coordinate = fitted.misfit.predictor.predict([fitted.point])[0][:, lead]
+    step = np.array([m.recordings[w.recording].time_step for w in m.windows])[:, None]
+    reach = float(np.max(np.abs(coordinate) * m.mask[:, lead]))
+    return Motion(coordinate, np.gradient(coordinate, axis=1) / step, m.base, reach)
+
+
 def forces(fitted: Fitted) -> Forces:
     """The force columns about a fit."""
     predictor, m = fitted.misfit.predictor, fitted.measured
-    lead = m.channels.index(m.identification.leads[0].channel)
-    mask = m.mask[:, lead]
-    coordinate = predictor.predict([fitted.point])[0][:, lead]
+    mask = m.mask[:, m.channels.index(m.identification.leads[0].channel)]
+    motion = motion_of(fitted)
     response = responses(predictor, fitted.point)
     step = np.array([m.recordings[w.recording].time_step for w in m.windows])[:, None]
-    since = np.arange(coordinate.shape[1])[None] * step
-    peak = np.asarray(np.max(np.abs(coordinate) * mask, axis=1, keepdims=True))
-    motion = Motion(coordinate, np.gradient(coordinate, axis=1) / step, m.base, float(np.max(peak)))
+    since = np.arange(motion.coordinate.shape[1])[None] * step
+    peak = np.asarray(np.max(np.abs(motion.coordinate) * mask, axis=1, keepdims=True))
     pulses = np.maximum(0.0, 1.0 - np.abs(since[:, None, :] - response.offset[None, :, None]) / HALF_WIDTH)
     pulses = pulses * mask[:, None, :]
     separation = m.identification.separation

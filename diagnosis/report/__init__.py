@@ -24,19 +24,27 @@ def write_answer(
 ) -> list[Path]:
     """Write ``diagnosis.json``, ``extended.toml``, ``fit.nc``, ``report.html`` and ``figures/`` to ``folder``.
 
+    ``law.csv`` is written too where a law in a table is part of the answer.
+
     ``specimen``, ``train`` and ``holdout`` are those the diagnosis was made of. Returns the paths,
     the figures as their folder. The small files come first, so that a full disk leaves the answer.
     """
     from diagnosis.report.page import report_page
     from diagnosis.report.pictures import pictures, write_figures
+    from grids.law_table import LAW_FILE, law_text
     from grids.write_specimen import specimen_text
+    from models.mechanisms.table_force import MECHANISM as LAW
     from study.store import write_text
 
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     paths = [folder / name for name in ("diagnosis.json", "extended.toml", "report.html")]
     write_text(paths[0], diagnosis_json(diagnosis))
-    write_text(paths[1], specimen_text(extend(specimen, diagnosis)))
+    extended = extend(specimen, diagnosis)
+    if LAW.name in extended.mechanisms:
+        write_text(folder / LAW_FILE, law_text(extended.mechanisms[LAW.name]))
+        paths.append(folder / LAW_FILE)
+    write_text(paths[1], specimen_text(extended))
     fit = write_fit(diagnosis, folder / "fit.nc")
     drawn = pictures(diagnosis, specimen, (*train, *holdout))
     write_text(paths[2], report_page(diagnosis, specimen, train, holdout, drawn))

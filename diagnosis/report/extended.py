@@ -32,6 +32,9 @@ def extend(specimen: Specimen, diagnosis: Diagnosis) -> Specimen:
         if not off.keys() & fitted.keys() and effect.name not in mechanisms:
             fitted = off | fitted  # what acts through a shape alone (a high-pass) names the effect's own value too
         mechanisms[effect.name] = mechanisms.get(effect.name, {}) | fitted
+    if diagnosis.missing_force:
+        form = next(name for name, mechanism in known.items() if mechanism.tabulated)
+        mechanisms[form] = dict(diagnosis.missing_force["parameters"])
     unknown = {name: ends for name, ends in specimen.calibrate.items() if name not in diagnosis.base}
     return replace(
         specimen,

@@ -29,6 +29,10 @@ def as_mapping(diagnosis: Diagnosis) -> dict[str, Any]:
         "suspicions": [
             {"recording": name, "suspicion": what} for name, all_of in diagnosis.suspicions.items() for what in all_of
         ],
+        "base": {name: _entry(asdict(value)) for name, value in diagnosis.base.items()},
+        "screen": _entries(diagnosis.screen),
+        "null_band": diagnosis.null_band,
+        "missing_force": diagnosis.missing_force,
         "p_value": diagnosis.p_value,
         "reference_peak": diagnosis.reference_peak,
         "fit": {

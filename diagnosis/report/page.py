@@ -13,6 +13,7 @@ from diagnosis.answer.heldout import HORIZON
 from diagnosis.answer.phases import words_of
 from diagnosis.answer.result import Diagnosis, Rival, Windows
 from diagnosis.data.measured import identification_of
+from diagnosis.data.windows import ABOVE_NOISE
 from diagnosis.fit.unknowns import library
 from diagnosis.report import words
 from grids.recordings import CHANNELS, Recording, noise_levels
@@ -85,6 +86,8 @@ def report_page(
             parameters=_parameters(diagnosis, specimen),
             pictures={name: picture.page() for name, picture in drawn.items()},
             most_places=MOST_PLACES,
+            compared=_compared(diagnosis, [*train, *holdout]),
+            above_noise=ABOVE_NOISE,
             held_out_names={trace.recording for trace in diagnosis.traces if trace.held_out},
         )
     )
@@ -134,6 +137,19 @@ def _rivals(diagnosis: Diagnosis, known: Mapping[str, Mechanism]) -> list[tuple[
     for rival in diagnosis.rivals:
         mechanism, estimate = known[rival.name], refitted.get(rival.name)
         found.append((rival, mechanism, mechanism.says(estimate) if estimate else mechanism.equation))
+    return found
+
+
+def _compared(diagnosis: Diagnosis, recordings: Sequence[Recording]) -> list[tuple[str, float]]:
+    """Recording by recording, the share of its time that lies in windows."""
+    found = []
+    for recording in recordings:
+        strips = [strip for strip in diagnosis.windows if strip.recording == recording.name]
+        if strips:
+            inside = np.zeros(recording.time.size, bool)
+            for start, end in zip(strips[0].start, strips[0].end, strict=True):
+                inside |= (recording.time >= start) & (recording.time < end)
+            found.append((recording.name, float(np.mean(inside))))
     return found
 
 

@@ -18,6 +18,8 @@ from diagnosis.report.figures import (
     plot_raster,
     plot_recording,
     plot_suspects,
+    plot_visited,
+    plot_worst_window,
 )
 from diagnosis.report.svg import Draw, Picture, picture
 from grids.recordings import Recording
@@ -39,13 +41,17 @@ def drawings(diagnosis: Diagnosis, specimen: Specimen, recordings: Sequence[Reco
     if any(trace.channel == lead for trace in diagnosis.traces):
         found["phase_plane"] = partial(plot_phase_plane, diagnosis.traces, diagnosis.windows, channel=lead)
     if diagnosis.screen:
-        named = {effect.name for effect in diagnosis.effects}
-        found["suspects"] = partial(plot_suspects, diagnosis.screen, diagnosis.null_band, named=named)
+        evidence = {effect.name: effect.evidence for effect in diagnosis.effects}
+        found["suspects"] = partial(plot_suspects, diagnosis.screen, diagnosis.null_band, evidence=evidence)
     found["fits"] = partial(plot_fits, diagnosis.train, diagnosis.holdout)
     for trace in diagnosis.traces:
         found[f"{trace.recording}_{trace.channel}"] = partial(plot_before_after, trace)
-    if diagnosis.missing_force and any(diagnosis.missing_force["curve"]["force"]):
+    if diagnosis.windows and diagnosis.traces:
+        found["worst_window"] = partial(plot_worst_window, diagnosis.traces, diagnosis.windows)
+    if diagnosis.missing_force:
         found["missing_force"] = partial(plot_missing_force, diagnosis.missing_force)
+    for law in diagnosis.visited:
+        found[f"law_{law.effect}"] = partial(plot_visited, law)
     if any(specimen.parameters.get(name) for name in diagnosis.base):
         found["parameters"] = partial(plot_parameters, diagnosis.base, specimen.parameters, specimen.tolerance)
     return found

@@ -93,6 +93,8 @@ def candidates(measured: Measured, specimen: Specimen) -> tuple[Candidate, ...]:
 
 
 def _usable(name: str, measured: Measured) -> bool:
+    if library(measured.model)[name].tabulated:
+        return False
     if name != "vertical_acceleration":
         return True
     return all(s.vertical is not None and not s.vertical_acts for s in measured.shakings)

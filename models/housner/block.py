@@ -6,9 +6,13 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.base import FloatArray, Values
 from models.housner.cantilever import modal_integrals
+
+REACHES = 3
+"""Columns of `Block.table` before its values."""
 
 
 @dataclass(frozen=True)
@@ -65,6 +69,8 @@ class Block:
     modal_mass: FloatArray
     modal_force: FloatArray
     modal_moment: FloatArray
+    # a law in a table, (n, columns) as `models.housner.lanes.table` reads it but reaches for spacings; (n, 0) without
+    table: FloatArray
 
     @property
     def size(self) -> int:
@@ -129,10 +135,18 @@ class Block:
             ("crushing", self.crushing_rate > 0.0, "wall_flexibility", bends),
             ("flexible_joint", self.joint_angle > 0.0, "wall_flexibility", bends),
             ("coulomb_damping", self.coulomb > 0.0, "wall_flexibility", bends),
+            ("table_force", self.tabulated, "sliding", slides),
+            ("table_force", self.tabulated, "bounce", bounces),
+            ("table_force", self.tabulated, "wall_flexibility", bends),
         ):
             if np.any(first & second):
                 found.append(f"{one} and {other} do not act together in this model: leave one of them out")
         return found
+
+    @property
+    def tabulated(self) -> NDArray[np.bool_]:
+        """Whether a law in a table acts (n,): its reaches alone do nothing."""
+        return np.asarray(np.any(self.table[:, REACHES:] != 0.0, axis=1))
 
     @property
     def plain(self) -> bool:
@@ -150,7 +164,7 @@ class Block:
             (self.friction, np.inf),
             (self.first_frequency, np.inf),
         )
-        return all(bool(np.all(values == null)) for values, null in nulls)
+        return all(bool(np.all(values == null)) for values, null in nulls) and not np.any(self.tabulated)
 
 
 def assemble(values: Values, vertical: bool, size: int | None = None) -> Block:
@@ -210,5 +224,6 @@ def assemble(values: Values, vertical: bool, size: int | None = None) -> Block:
         pitch_low_pass=np.full(shape, 10.0),
         friction=infinite,
         first_frequency=infinite,
+        table=np.zeros((int(np.prod(shape)), 0)),
         **modal_integrals(mass, height, top, value("top_mass_height", 0.0), value("top_mass_inertia", 0.0)),
     )

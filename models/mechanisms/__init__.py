@@ -20,6 +20,7 @@ from models.mechanisms import (
     restitution,
     rounded_corner,
     sliding,
+    table_force,
     table_pitch,
     tilt,
     velocity_restitution,
@@ -51,6 +52,7 @@ MECHANISMS: tuple[Mechanism, ...] = (
     *(law.mechanism for law in LAWS.values()),
     payne.MECHANISM,
     wall_flexibility.MECHANISM,
+    table_force.MECHANISM,
 )
 """In the order in which they act on a model's coefficients; one name stands twice where its equation has other
 parameters on other models."""

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from diagnosis.report.figures.before_after import plot_before_after
+from diagnosis.report.figures.before_after import plot_before_after, plot_worst_window
 from diagnosis.report.figures.fits import plot_fits
-from diagnosis.report.figures.missing_force import plot_missing_force
+from diagnosis.report.figures.missing_force import plot_missing_force, plot_visited
 from diagnosis.report.figures.parameters import plot_parameters
 from diagnosis.report.figures.phase_plane import plot_phase_plane
 from diagnosis.report.figures.raster import plot_raster
@@ -20,4 +20,6 @@ __all__ = [
     "plot_raster",
     "plot_recording",
     "plot_suspects",
+    "plot_visited",
+    "plot_worst_window",
 ]

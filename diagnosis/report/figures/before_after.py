@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 
-from diagnosis.answer.result import Trace
+from diagnosis.answer.result import Trace, Windows
 from diagnosis.report.figures.curve import FloatArray, thin
 from diagnosis.report.figures.palette import PAPER, Palette
 from diagnosis.report.figures.panels import WIDE, in_milli, is_narrow, legend, name_panel, new_panels
@@ -53,6 +55,27 @@ def plot_before_after(trace: Trace, *, width: float = WIDE, palette: Palette = P
     panels[-1].set_xlim(trace.time[0], trace.time[-1])
     panels[-1].set_xlabel("time [s]")
     return tuple(panels)
+
+
+def worst_window(windows: Sequence[Windows]) -> tuple[Windows, int]:
+    """The strip and the index of the window that the extended model misses most; held-out recordings first."""
+    held = [strip for strip in windows if strip.held_out and strip.after.size]
+    strips = held or [strip for strip in windows if strip.after.size]
+    strip = max(strips, key=lambda one: float(one.after.max()))
+    return strip, int(np.argmax(strip.after))
+
+
+def plot_worst_window(
+    traces: Sequence[Trace], windows: Sequence[Windows], *, width: float = WIDE, palette: Palette = PAPER
+) -> tuple[Axes, ...]:
+    """Draw measurement, both predictions and their residuals in the window that the extended model misses most."""
+    strip, k = worst_window(windows)
+    trace = next(t for t in traces if (t.recording, t.channel) == (strip.recording, strip.channel))
+    inside = (trace.time >= strip.start[k]) & (trace.time < strip.end[k])
+    cut = {name: getattr(trace, name)[inside] for name in ("time", "measured", "before", "after")}
+    return plot_before_after(
+        replace(trace, **cut, from_rest_before=None, from_rest_after=None), width=width, palette=palette
+    )
 
 
 def _curve(ax: Axes, trace: Trace, values: FloatArray, narrow: bool, **style: Any) -> None:

@@ -1,4 +1,4 @@
-"""The force that no mechanism of the library gives, over the rotation."""
+"""The laws that were found: the one in a table with its band, and what a named effect does along the motion."""
 
 from __future__ import annotations
 
@@ -8,17 +8,50 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
+from diagnosis.answer.result import Visited
 from diagnosis.report.figures.palette import PAPER, Palette
-from diagnosis.report.figures.panels import WIDE, in_milli, new_panels
+from diagnosis.report.figures.panels import WIDE, in_milli, legend, name_panel, new_panels
+
+PANEL = 2.8
+"""Inches."""
 
 
-def plot_missing_force(force: Mapping[str, Any], *, width: float = WIDE, palette: Palette = PAPER) -> Axes:
-    """Draw the ``curve`` of a missing force: at zero velocity, as an equivalent base acceleration."""
-    (ax,) = new_panels([2.8], width, palette, below=0.5)
-    rotation, unit = in_milli(np.asarray(force["curve"]["rotation"], float), "rad")
+def plot_missing_force(force: Mapping[str, Any], *, width: float = WIDE, palette: Palette = PAPER) -> tuple[Axes, ...]:
+    """Draw each table of a law: its values with the 95 % band, and the nearest law of the library."""
+    panels = new_panels([PANEL] * len(force["terms"]), width, palette, below=0.5)
+    for ax, term in zip(panels, force["terms"], strict=True):
+        at, unit = in_milli(np.asarray(term["at"], float), term["variable_unit"])
+        half = at.size // 2
+        for side in (slice(0, half), slice(half, None)):  # it may jump at zero
+            first = side.start == 0
+            ax.fill_between(at[side], term["low95"][side], term["high95"][side], color=palette.band, zorder=0,
+                            label="95 %" if first else None)  # fmt: skip
+            ax.plot(at[side], term["value"][side], color=palette.accent, linewidth=1.8, zorder=3,
+                    label="found" if first else None)  # fmt: skip
+            if term["nearest"] is not None:
+                near = np.array([np.nan if v is None else v for v in term["nearest"][side]], float)
+                ax.plot(at[side], near, color=palette.before, linewidth=1.4, linestyle=(0, (4, 2)), zorder=2,
+                        label=force["nearest"].replace("_", " ") if first else None)  # fmt: skip
+        _cross(ax, palette)
+        name_panel(ax, term["meaning"], palette)
+        ax.set_xlabel(f"{term['variable']} [{unit}]")
+        ax.set_ylabel(f"[{in_milli(at, term['unit'])[1]}]" if term["unit"] != "1" else "")
+    legend(panels[0], palette)
+    return tuple(panels)
+
+
+def plot_visited(law: Visited, *, width: float = WIDE, palette: Palette = PAPER) -> Axes:
+    """Draw what a named effect does at every sample of the fitted motion, over what it depends on."""
+    (ax,) = new_panels([PANEL], width, palette, below=0.5)
+    x, unit = in_milli(law.at, law.at_unit)
+    y, of_y = in_milli(law.value, law.unit)
+    ax.plot(x, y, ".", color=palette.accent, markersize=3.0, linestyle="none")
+    _cross(ax, palette)
+    ax.set_xlabel(f"{law.over} [{unit}]")
+    ax.set_ylabel(f"{law.what} [{of_y}]" if law.unit != "1" else law.what)
+    return ax
+
+
+def _cross(ax: Axes, palette: Palette) -> None:
     ax.axhline(0.0, color=palette.faint, linewidth=1.0, zorder=0)
     ax.axvline(0.0, color=palette.faint, linewidth=1.0, zorder=0)
-    ax.plot(rotation, force["curve"]["force"], color=palette.accent, linewidth=1.8)
-    ax.set_xlabel(f"rotation [{unit}]")
-    ax.set_ylabel(f"force [{in_milli(rotation, force['unit'])[1]}]")
-    return ax

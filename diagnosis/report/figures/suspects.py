@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -26,15 +26,17 @@ def plot_suspects(
     screen: Sequence[Screened],
     null_band: float,
     *,
-    named: Collection[str] = (),
+    evidence: Mapping[str, float] | None = None,
     width: float = WIDE,
     palette: Palette = PAPER,
 ) -> Axes:
     """Draw the evidence (gain in 2 log likelihood, logarithmic) of the strongest suspects.
 
     Hollow: the score, a forecast without a refit; full: the gain of the refit. The band is what
-    chance alone stays within 95 times in 100. ``named`` are the effects of the answer, in bold.
+    chance alone stays within 95 times in 100. ``evidence``: of the effects of the answer, in bold; of several it is
+    that of each beside the others, a diamond, where the gain is that of each alone.
     """
+    named = evidence or {}
     shown = order_of(screen)[:MOST]
     (ax,) = new_panels([0.36 * max(len(shown), 2) + 1.1], width, palette)
     ax.set_xscale("log")
@@ -47,8 +49,12 @@ def plot_suspects(
             ax.plot([LEAST, max(gain, LEAST)], [row, row], color=colour, linewidth=2.0, zorder=2)
             ax.plot(max(gain, LEAST), row, "o", color=colour, markersize=8, zorder=3)
         ax.plot(score, row, "o", markerfacecolor="none", markeredgecolor=palette.before, markersize=8, zorder=4)
+        if len(named) > 1 and suspect.name in named:
+            ax.plot(max(named[suspect.name], LEAST), row, "D", color=palette.ink, markersize=7, zorder=5)
     if named:
         ax.plot([], [], "o", color=palette.accent, markersize=8, label="found")
+    if len(named) > 1:
+        ax.plot([], [], "D", color=palette.ink, markersize=7, label="beside the others", linestyle="none")
     ax.plot([], [], "o", color=palette.before, markersize=8, label="refitted")
     ax.plot([], [], "o", markerfacecolor="none", markeredgecolor=palette.before, markersize=8, label="forecast")
     ax.set_yticks(rows, [suspect.name.replace("_", " ") for suspect in shown])
@@ -56,7 +62,7 @@ def plot_suspects(
         text.set_fontweight("bold" if suspect.name in named else "normal")
     ax.tick_params(axis="y", length=0)
     ax.set_ylim(-0.7, len(shown) - 0.3)
-    top = max([null_band, *(max(s.score, s.gain or 0.0) for s in shown)], default=1.0)
+    top = max([null_band, *named.values(), *(max(s.score, s.gain or 0.0) for s in shown)], default=1.0)
     ax.set_xlim(LEAST, 2.0 * top)
     ticks = [t for t in (1, 10, 100, 1000, 10_000, 100_000, 1_000_000) if t < 2.0 * top]
     ax.set_xticks(ticks, [f"{t:,}".replace(",", " ") for t in ticks])

@@ -88,6 +88,8 @@ def start(given: Table, result: Table, w: Table, lane: int, slot: int, time: flo
     w[r.QUADRATIC, slot] = given[lane, r.Q_QUADRATIC]
     w[r.PITCH, slot] = given[lane, r.Q_PITCH] * given[lane, r.Q_SCALE]
     w[r.DEMAND, slot], w[r.WORK, slot], w[r.WORK_STEP, slot] = 0.0, 0.0, 0.0
+    for k in range(given.shape[1] - r.N_GIVEN):
+        w[r.TABLE + k, slot] = given[lane, r.N_GIVEN + k]
     theta, omega = given[lane, r.Q_THETA], given[lane, r.Q_OMEGA]
     w[r.TH, slot], w[r.OM, slot] = theta, omega
     w[r.PEAK, slot] = max(given[lane, r.Q_PEAK], abs(theta))

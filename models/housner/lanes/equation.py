@@ -1,7 +1,8 @@
 """The equation of motion and one Runge-Kutta step of one lane; inlined into the loop over lanes.
 
 Each function takes ``general`` and ``linear`` as None or True: a compiled variant holds only the
-branch in use. With x = (h cos + s b sin) M/I_O and z = (s b cos - h sin) M/I_O
+branch in use. A ``general`` of 1 knows a law in a table too.
+With x = (h cos + s b sin) M/I_O and z = (s b cos - h sin) M/I_O
 
     plain    theta'' = -(G z + a x)
     linear   the same with x = h M/I_O and z = (s b - h theta) M/I_O
@@ -16,6 +17,7 @@ from __future__ import annotations
 from typing import Any
 
 from models.housner.lanes import rows as r
+from models.housner.lanes.table import table_acceleration
 from models.lanes.arrays import Table
 from models.lanes.compiler import inlined
 from models.lanes.elementary import exponential_decay, sine_cosine
@@ -57,6 +59,7 @@ def acceleration(
         damping = (
             corner * (w[r.VISCOUS, lane] * omega + w[r.QUADRATIC, lane] * omega * abs(omega))
             + w[r.COULOMB, lane] * w[r.DIRECTION, lane]
+            - corner * table_acceleration(w, r.TABLE, lane, theta, omega, a, s, general)
         )
         # rounding must not tell the general equation at its nulls from the plain one by more than an ulp or two
         moment = (a - g * psi) * x + g * share * z + rho * z * omega * omega

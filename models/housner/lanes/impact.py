@@ -6,6 +6,7 @@ import math
 
 from models.housner.lanes import rows as r
 from models.housner.lanes.equation import MOST_INSET
+from models.housner.lanes.table import IMPACT, of_given
 from models.lanes.arrays import Table
 from models.lanes.compiler import inlined
 
@@ -34,6 +35,8 @@ def restitution(given: Table, result: Table, w: Table, lane: int, slot: int, sid
         e *= (result[lane, r.R_SWING] / result[lane, r.R_PEAK]) ** exponent
     e *= 1.0 - given[lane, r.Q_SLOPE] * abs(omega) / (given[lane, r.Q_P] * given[lane, r.Q_ALPHA])
     e *= max(given[lane, r.Q_FLOOR], 1.0 - given[lane, r.Q_LOSS] * result[lane, r.R_IMPACTS])
+    if given.shape[1] > r.N_GIVEN:
+        e *= 1.0 + of_given(given, r.N_GIVEN, IMPACT, lane, omega * given[lane, r.N_GIVEN + 1])
     square = inertia + mass * height * height
     neutral = math.sqrt((square + mass * old * old) / (square + mass * new * new))
     return float(min(max(e, 0.0), neutral))

@@ -13,6 +13,8 @@ m s-2, times in s; couples, moments and work over M, so in m2 s-2.
 
 from __future__ import annotations
 
+from models.housner.lanes.table import N_TABLE
+
 W = 16
 """Lanes under way together: two full 512-bit or four 256-bit vectors."""
 
@@ -43,7 +45,8 @@ Z, Z1 = 41, 42  # in flight: z and z' of the mass centre
 START, START0 = 43, 44  # fraction of the coming step that is over already; of the step just taken
 ROUNDS = 45  # impacts so far within this step of the record
 TURN = 46  # a turning point matters when |theta| exceeds this: the peak so far, or always (-1)
-N_WORK = 47
+TABLE = 47  # a law in a table, as in `models.housner.lanes.table`
+N_WORK = TABLE + N_TABLE
 
 # --- given: constants of a lane
 (

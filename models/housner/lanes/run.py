@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.base import FloatArray
-from models.housner.block import Block
+from models.housner.block import REACHES, Block
 from models.housner.declaration import REST_VELOCITY
 from models.housner.lanes import rows as r
 from models.housner.lanes.advance import advance
+from models.housner.lanes.table import KNOTS
 from models.housner.pitch import pitch
 from models.lanes.record import recorded
 from models.lanes.tables import empty, filled, groups, logged, put
@@ -89,7 +90,11 @@ def given_table(block: Block, scale: FloatArray, initial: Mapping[str, FloatArra
         (r.Q_PEAK, initial.get("peak_rotation_1", 0.0)),
         (r.Q_IMPACTS, initial.get("impacts", 0.0)),
     )
-    return filled(block.size, r.N_GIVEN, constants)
+    found = filled(block.size, r.N_GIVEN, constants)
+    if not np.any(block.tabulated):
+        return found
+    spacings = (KNOTS - 1) / block.table[:, :REACHES]
+    return np.concatenate([found, spacings, block.table[:, REACHES:]], axis=1)
 
 
 def run(block: Block, request: Request, refinement: int = 1) -> Run:
@@ -107,9 +112,10 @@ def run(block: Block, request: Request, refinement: int = 1) -> Run:
         record = recorded(shaking, per_sample, request.tail, psi)
         first, last = asked.steps(per_sample, record.end)
         tables = empty(asked, r.N_RESULT, 3)
+        general = None if part.plain else 1 if np.any(part.tabulated) else True
         steps += advance(
             record, first, last, given_table(part, asked.scale, asked.initial), tables,
-            per_sample if asked.history else 0, asked.history, None if part.plain else True,
+            per_sample if asked.history else 0, asked.history, general,
             True if request.linear else None,
         )  # fmt: skip
         put(found, lanes, tables)

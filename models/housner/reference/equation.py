@@ -14,7 +14,7 @@ p^2 = M g R / I_O. q = 1 - exp(-|theta|/joint_angle) in a flexible joint, else 1
 crushed corner is min(.35, crushing_rate * largest |theta| so far), on both sides; the present contact
 point is taken as the centre of rotation.
 couples = -stiffness (|theta| - gap)+ s - I_O viscous theta' - I_O quadratic theta' |theta'|
-          - coulomb sign(theta'), with I_O = I + M (h^2 + (b' + rho)^2) about the corner.
+          - coulomb sign(theta') + I_O times the law in a table, I_O = I + M (h^2 + (b' + rho)^2) about the corner.
 
 Linear formulation: X_t = R, Z_t = s R alpha - (R - rho) theta, J = I + M R^2, no theta'^2 term, with
 R and alpha of the present contact: theta'' = -(M R/I_O) [G (alpha s - theta) + a].
@@ -25,6 +25,7 @@ from __future__ import annotations
 import math
 
 from models.housner.block import Block
+from models.housner.reference.table import LawInTable
 
 MOST_INSET = 0.35
 
@@ -46,6 +47,7 @@ class Equation:
         self.stiffness, self.gap = float(block.stiffness[0]), float(block.gap[0])
         self.viscous, self.quadratic = float(block.viscous[0]), float(block.quadratic[0])
         self.coulomb = float(block.coulomb[0])
+        self.table = LawInTable(block.table[0]) if bool(block.tabulated[0]) else None
         self.base_inertia = self.inertia + self.mass * self.height**2
         self.alpha = float(block.slenderness[0])
         self.frequency_parameter = float(block.frequency_parameter[0])
@@ -93,11 +95,19 @@ class Equation:
         corner = self.half_width(side, max(largest, abs(theta))) + self.rho
         drag = (self.base_inertia + self.mass * corner**2) * (self.viscous + self.quadratic * abs(rate))
         couple = drag * rate + direction * self.coulomb
+        if self.table is not None:
+            law = self.table.acceleration(theta, rate, ground[0], side, direction)
+            couple -= (self.base_inertia + self.mass * corner**2) * law
         return (moment - couple) / inertia, couple * rate
 
     def excess(self, side: int, largest: float, ground: tuple[float, float, float]) -> float:
         """Moment (N m) by which the block at rest starts to turn towards ``side``; <= 0: it stays."""
         moment, _ = self.moment(0.0, 0.0, side, largest, ground)
+        if self.table is not None:
+            corner = self.half_width(side, largest) + self.rho
+            moment += (self.base_inertia + self.mass * corner**2) * self.table.acceleration(
+                0.0, 0.0, ground[0], side, side
+            )
         return side * moment - self.coulomb
 
     def friction_demand(

@@ -25,6 +25,7 @@ import numpy as np
 
 from models.base import FloatArray
 from models.housner.block import Block
+from models.housner.reference.table import LawInTable
 
 
 def momentum_restitution(block: Block, old: FloatArray, new: FloatArray) -> FloatArray:
@@ -58,6 +59,8 @@ def restitution(
         * (1.0 - block.velocity_slope * speed)
         * worn
     )
+    for lane in np.flatnonzero(block.tabulated):
+        ratio[lane] *= 1.0 + LawInTable(block.table[lane]).at_impact(float(np.broadcast_to(rate, ratio.shape)[lane]))
     square = block.inertia + block.mass * block.height**2
     neutral = np.sqrt((square + block.mass * old**2) / (square + block.mass * new**2))
     return np.clip(ratio, 0.0, neutral)

@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 
 import models
-from diagnosis.answer.result import Diagnosis, Effect, Fit, Located, Rival, Screened, Trace, Verdict, Windows
+from diagnosis.answer.result import Diagnosis, Effect, Fit, Located, Rival, Screened, Trace, Verdict, Visited, Windows
 from diagnosis.fit.intervals import Estimate
 from diagnosis.forces.constancy import Constancy
 from grids.motions import read_motion
 from grids.recordings import Recording
 from grids.specimen import Specimen
+from models.mechanisms.table_force import KNOTS, MECHANISM, SIDES, row
 
 WIDTH, HEIGHT, MASS = 0.25, 1.1, 120.0
 INSET = 0.12
@@ -27,20 +28,33 @@ REPEAT = {
     "sensor": {"channel": "displacement_1_x", "noise": "1% of its peak", "expected_evidence": 12.0},
     "static_test": "calibrate the accelerometer of the base",
 }
+AT = [-0.05, -0.04, -0.03, -0.02, -0.01, 0.0, 0.0, 0.01, 0.02, 0.03, 0.04, 0.05]
 FORCE = {
-    "unit": "m s-2",
     "terms": [
         {
-            "kind": "stiffness",
-            "meaning": "couple with the rotation",
-            "depends_on": "side",
-            "coefficient": 0.021,
-            "standard_error": 0.004,
-            "gain": 38.0,
+            "term": "rotation",
+            "meaning": "couple over the inertia that depends on the rotation",
+            "unit": "rad s-2",
+            "variable": "rotation",
+            "variable_unit": "rad",
+            "at": AT,
+            "value": [0.4 * abs(x) for x in AT],
+            "low95": [0.4 * abs(x) - 0.002 for x in AT],
+            "high95": [0.4 * abs(x) + 0.002 for x in AT],
+            "evidence": 38.0,
+            "nearest": [None, *(0.3 * x for x in AT[1:])],
         },
     ],
-    "curve": {"rotation": [-0.05, 0.0, 0.05], "force": [0.021, 0.0, 0.021]},
+    "nearest": "added_stiffness",
+    "parameters": MECHANISM.nulls
+    | {"reach_rotation": 0.05}
+    | {row("rotation", side, k): 0.004 * k for side in SIDES for k in range(KNOTS)},
 }
+
+VISITED = Visited(
+    "pivot_inset", "rotation 1", np.linspace(-0.05, 0.05, 80), "rad", "force over inertia",
+    0.4 * np.sign(np.linspace(-0.05, 0.05, 80)), "rad s-2",
+)  # fmt: skip
 
 
 def specimen() -> Specimen:
@@ -92,9 +106,9 @@ def _predict(recording: Recording, starts: np.ndarray, inset: float) -> np.ndarr
         initial={name: truth[name][starts] for name in ("rotation_1", "rotation_rate_1")},
     )[CHANNEL]
     filled = np.full(recording.time.size, np.nan)
-    for start, row in zip(starts, ran, strict=True):
+    for start, part in zip(starts, ran, strict=True):
         end = min(start + samples, filled.size)
-        filled[start:end] = row[: end - start]
+        filled[start:end] = part[: end - start]
     return filled
 
 
@@ -218,5 +232,6 @@ def diagnosis(verdict: Verdict = "missing") -> Diagnosis:
         traces=tuple(t for t, _ in parts),
         prediction_horizon={r.name: (0.35, 1.9) for r in recordings()},
         missing_force=FORCE if verdict == "not_in_library" else None,
+        visited=(VISITED,) if missing else (),
         provenance={"model": "housner", "commit": "0123abc", "seconds": 31.2, "versions": {"rocking-study": "0.1.0"}},
     )

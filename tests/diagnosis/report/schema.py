@@ -140,6 +140,34 @@ class ErrorsPart(Part):
     still_seconds: float
 
 
+class ScreenPart(Part):
+    name: str
+    effect_class: str = Field(alias="class")
+    score: float
+    gain: float | None
+    estimate: dict[str, float | None] | None
+
+
+class TablePart(Part):
+    term: str
+    meaning: str
+    unit: str
+    variable: str
+    variable_unit: str
+    at: list[float]
+    value: list[float]
+    low95: list[float]
+    high95: list[float]
+    evidence: float
+    nearest: list[float | None] | None
+
+
+class MissingForcePart(Part):
+    terms: list[TablePart]
+    nearest: str | None
+    parameters: dict[str, float]
+
+
 class AnswerFile(Part):
     verdict: Literal["missing", "nothing_missing", "not_in_library", "cannot_tell_apart"]
     effects: list[EffectPart]
@@ -149,6 +177,10 @@ class AnswerFile(Part):
     constancy: list[ConstancyPart]
     undecided: UndecidedPart | None
     suspicions: list[SuspicionPart]
+    base: dict[str, ParameterPart]
+    screen: list[ScreenPart]
+    null_band: float
+    missing_force: MissingForcePart | None
     p_value: float | None = Field(ge=1e-6, le=1.0)
     reference_peak: float | None
     fit: FitPart

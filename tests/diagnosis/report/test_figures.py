@@ -58,7 +58,7 @@ def test_noise_is_read_from_windows() -> None:
 
 def test_suspects_are_in_order_and_the_found_one_bold() -> None:
     found = diagnosis()
-    ax = plot_suspects(found.screen, found.null_band, named={"pivot_inset"})
+    ax = plot_suspects(found.screen, found.null_band, evidence={"pivot_inset": 1480.0})
     names = [text.get_text() for text in ax.get_yticklabels()]
     assert names[:2] == ["pivot inset", "rounded corner"]
     bold = [text.get_text() for text in ax.get_yticklabels() if text.get_fontweight() == "bold"]

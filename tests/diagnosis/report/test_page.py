@@ -104,7 +104,7 @@ def test_page_says_what_was_found(verdict: Verdict) -> None:
         assert found.next_experiment["static_test"] in words and "46" in words
     assert ("extended.toml" in words) and ("Traceback" not in words) and ("None" not in words)
     if found.missing_force:
-        assert "couple with the rotation" in words
+        assert "depends on the rotation" in words
     assert ("What does not stay the same" in words) == bool(found.constancy)
 
 

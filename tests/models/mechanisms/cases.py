@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -12,6 +13,7 @@ import models
 from models.base import FloatArray
 from models.housner.lanes import run as lanes
 from models.housner.reference import run as reference
+from models.mechanisms.table_force import KNOTS, SIDES, row
 from models.runs import Request, Run
 from models.shaking import Shaking
 
@@ -39,7 +41,17 @@ TYPICAL: dict[str, dict[str, float]] = {
     "quadratic_damping": {"coefficient": 2.0},
     "degradation": {"loss_of_restitution_per_impact": 0.02, "floor": 0.8},
     "wall_flexibility": {"first_frequency": 12.0},
-}
+    "table_force": {"reach_rotation": 0.1, "reach_rate": 0.4, "reach_base": 4.0}
+    | {
+        row(term, side, knot): size * math.sin(2.0 * knot + len(term) + (side == "above")) * (knot > 0 or jumps)
+        for term, size, jumps in (
+            ("rotation", 0.1, True), ("rate", 0.05, False), ("damping", 0.1, True), ("base", 0.1, False),
+            ("impact", 0.03, True),
+        )
+        for side in SIDES
+        for knot in range(KNOTS)
+    },
+}  # fmt: skip
 
 
 def dotted(name: str, values: Mapping[str, Any]) -> dict[str, Any]:

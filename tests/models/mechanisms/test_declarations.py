@@ -7,6 +7,7 @@ from models.mechanisms import MECHANISMS
 from tests.models.mechanisms.cases import HOUSNER, TYPICAL, WALL, dotted
 
 INF = np.inf
+OF_A_TABLE = "table_force"
 TABLE = {
     "vertical_acceleration": ("vertical_acceleration", {"kappa": (0, 0, 1.5)}),
     "sliding": ("sliding", {"friction": (INF, 0.03, 1.5)}),
@@ -45,7 +46,8 @@ def test_a_mechanism_is_declared_as_in_the_catalogue(name: str) -> None:
 
 def test_nothing_acts_that_the_catalogue_does_not_name() -> None:
     assert list(HOUSNER.mechanisms) == [m.name for m in MECHANISMS if "housner" in m.acts]
-    assert set(HOUSNER.mechanisms) == set(TABLE) == set(TYPICAL)
+    assert set(HOUSNER.mechanisms) == {*TABLE, OF_A_TABLE} == set(TYPICAL)
+    assert [name for name, form in HOUSNER.mechanisms.items() if form.tabulated] == [OF_A_TABLE]
 
 
 @pytest.mark.parametrize("name", TABLE)

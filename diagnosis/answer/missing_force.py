@@ -1,0 +1,78 @@
+"""The law in a table as a report shows it: curves with bands, and what the nearest law of the library does instead."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from diagnosis.forces.action import Action, action
+from diagnosis.search.found import Search, adjusted
+from diagnosis.search.law import Law, Table
+from diagnosis.search.refit import Explanation
+from grids.instruments import INSTRUMENTS
+from models.base import FloatArray
+from models.mechanisms.table_force import KNOTS, REACHES, TERMS
+
+
+def missing_force(found: Search, law: Law) -> Mapping[str, Any]:
+    """``terms``: curves with 95 % bands and evidence; ``nearest``: the best single mechanism, and its curve in each
+    term; ``parameters``: every value of the law, by name."""
+    singles = [e for e in found.singles if e.names[0] not in INSTRUMENTS]
+    nearest = min(singles, key=adjusted) if singles else None
+    acting = _action(nearest) if nearest else None
+    terms = []
+    for table in law.tables:
+        variable, meaning, unit = TERMS[table.term]
+        terms.append(
+            {
+                "term": table.term, "meaning": meaning, "unit": unit, "variable": variable,
+                "variable_unit": REACHES[variable][1], "at": table.at.tolist(), "value": table.value.tolist(),
+                "low95": table.low95.tolist(), "high95": table.high95.tolist(), "evidence": table.evidence,
+                "nearest": None if acting is None or nearest is None else _curve(nearest, acting, table),
+            }
+        )  # fmt: skip
+    return {"terms": terms, "nearest": nearest.names[0] if nearest else None, "parameters": law.values}
+
+
+def _action(explanation: Explanation) -> Action:
+    return action(explanation.fitted.misfit.predictor, explanation.fitted.point, explanation.names[0])
+
+
+def _curve(explanation: Explanation, acting: Action, table: Table) -> list[float | None]:
+    """What the effect does on average at each row of a table, in the table's own unit; None where it was not.
+
+    Forces over one factor (a rate) are fitted as that factor times the row; what acts at events is the relative
+    change of the rate.
+    """
+    m = explanation.measured
+    step = np.array([m.recordings[w.recording].time_step for w in m.windows])[:, None]
+    inside = np.asarray(m.mask.any(axis=1))
+    inside[:, :-1] &= inside[:, 1:]
+    inside[:, -1] = False
+    motion, impulse = acting.motion, acting.amount.sum(axis=1)
+    variable, _, unit = TERMS[table.term]
+    x = {"rotation": motion.coordinate, "rate": motion.rate, "base": motion.base}[variable]
+    if unit == "1":
+        after = np.roll(motion.rate, -1, axis=1)
+        inside &= acting.event & (after != impulse)
+        value, weight = impulse / np.where(inside, after - impulse, 1.0), np.ones_like(x)
+    else:
+        inside &= ~acting.event
+        factor = motion.rate if unit == "s-1" else np.ones_like(x)
+        value, weight = impulse / step * factor, factor**2
+    found = _averages(x[inside], value[inside], weight[inside], table.at)
+    return [None if np.isnan(v) else float(v) for v in found]
+
+
+def _averages(x: FloatArray, value: FloatArray, weight: FloatArray, at: FloatArray) -> FloatArray:
+    """Weighted means of ``value`` around the rows ``at``, each side of zero on its own; nan without samples."""
+    found = np.full(at.size, np.nan)
+    spacing = at[-1] / (KNOTS - 1)
+    for k, centre in enumerate(at):
+        side = -1.0 if k < KNOTS else 1.0
+        near = np.maximum(0.0, 1.0 - np.abs(x - centre) / spacing) * (side * x > 0.0)
+        if np.sum(near * weight) > 0.0:
+            found[k] = np.sum(near * value) / np.sum(near * weight)
+    return found

@@ -1,0 +1,209 @@
+"""The missing force as a model: a law in a table, estimated inside the simulator.
+
+Where no mechanism explains the recordings, the values c of tables over the leading coordinate, its rate and the
+base acceleration (`models.mechanisms.table_force`) become unknowns of the windowed fit, beside base parameters,
+effects and states. Which tables, and how smooth, is decided on the problem linearised in the simulator: with the
+states and other unknowns projected out, H = J'WJ, g = J'Wr, and a prior c ~ N(0, (lambda P)^-1) on second
+differences, the evidence
+
+    g'(H + lambda P)^-1 g - log det(H + lambda P) + log det(lambda P)
+
+chooses term by term (the sparse part) and lambda (the smooth part). The chosen ones are fitted by the same solver as
+everything else; bands are those of the posterior at the optimum. A law of time is not among them: no other
+recording could be predicted with it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.fit.linearisation import linearise_about
+from diagnosis.fit.misfit import Misfit, reduce
+from diagnosis.fit.solver import Fitted, fit
+from diagnosis.fit.unknowns import Unknown, without_instruments
+from diagnosis.forces.columns import motion_of
+from diagnosis.search.refit import Explanation
+from models.base import FloatArray, Mechanism
+from models.identification import Motion
+from models.mechanisms.table_force import KNOTS, REACHES, SIDES, TERMS, row
+
+MOST_TERMS = 3
+MORE = 10.0
+"""Evidence (2 log) that one more table must bring."""
+SMOOTH = np.geomspace(1e-3, 1e3, 13)
+JUMP = 100.0
+"""Weight of a jump at zero, of tables over anything but the leading coordinate, over that of a bend."""
+RIDGE = 0.02
+UNIT, WIDEST = 0.02, 100.0
+"""One unit of a table's value over the typical acceleration of the motion, and the most units a fit may reach."""
+NORMAL = 1.959964
+
+
+@dataclass(frozen=True)
+class Table:
+    """One term of a law: ``value`` with its 95 % band at the rows ``at`` of its variable, and its evidence."""
+
+    term: str
+    at: FloatArray
+    value: FloatArray
+    low95: FloatArray
+    high95: FloatArray
+    evidence: float
+
+
+@dataclass(frozen=True)
+class Law:
+    """An explanation with a law in a table beside its effects."""
+
+    explanation: Explanation
+    tables: tuple[Table, ...]
+    mechanism: Mechanism
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Every parameter of the mechanism."""
+        point = self.explanation.fitted.point.values
+        return {p.name: point[f"{self.mechanism.name}.{p.name}"] for p in self.mechanism.parameters}
+
+
+def estimate(explanation: Explanation) -> Law | None:
+    """The law that the explanation lacks; None where the model has no port for one, or no table is worth its rows."""
+    fitted = explanation.fitted
+    model = fitted.measured.model
+    form = next((m for m in model.mechanisms.values() if m.tabulated), None)
+    if form is None:
+        return None
+    motion = motion_of(fitted)
+    unknowns = {term: _unknowns(form, term, motion, fitted) for term in TERMS}
+    off = {f"{form.name}.{p.name}": p.null for p in form.parameters}
+    off |= {f"{form.name}.{name}": reach for name, reach in _reaches(motion).items()}
+    first = unknowns[next(iter(TERMS))][0]
+    on = {**without_instruments(fitted.point.values), **off, first.name: first.scale}
+    if model.check(on, fitted.misfit.predictor.options):
+        return None
+    base = replace(fitted.misfit, fixed={**fitted.misfit.fixed, **off})
+    chosen = _choose(base, fitted, unknowns)
+    if not chosen:
+        return None
+    best = _fitted(base, fitted, unknowns, chosen)
+    return Law(Explanation(explanation.candidates, best), _tables(best, unknowns, chosen, _reaches(motion)), form)
+
+
+def _reaches(motion: Motion) -> dict[str, float]:
+    """Parameter by parameter, how far the motion goes in each variable of a table."""
+    largest = {"rotation": motion.reach, "rate": np.max(np.abs(motion.rate)), "base": np.max(np.abs(motion.base))}
+    return {name: max(float(largest[variable]), 1e-9) for variable, (name, _, _) in REACHES.items()}
+
+
+def _unknowns(form: Mechanism, term: str, motion: Motion, fitted: Fitted) -> tuple[Unknown, ...]:
+    """The values of a term's table, in units of what its force would have to be to matter."""
+    step = fitted.measured.recordings[0].time_step
+    inside = fitted.measured.mask[:, 0]
+    typical = float(np.sqrt(np.mean((np.gradient(motion.rate, axis=1) / step)[inside] ** 2)))
+    speed = float(np.sqrt(np.mean(motion.rate[inside] ** 2)))
+    unit = form.parameter(row(term, SIDES[0], 0)).unit
+    scale = UNIT * {"rad s-2": typical, "s-1": typical / speed, "1": 1.0}[unit]
+    reach = WIDEST * scale
+    names = [row(term, side, knot) for side in SIDES for knot in range(KNOTS)]
+    return tuple(Unknown(f"{form.name}.{name}", unit, -reach, reach, 0.0, scale) for name in names)
+
+
+def _bends(term: str) -> FloatArray:
+    """Rows R of the prior R c ~ N(0, 1/lambda) on a term's values: bends, the jump at zero, and a little on all."""
+    below, above = np.arange(KNOTS)[::-1], KNOTS + np.arange(KNOTS)
+    rows = []
+    for side in (below, above):
+        for k in range(1, KNOTS - 1):
+            bend = np.zeros(2 * KNOTS)
+            bend[side[k - 1 : k + 2]] = 1.0, -2.0, 1.0
+            rows.append(bend)
+    if TERMS[term][0] != next(iter(REACHES)):
+        jump = np.zeros(2 * KNOTS)
+        jump[0], jump[KNOTS] = -JUMP, JUMP
+        rows.append(jump)
+    return np.concatenate([np.array(rows), RIDGE * np.eye(2 * KNOTS)])
+
+
+def _choose(base: Misfit, fitted: Fitted, unknowns: dict[str, tuple[Unknown, ...]]) -> list[tuple[str, float, float]]:
+    """Terms with their smoothness lambda and evidence, by forward selection on the linearised problem."""
+    whole = replace(base, unknowns=(*base.unknowns, *(u for term in unknowns.values() for u in term)))
+    count = len(base.unknowns)
+    u = np.concatenate([fitted.u, np.zeros(len(whole.unknowns) - count)])
+    linear = whole.linearise(u, fitted.states)
+    reduced, weights = reduce(linear), whole.weights(linear.residual)
+    j = reduced.by_unknown
+    hessian = np.einsum("w,wmi,wmj->ij", weights, j, j, optimize=True)
+    gradient = np.einsum("w,wmi,wm->i", weights, j, reduced.residual, optimize=True)
+    rows, slopes = base.prior_rows(fitted.u)
+    known = hessian[:count, :count] + slopes.T @ slopes + 1e-9 * np.eye(count)
+    along = np.linalg.solve(known, hessian[:count, count:])
+    h = hessian[count:, count:] - hessian[count:, :count] @ along
+    g = gradient[count:] - along.T @ (gradient[:count] + slopes.T @ rows)
+    place = {term: 2 * KNOTS * k + np.arange(2 * KNOTS) for k, term in enumerate(unknowns)}
+    chosen: list[tuple[str, float, float]] = []
+    reached = 0.0
+    while len(chosen) < MOST_TERMS:
+        trials = [
+            (_evidence(h, g, place, [*((t, s) for t, s, _ in chosen), (term, smooth)]), term, float(smooth))
+            for term in unknowns
+            if term not in [t for t, _, _ in chosen]
+            for smooth in SMOOTH
+        ]
+        best, term, smooth = max(trials)
+        if best - reached < MORE:
+            break
+        chosen.append((term, smooth, best - reached))
+        reached = best
+    return chosen
+
+
+def _evidence(
+    h: FloatArray, g: FloatArray, place: dict[str, NDArray[np.intp]], terms: Sequence[tuple[str, float]]
+) -> float:
+    at = np.concatenate([place[term] for term, _ in terms])
+    prior = np.zeros((at.size, at.size))
+    for k, (term, smooth) in enumerate(terms):
+        own = slice(2 * KNOTS * k, 2 * KNOTS * (k + 1))
+        bends = _bends(term)
+        prior[own, own] = smooth * bends.T @ bends
+    whole = h[np.ix_(at, at)] + prior
+    explained = g[at] @ np.linalg.solve(whole, g[at])
+    return float(explained - np.linalg.slogdet(whole)[1] + np.linalg.slogdet(prior)[1])
+
+
+def _fitted(
+    base: Misfit, fitted: Fitted, unknowns: dict[str, tuple[Unknown, ...]], chosen: Sequence[tuple[str, float, float]]
+) -> Fitted:
+    """Everything refitted with the chosen tables."""
+    count = len(base.unknowns)
+    extra = [u for term, _, _ in chosen for u in unknowns[term]]
+    prior = []
+    for k, (term, smooth, _) in enumerate(chosen):
+        bends = np.sqrt(smooth) * _bends(term)
+        rows = np.zeros((bends.shape[0], count + len(extra)))
+        rows[:, count + 2 * KNOTS * k : count + 2 * KNOTS * (k + 1)] = bends
+        prior.append(rows)
+    misfit = replace(base, unknowns=(*base.unknowns, *extra), smooth=np.concatenate(prior))
+    return fit(misfit, np.concatenate([fitted.u, np.zeros(len(extra))]), fitted.states)
+
+
+def _tables(
+    fitted: Fitted, unknowns: dict[str, tuple[Unknown, ...]], chosen: Sequence[tuple[str, float, float]],
+    reaches: dict[str, float],
+) -> tuple[Table, ...]:  # fmt: skip
+    deviation = np.sqrt(np.diag(linearise_about(fitted).inverse))
+    names = [u.name for u in fitted.misfit.unknowns]
+    found = []
+    for term, _, evidence in chosen:
+        index = np.array([names.index(u.name) for u in unknowns[term]])
+        order = np.concatenate([np.arange(KNOTS)[::-1], KNOTS + np.arange(KNOTS)])
+        scale = np.array([u.scale for u in unknowns[term]])
+        value, band = (scale * fitted.u[index])[order], (NORMAL * scale * deviation[index])[order]
+        one_side = np.linspace(0.0, reaches[REACHES[TERMS[term][0]][0]], KNOTS)
+        at = np.concatenate([-one_side[::-1], one_side])
+        found.append(Table(term, at, value, value - band, value + band, evidence))
+    return tuple(found)

@@ -1,0 +1,70 @@
+"""The missing force as a model: a law that no mechanism describes is found, banded, and predicts other windows."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from diagnosis.data.measured import Measured
+from diagnosis.fit.misfit import Misfit
+from diagnosis.fit.prediction import Point, Predictor
+from diagnosis.fit.setup import measure
+from diagnosis.fit.solver import fit
+from diagnosis.fit.unknowns import of_specimen
+from diagnosis.fit.whitening import sensor_noise_only
+from diagnosis.search.law import Law, estimate
+from diagnosis.search.refit import Explanation
+from models.mechanisms.table_force import KNOTS, MECHANISM, row
+from tests.diagnosis.made import SPECIMEN, TRUE, recording
+
+RATE = 0.6
+"""s-1, of a dashpot that works for rotations above zero only."""
+HIDDEN = MECHANISM.nulls | {row("damping", "above", k): -RATE for k in range(KNOTS)}
+
+
+def windows(seeds: tuple[int, int], law: dict[str, float], noise: int) -> Measured:
+    """Recordings cut in windows, in which the model with ``law`` was measured with noise."""
+    measured = measure(SPECIMEN, [recording(f"run_{seed}", seed) for seed in seeds])
+    values = {**TRUE, **{f"table_force.{name}": value for name, value in law.items()}}
+    true = Predictor(measured).predict([Point(values, measured.states)])[0]
+    return replace(
+        measured, values=true + np.random.default_rng(noise).normal(size=true.shape) * measured.sigma[..., None]
+    )
+
+
+def base(measured: Measured) -> Explanation:
+    predictor = Predictor(measured)
+    unknowns = of_specimen(SPECIMEN, measured.model)
+    misfit = Misfit(predictor, sensor_noise_only(predictor), unknowns, {"mass": TRUE["mass"]})
+    u = np.array([x.coordinate(TRUE[x.name]) for x in unknowns])
+    return Explanation((), fit(misfit, u, measured.states))
+
+
+def chi2(explanation: Explanation, measured: Measured, law: Law | None = None) -> float:
+    """Squared misfit a sample on other windows, parameters frozen, states refitted."""
+    predictor = Predictor(measured)
+    fitted = (law.explanation if law else explanation).fitted
+    misfit = Misfit(predictor, sensor_noise_only(predictor), (), {**fitted.misfit.fixed, **fitted.values})
+    found = fit(misfit, np.zeros(0), measured.states)
+    return float(np.sum(misfit.residuals([found.point])[0] ** 2) / measured.count.sum())
+
+
+def test_a_one_sided_dashpot_is_found_and_predicts() -> None:
+    plain = base(windows((1, 2), HIDDEN, 0))
+    law = estimate(plain)
+    assert law is not None and law.tables[0].term == "damping"
+    table = law.tables[0]
+    above, below = table.at > 0.02, table.at < -0.02
+    inside = (table.low95 <= np.where(table.at > 0.0, -RATE, 0.0)) & (
+        np.where(table.at > 0.0, -RATE, 0.0) <= table.high95
+    )
+    assert np.mean(inside[above | below]) >= 0.7
+    assert np.mean(table.value[above]) < -0.6 * RATE < 2.0 * np.mean(table.value[below])
+    other = windows((3, 4), HIDDEN, 1)
+    before, after = chi2(plain, other), chi2(plain, other, law)
+    assert before > 1.5 and (before - after) / (before - 1.0) > 0.7
+
+
+def test_noise_alone_asks_for_no_law() -> None:
+    assert estimate(base(windows((1, 2), MECHANISM.nulls, 0))) is None
