@@ -27,7 +27,7 @@ from diagnosis.forces.columns import Forces, forces
 from diagnosis.forces.constancy import Tested, flags, tests
 from diagnosis.progress import Progress, Stages, silent
 from diagnosis.search import bootstrap as bootstrapping
-from diagnosis.search.candidates import candidates
+from diagnosis.search.candidates import absent, candidates
 from diagnosis.search.found import Search, misfit_per_sample, rivals
 from diagnosis.search.law import Law, estimate
 from diagnosis.search.refit import Explanation
@@ -170,6 +170,7 @@ def _assemble(
         prediction_horizon=stages.optional("prediction horizons", lambda: _horizons(shown, specimen), dict),
         missing_force=force,
         errors=errors,
+        not_tried=not_tried(found),
         reference_peak=true_peak(chosen),
         provenance=_provenance(specimen, found, tested, seed),
         finished=finished,
@@ -224,6 +225,12 @@ def _screened(found: Search) -> tuple[Screened, ...]:
         if line.name not in lines or (line.gain or 0.0) > (lines[line.name].gain or 0.0):
             lines[line.name] = line
     return tuple(sorted(lines.values(), key=lambda s: -max(s.score, s.gain or 0.0)))
+
+
+def not_tried(found: Search) -> dict[str, str]:
+    """By mechanism: why it was not tried, or why not beside what was found."""
+    never = absent(found.measured)
+    return {**never, **found.not_tried}
 
 
 def _horizons(shown: Sequence[Shown], specimen: Specimen) -> dict[str, tuple[float, float]]:

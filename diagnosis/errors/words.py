@@ -9,7 +9,7 @@ LOOSE = 0.05
 COLOURS = {
     "white": "white noise",
     "low": "noise that is stronger at low frequencies",
-    "filtered": "noise that a filter has taken the high frequencies of",
+    "filtered": "noise without its high frequencies, as a filter leaves it,",
 }
 
 

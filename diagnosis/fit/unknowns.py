@@ -16,7 +16,7 @@ from models.model import Model
 STEPS_OF_RANGE = 20.0
 LOG_SPAN = 3.0
 """A range [low, high] wider than this ratio is fitted in its logarithm."""
-WIDEST_PRIOR = 4.0
+WIDEST_PRIOR = 3.0
 """Standard deviations that a toleranced parameter may depart from its nominal value."""
 
 

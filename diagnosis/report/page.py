@@ -14,6 +14,7 @@ from diagnosis.answer.phases import words_of
 from diagnosis.answer.result import Diagnosis, Rival, Windows
 from diagnosis.data.measured import identification_of
 from diagnosis.data.windows import ABOVE_NOISE
+from diagnosis.errors.words import error_lines
 from diagnosis.fit.unknowns import library
 from diagnosis.report import words
 from grids.recordings import CHANNELS, Recording, noise_levels
@@ -88,6 +89,7 @@ def report_page(
             most_places=MOST_PLACES,
             compared=_compared(diagnosis, [*train, *holdout]),
             above_noise=ABOVE_NOISE,
+            errors=error_lines(diagnosis.errors) if diagnosis.errors else [],
             held_out_names={trace.recording for trace in diagnosis.traces if trace.held_out},
         )
     )

@@ -11,6 +11,7 @@ from diagnosis.answer.result import Diagnosis
 from diagnosis.data.measured import identification_of
 from diagnosis.report.figures import (
     plot_before_after,
+    plot_errors,
     plot_fits,
     plot_missing_force,
     plot_parameters,
@@ -43,6 +44,8 @@ def drawings(diagnosis: Diagnosis, specimen: Specimen, recordings: Sequence[Reco
     if diagnosis.screen:
         evidence = {effect.name: effect.evidence for effect in diagnosis.effects}
         found["suspects"] = partial(plot_suspects, diagnosis.screen, diagnosis.null_band, evidence=evidence)
+    for channel in diagnosis.errors.channels if diagnosis.errors else ():
+        found[f"errors_{channel.channel}"] = partial(plot_errors, channel)
     found["fits"] = partial(plot_fits, diagnosis.train, diagnosis.holdout)
     for trace in diagnosis.traces:
         found[f"{trace.recording}_{trace.channel}"] = partial(plot_before_after, trace)

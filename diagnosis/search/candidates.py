@@ -77,8 +77,9 @@ def candidates(measured: Measured, specimen: Specimen) -> tuple[Candidate, ...]:
     Where a mechanism acts at two joints, each of them alone is a variant.
     """
     found: list[Candidate] = []
+    refused = absent(measured)
     for name, mechanism in library(measured.model).items():
-        if name in specimen.mechanisms or not _usable(name, measured):
+        if name in specimen.mechanisms or name in refused or mechanism.tabulated:
             continue
         if name in ("filter", "base_filter"):
             found += _filters(mechanism)
@@ -92,12 +93,13 @@ def candidates(measured: Measured, specimen: Specimen) -> tuple[Candidate, ...]:
     return tuple(found)
 
 
-def _usable(name: str, measured: Measured) -> bool:
-    if library(measured.model)[name].tabulated:
-        return False
-    if name != "vertical_acceleration":
-        return True
-    return all(s.vertical is not None and not s.vertical_acts for s in measured.shakings)
+def absent(measured: Measured) -> dict[str, str]:
+    """Mechanisms that cannot be tried on these recordings, and why."""
+    if all(s.vertical_acts and s.vertical is not None for s in measured.shakings):
+        return {"vertical_acceleration": "the vertical motion of the base acts in the base model already"}
+    if any(s.vertical is None for s in measured.shakings):
+        return {"vertical_acceleration": "not all recordings hold the vertical motion of the base"}
+    return {}
 
 
 def _unknown(mechanism: Mechanism, parameter: MechanismParameter, measured: Measured) -> Unknown:

@@ -23,7 +23,7 @@ from models.base import FloatArray
 MISSING = 15.0
 """Gain in 2 log likelihood that one more mechanism must bring."""
 DETAIL = 0.0025
-"""Share of the evidence that the details of a named effect's law may leave: 5 % of its amplitude."""
+"""Share of the evidence that the details of a named effect's law may leave: 5 % of its amplitude; MISSING at most."""
 GAP = 10.0
 """Rivals: all within this gain of the best."""
 PER_SHAPE = 2.0
@@ -49,6 +49,8 @@ class Search:
     best: Explanation | None = None
     at_null: Search | None = None
     """This search as it stood under the errors of the base model, once they were estimated anew."""
+    not_tried: dict[str, str] = field(default_factory=dict)
+    """By mechanism: why the model refused it."""
     outside: Constancy | None = None
     """A force outside the library that explains what the best single leaves."""
 
@@ -63,7 +65,7 @@ class Search:
     @property
     def more(self) -> float:
         """What a further effect, or a departure from constancy, must bring."""
-        return MISSING + DETAIL * max(self.gain(self.chosen), 0.0)
+        return MISSING + min(DETAIL * max(self.gain(self.chosen), 0.0), MISSING)
 
     def gain(self, explanation: Explanation) -> float:
         """Gain over the base, less what shape parameters cost."""

@@ -38,15 +38,18 @@ class Score:
     column: FloatArray
 
 
-def score(screen: Linearisation, candidates: Sequence[Candidate]) -> list[Score]:
-    """Statistics of all candidates, strongest first; those that the model refuses beside others are left out."""
+def score(
+    screen: Linearisation, candidates: Sequence[Candidate], not_tried: dict[str, str] | None = None
+) -> list[Score]:
+    """Statistics of all candidates, strongest first; why the model refuses the others goes into ``not_tried``."""
     base = screen.fitted.point
     found = []
     for candidate in candidates:
         try:
             found.append(_score_one(screen, base, candidate))
-        except InputError:  # it does not act together with a mechanism that is switched on
-            continue
+        except InputError as refusal:  # it does not act together with a mechanism that is switched on
+            if not_tried is not None:
+                not_tried.setdefault(candidate.name, str(refusal))
     return sorted(found, key=lambda s: -s.statistic)
 
 

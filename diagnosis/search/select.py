@@ -102,7 +102,7 @@ def _refits(explanation: Explanation, scores: Sequence[Score], fewest: int, most
 
 def _singles(found: Search, progress: Progress) -> None:
     opened = linearise_about(found.base.fitted)
-    found.scores = score(opened, found.candidates)
+    found.scores = score(opened, found.candidates, found.not_tried)
     found.null = null_distribution(opened, found.scores)
     wanted = worth_a_refit(found.scores, FEWEST, SHARE_OF_FIRST)[:MOST]
     sound = adequate(found.base)
@@ -176,7 +176,7 @@ def _pairs(found: Search, progress: Progress) -> None:
 def seconds(found: Search, explanation: Explanation) -> list[Score]:
     """The screen of mechanisms of other classes beside those of an explanation."""
     others = [c for c in found.candidates if c.effect_class not in explanation.classes]
-    return score(linearise_about(explanation.fitted), others)
+    return score(linearise_about(explanation.fitted), others, found.not_tried)
 
 
 def _extended(explanation: Explanation, scores: Sequence[Score]) -> list[Explanation]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from diagnosis.report.figures.before_after import plot_before_after, plot_worst_window
+from diagnosis.report.figures.errors import plot_errors
 from diagnosis.report.figures.fits import plot_fits
 from diagnosis.report.figures.missing_force import plot_missing_force, plot_visited
 from diagnosis.report.figures.parameters import plot_parameters
@@ -13,6 +14,7 @@ from diagnosis.report.figures.suspects import plot_suspects
 
 __all__ = [
     "plot_before_after",
+    "plot_errors",
     "plot_fits",
     "plot_missing_force",
     "plot_parameters",

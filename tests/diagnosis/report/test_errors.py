@@ -1,0 +1,51 @@
+"""The errors as the page shows them: one spectrum and one autocorrelation a channel."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diagnosis.errors.adequacy import Inadequacy, Repeatability
+from diagnosis.errors.summary import ChannelErrors, ErrorModel, Line, Spectrum
+from diagnosis.errors.words import error_lines
+from diagnosis.report.figures import plot_errors
+from diagnosis.report.figures.panels import figure_of
+from diagnosis.report.json_file import diagnosis_json
+from tests.diagnosis.report.example import diagnosis
+from tests.diagnosis.report.schema import AnswerFile
+
+FREQUENCY = np.arange(1.0, 50.0)
+SPECTRUM = Spectrum(
+    tuple(FREQUENCY), tuple(1e-8 / FREQUENCY), tuple(1.1e-8 / FREQUENCY), (0.0, 0.01, 0.02), (1.0, 0.02, -0.01), 0.05
+)
+CHANNEL = ChannelErrors("rotation_1", "rad", 3e-4, "low", 2e-4, 0.0, (Line(12.3, 1e-4),), SPECTRUM)
+ERRORS = ErrorModel(
+    (CHANNEL,), Repeatability("impacts", 0.014, 0.01, 0.019, 40.0), (0.01,), Inadequacy((0.0,), 0.0, 0.0, True), 3.0
+)
+
+
+@pytest.mark.parametrize("width", [12.0, 5.2])
+def test_both_curves_are_drawn(width: float) -> None:
+    left, right = plot_errors(CHANNEL, width=width)
+    drawn = [line.get_ydata() for line in left.get_lines()]
+    np.testing.assert_allclose(drawn, [SPECTRUM.found, SPECTRUM.estimated])
+    assert len(right.collections[0].get_segments()) == 2
+    assert figure_of(left) is figure_of(right)
+
+
+def test_the_words_say_what_was_found_and_no_more() -> None:
+    said = " ".join(error_lines(ERRORS))
+    assert "Impacts repeat to 1.4%" in said and "hum at 12.3 Hz" in said and "drift of 0.0002 rad" in said
+    assert "smooth error" not in said and "grows" not in said
+    large = replace(ERRORS, inadequacy=Inadequacy((1e-3,), 4.0, 60.0, True))
+    assert "4.0 times the variance" in " ".join(error_lines(large))
+    assert "not told apart" in " ".join(error_lines(replace(ERRORS, inadequacy=Inadequacy((0.0,), 0.0, 0.0, False))))
+
+
+def test_the_file_holds_them() -> None:
+    found = replace(diagnosis("nothing_missing"), errors=ERRORS, not_tried={"bounce": "it refuses"})
+    read = AnswerFile.model_validate_json(diagnosis_json(found))
+    assert read.errors is not None and read.errors.channels[0].hum[0].frequency == 12.3
+    assert read.not_tried[0].why == "it refuses"
