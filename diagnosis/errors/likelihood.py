@@ -29,6 +29,8 @@ NU = 10.0
 NEWTON, HALVINGS = 8, 4
 RIDGE = 1e-6
 """Added to the information of every variance, in its own unit: kernels are alike."""
+SLACK = 1e-10
+"""Of the largest information, added to all: a shape whose effect is off changes nothing."""
 CLOSE = 0.1
 """Fall of -2 log L that ends the iteration."""
 
@@ -104,6 +106,7 @@ def solve(piece: Piece, theta: FloatArray) -> Solved:
     inverse = np.tril(inverse) + np.tril(inverse, -1).T
     x = inverse @ piece.by_state
     gram = piece.by_state.T @ x
+    gram += SLACK * np.max(np.diagonal(gram)) * np.eye(gram.shape[0])
     projector = inverse - x @ np.linalg.solve(gram, x.T)
     on_residual = projector @ piece.residual
     return Solved(
@@ -131,6 +134,7 @@ def evaluate(
         hessian += w * piece.by_unknown.T @ one.on_unknown
         gradient += w * piece.by_unknown.T @ one.on_residual
     k = gradient.size
+    hessian += SLACK * (np.max(np.diagonal(hessian), initial=0.0) + SLACK) * np.eye(k)
     inverse = np.linalg.inv(hessian) if k else np.zeros((0, 0))
     shift = inverse @ gradient
     chi2 = np.array([one.square for one in solved])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -81,3 +83,12 @@ def test_slope_and_weights_are_those_of_the_deviance() -> None:
         assert state.slope[k] == pytest.approx((ends[0] - ends[1]) / 2e-4, rel=1e-4, abs=1e-4)
     lighter = evaluate(made, prior, theta, weights)
     assert lighter.deviance < state.deviance
+
+
+def test_an_unknown_that_changes_nothing_is_no_obstacle() -> None:
+    made = [replace(p, by_unknown=np.column_stack([p.by_unknown, 0.0 * p.by_unknown])) for p in pieces([1, 1, 1, 1], 2)]
+    prior = Prior(np.zeros((2, 2)), np.zeros(2))
+    theta = np.ones(4)
+    idle = evaluate(made, prior, theta, np.ones(PIECES))
+    plain = evaluate(pieces([1, 1, 1, 1], 2), NO_PRIOR, theta, np.ones(PIECES))
+    np.testing.assert_allclose(idle.slope, plain.slope, rtol=1e-6)
