@@ -162,16 +162,18 @@ def test_every_state_has_a_unit(name: str) -> None:
 
 
 POSITIVE = st.floats(1e-6, 1e6)
+SIZES = st.floats(1e-6, 0.3)
+"""Down to zero, but not to what is beyond any size."""
 TITLES = st.text(st.characters(exclude_categories=["Cs"]), max_size=30)
 
 
 @st.composite
 def specimens(draw: st.DrawFn) -> Specimen:
     parameters = {name: draw(POSITIVE) for name in ("height", "mass", "gravity")}
-    parameters["cover"] = draw(st.floats(0.0, 0.1))
+    parameters["cover"] = draw(st.just(0.0) | SIZES)
     choice = draw(st.sampled_from(["width", "aspect_ratio"]))
     low, high = sorted(draw(st.lists(st.floats(0.01, 1.0), min_size=2, max_size=2, unique=True)))
-    inset = draw(st.floats(0.0, 0.35))
+    inset = draw(st.just(0.0) | SIZES)
     return Specimen(
         title=draw(TITLES),
         model="fake_wall",
@@ -179,7 +181,7 @@ def specimens(draw: st.DrawFn) -> Specimen:
         tolerance={n: draw(st.floats(1e-6, 0.99)) for n in draw(st.sets(st.sampled_from(["height", "mass"])))},
         calibrate={choice: (low, high)},
         vertical=draw(st.none() | st.booleans()),
-        initial=draw(st.dictionaries(st.sampled_from(["rotation_1", "rotation_rate_1"]), st.floats(-1, 1))),
+        initial=draw(st.dictionaries(st.sampled_from(["rotation_1", "rotation_rate_1"]), st.just(0.0) | SIZES)),
         options=draw(st.dictionaries(st.just("formulation"), st.sampled_from(["linear", "nonlinear"]))),
         mechanisms=draw(
             st.sampled_from([{}, {"slip": {"friction": math.inf}}, {"pivot_inset": {"inset_over_half_width": inset}}])
