@@ -162,7 +162,7 @@ def test_every_state_has_a_unit(name: str) -> None:
 
 
 POSITIVE = st.floats(1e-6, 1e6)
-SIZES = st.floats(1e-6, 0.3)
+SIZES = st.floats(1e-6, 0.1)
 """Down to zero, but not to what is beyond any size."""
 TITLES = st.text(st.characters(exclude_categories=["Cs"]), max_size=30)
 
