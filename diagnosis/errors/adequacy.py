@@ -6,13 +6,13 @@ chi-squared with one degree of freedom, half zero (Self and Liang, J. Am. Stat. 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.stats import chi2
 
 from diagnosis.data.noise import BAND
-from diagnosis.errors.likelihood import climbed, maximise
+from diagnosis.errors.likelihood import State, climbed, evaluate, maximise
 from diagnosis.errors.model import Errors
 from models.base import FloatArray
 
@@ -30,8 +30,8 @@ FACTORS = (0.5, 0.7, 0.85, 1.2, 1.5, 2.0, 3.0)
 class Inadequacy:
     """The model's smooth error: ``size`` (C,) as recorded, ``ratio`` of its variance over the sensors' below `BAND` Hz.
 
-    ``deviance``: what the likelihood loses without it. ``judged`` false: nothing is ever still, so it cannot be told
-    from noise.
+    ``deviance``: what the likelihood loses without it, the most influential window left out. ``judged`` false: nothing
+    is ever still, so it cannot be told from noise.
     """
 
     size: tuple[float, ...]
@@ -75,7 +75,7 @@ def inadequacy(errors: Errors) -> Inadequacy:
         if c.kind == "inadequacy" and c.channel is not None:
             variance[c.channel] += theta
     ratio = float(np.max(variance / np.maximum([below(errors, c) for c in range(channels)], 1e-300)))
-    deviance = _without(errors, acting) if variance.any() else 0.0
+    deviance = _without_most_influential(errors, acting) if variance.any() else 0.0
     size = tuple(float(x) for x in np.sqrt(variance) * errors.unit)
     return Inadequacy(size, ratio, deviance, True)
 
@@ -128,7 +128,22 @@ def _crossing(at: FloatArray, rise: FloatArray) -> float:
 
 def _without(errors: Errors, held: np.ndarray, value: float = 0.0) -> float:
     """Rise of the deviance with the ``held`` variances at a value and the others estimated anew."""
+    return max(_held(errors, held, value).deviance - errors.deviance, 0.0)
+
+
+def _without_most_influential(errors: Errors, held: np.ndarray) -> float:
+    """Rise of the deviance without the ``held`` variances, the piece left out that asks most for them."""
+    full = evaluate(errors.pieces, errors.prior, errors.theta, errors.weights, slopes=False)
+    less = _held(errors, held, 0.0)
+    each = less.determinants - full.determinants + errors.weights * (less.chi2 - full.chi2)
+    rest = [k for k in range(len(errors.pieces)) if k != int(np.argmax(each))]
+    pieces = tuple(errors.pieces[k] for k in rest)
+    _, state = maximise(pieces, errors.prior, errors.theta, errors.weights[rest])
+    return _without(replace(errors, pieces=pieces, weights=errors.weights[rest], deviance=state.deviance), held)
+
+
+def _held(errors: Errors, held: np.ndarray, value: float) -> State:
+    """The likelihood with the ``held`` variances at a value and the others estimated anew."""
     pieces = [piece.holding(held, value) for piece in errors.pieces]
     theta, _ = climbed(pieces, errors.prior, errors.theta[~held], errors.weights, 0, 1)
-    _, state = maximise(pieces, errors.prior, np.maximum(theta, 1e-6), errors.weights)
-    return max(state.deviance - errors.deviance, 0.0)
+    return maximise(pieces, errors.prior, np.maximum(theta, 1e-6), errors.weights)[1]

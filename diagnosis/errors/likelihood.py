@@ -87,7 +87,10 @@ class Solved:
 
 @dataclass(frozen=True)
 class State:
-    """The restricted likelihood at one theta: -2 log L, and its slope and average information (K,), (K, K)."""
+    """The restricted likelihood at one theta: -2 log L, and its slope and average information (K,), (K, K).
+
+    ``chi2`` and log ``determinants`` by piece.
+    """
 
     deviance: float
     slope: FloatArray
@@ -95,7 +98,7 @@ class State:
     quadratic: FloatArray
     trace: FloatArray
     chi2: FloatArray
-    determinants: float
+    determinants: FloatArray
 
 
 def solve(piece: Piece, theta: FloatArray) -> Solved:
@@ -138,8 +141,8 @@ def evaluate(
     inverse = np.linalg.inv(hessian) if k else np.zeros((0, 0))
     shift = inverse @ gradient
     chi2 = np.array([one.square for one in solved])
-    determinants = sum(one.determinants for one in solved)
-    deviance = determinants + float(weights @ chi2) + float(-gradient @ shift)
+    determinants = np.array([one.determinants for one in solved])
+    deviance = float(determinants.sum()) + float(weights @ chi2) + float(-gradient @ shift)
     deviance += float(np.linalg.slogdet(hessian)[1]) if k else 0.0
     n = theta.size
     quadratic, trace, information = np.zeros(n), np.zeros(n), np.zeros((n, n))
@@ -207,7 +210,7 @@ def robust_deviance(state: State, pieces: Sequence[Piece], moving: int) -> float
     """-2 log L, base parameters at their estimate, with the t-distribution that the weights belong to."""
     count = np.array([piece.residual.size for piece in pieces[:moving]], np.float64)
     windows = (NU + 1.0) * count * np.log1p(state.chi2[:moving] / (NU * count))
-    return state.determinants + float(windows.sum() + state.chi2[moving:].sum())
+    return float(state.determinants.sum() + windows.sum() + state.chi2[moving:].sum())
 
 
 def robust_weights(chi2: FloatArray, count: FloatArray) -> FloatArray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 from scipy.signal import lfilter
 
 from diagnosis.errors.adequacy import inadequacy, repeatability
-from diagnosis.errors.likelihood import whitened
+from diagnosis.errors.likelihood import climbed, maximise, whitened
 from diagnosis.errors.model import Errors, disturbance_about, refitted
 from diagnosis.errors.summary import summary
 from diagnosis.errors.words import error_lines
@@ -75,6 +76,19 @@ def test_impacts_that_repeat_do_not_scatter() -> None:
 def test_the_model_is_adequate_where_nothing_is_missing(case: str) -> None:
     left = inadequacy(about(case)[2])
     assert left.judged and not left.large
+
+
+@pytest.mark.parametrize(("bumps", "large"), [(1, False), (8, True)])
+def test_one_window_does_not_make_the_model_inadequate(bumps: int, large: bool) -> None:
+    errors = about("white")[2]
+    pieces = list(errors.pieces)
+    for k, sign in zip(range(bumps), (1.0, -1.0) * 4, strict=False):
+        bump = 8.0 * sign * np.exp(-0.5 * ((pieces[k].time - pieces[k].time.mean()) / 0.1) ** 2)
+        pieces[k] = replace(pieces[k], residual=pieces[k].residual + bump)
+    theta, _ = climbed(pieces, errors.prior, np.maximum(errors.theta, 1e-3), errors.weights, 0, 10)
+    theta, state = maximise(pieces, errors.prior, theta, errors.weights)
+    bumped = replace(errors, pieces=tuple(pieces), theta=theta, deviance=state.deviance)
+    assert inadequacy(bumped).large is large
 
 
 @pytest.mark.parametrize("case", ["autoregressive", "hum", "scatter"])
