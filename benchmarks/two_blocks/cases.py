@@ -140,7 +140,7 @@ def operations(law: str) -> int:
     if law == "linear":
         return count_operations(step_all, ("mixed", "laws"))
     once = sum(count_operations(part, ("mixed",)) for part in (step_all, fibres.predicted_strips, fibres.lengths))
-    four = fibres._four((LAWS[law],), 0, 0)
+    four = fibres._four((LAWS[law],), 0)
     return once + 2 * (COUNT // 4) * count_operations(four, ())
 
 

@@ -58,7 +58,8 @@ class Fibres:
         more = self.layer.energy(u, hidden) - 0.5 * self.layer.stiffness * u**2
         if self.clip:
             more -= np.minimum(self.layer.stress(u, hidden), 0.0) ** 2 / (2.0 * self.layer.slope(u, hidden))
-        return np.asarray(self.b[:, 0] * (more @ WEIGHTS))
+        # fibre by fibre: a product of matrices adds in an order that depends on how many walls there are
+        return np.asarray(self.b[:, 0] * sum(more[:, f] * WEIGHTS[f] for f in range(COUNT)))
 
     def difference(self, motion: Sequence[Any], hidden: Hidden) -> Difference:
         """In a state of motion: z, angle, z', angle' of the joint, each (n,)."""

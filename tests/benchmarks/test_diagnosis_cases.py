@@ -32,7 +32,7 @@ def gain_case():
 
 def test_catalogue_is_the_one_that_models_and_sensors_declare() -> None:
     declared = {**get("housner").mechanisms, **INSTRUMENTS}
-    assert set(CATALOGUE) == set(declared)
+    assert set(CATALOGUE) == {name for name, one in declared.items() if not one.tabulated}
     for name, row in CATALOGUE.items():
         first = declared[name].parameters[0]
         assert (row.parameter, row.effect_class) == (first.name, declared[name].effect_class)
@@ -145,7 +145,8 @@ def test_suite_is_balanced_and_deterministic() -> None:
     count = {kind: sum(w.kind == kind for w in main) for kind in ("null", "single", "pair", "open")}
     assert count["null"] >= 100 and count["single"] >= 120 and count["pair"] >= 40 and count["open"] >= 40
     singles = [w.names[0] for w in main if w.kind == "single"]
-    assert {singles.count(n) for n in CATALOGUE if n not in TOO_SMALL} == {len(singles) // (len(CATALOGUE) - 1)}
+    counts = [singles.count(n) for n in CATALOGUE if n not in TOO_SMALL]
+    assert max(counts) - min(counts) <= 1 and sum(counts) == len(singles)
     for first, second in (w.names for w in main if w.kind == "pair"):
         assert CATALOGUE[first].effect_class != CATALOGUE[second].effect_class
     quarter = designs[: len(designs) // 4]

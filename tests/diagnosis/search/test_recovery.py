@@ -63,7 +63,8 @@ def base(name: str) -> Explanation:
 
 
 def test_every_mechanism_of_the_block_and_its_sensors_is_here() -> None:
-    assert set(EFFECTS) | set(NOT_HERE) == set(models.get("housner").mechanisms) | set(INSTRUMENTS)
+    block = {name for name, one in models.get("housner").mechanisms.items() if not one.tabulated}
+    assert set(EFFECTS) | set(NOT_HERE) == block | set(INSTRUMENTS)
 
 
 @pytest.mark.parametrize("name", EFFECTS)
