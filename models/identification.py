@@ -1,9 +1,10 @@
 """What calibration and diagnosis need to know of a model, declared beside it as data.
 
-A recording is compared with a model window by window. A window starts from states that were measured and from
-memories of what came before it; what no model of the library explains is described by forces along the leading
-coordinate. Nothing of this is known to the diagnosis itself: each model says it in
-``models/<name>/identification.py`` (`Model.identification`; None: neither calibrated nor diagnosed).
+A recording is compared with a model window by window. A window starts from states that were measured, from states that
+the model carries there along the measured motion, and from memories of what came before it; what no model of the
+library explains is described by forces along the leading coordinate. Nothing of this is known to the diagnosis itself:
+each model says it in ``models/<name>/identification.py`` (`Model.identification`; None: neither calibrated nor
+diagnosed).
 """
 
 from __future__ import annotations
@@ -33,8 +34,9 @@ class State:
     """A state that a window starts from.
 
     ``channel`` measures it, or the coordinate whose rate it is (``rate``; a recorded channel of the state's own
-    name is preferred). Without a channel it is latent: no recording holds it. ``at_rest``: its value at rest as a
-    function of the derived constants; None for 0.
+    name is preferred). Without a channel it is latent: no recording holds it, and it is carried along the measured
+    motion (`Identification.carrying`). ``at_rest``: its value at rest as a function of the derived constants; None for
+    0.
     """
 
     name: str
@@ -167,8 +169,14 @@ class Identification:
 
     ``chaotic``: neighbouring trajectories diverge quickly, so that runs from rest show little. ``windows`` None: each
     recording is one window. ``forces`` empty: laws outside the library are not tested for. ``phases``: every phase
-    word in plain English. ``scatter`` None: events are taken to repeat exactly. ``not_carried``: what else a window
-    would have to inherit and does not yet; with it, or with a latent state, calibration and diagnosis are refused.
+    word in plain English. ``scatter`` None: events are taken to repeat exactly.
+    ``coordinates``: parameters in whose place a fit within a range works with something that recordings tell better
+    (`models.model.Model.declared`), as soon as a mechanism acts. ``whole``: whole-number parameters of mechanisms, with
+    the values that are tried.
+    ``carrying``: width (s) of the filter that frees the measured motion of noise before the model runs along it
+    (`models.model.Model.carry`) and gives the latent states, and whatever else it remembers, at every window's start;
+    None: it cannot. ``not_carried``: what else a window would have to inherit; with it, or with a latent state that is
+    not carried, calibration and diagnosis are refused.
     """
 
     leads: tuple[Lead, ...]
@@ -181,7 +189,15 @@ class Identification:
     separation: Separation | None = None
     scatter: Scatter | None = None
     phases: Mapping[str, str] = field(default_factory=dict)
+    coordinates: tuple[str, ...] = ()
+    whole: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    carrying: float | None = None
     not_carried: tuple[str, ...] = ()
+
+    @property
+    def free(self) -> tuple[State, ...]:
+        """The states that a recording holds: free in every window."""
+        return tuple(state for state in self.states if not state.latent)
 
     def rest(self, derived: Derived) -> dict[str, float]:
         """Every state at rest."""
@@ -189,6 +205,6 @@ class Identification:
 
     def refusal(self) -> str:
         """Why recordings cannot be compared with this model; empty where they can."""
-        latent = [state.name for state in self.states if state.latent]
+        latent = [state.name for state in self.states if state.latent and self.carrying is None]
         lacking = [f"{', '.join(latent)} at the start of a window, which no recording holds"] if latent else []
         return " and ".join([*lacking, *self.not_carried])

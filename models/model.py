@@ -86,7 +86,7 @@ class Model(ABC, Generic[C]):
         """One lane by the slow plain route."""
 
     @abstractmethod
-    def observe(self, coefficients: C, samples: FloatArray) -> dict[str, FloatArray]:
+    def observe(self, coefficients: C, samples: FloatArray) -> Mapping[str, FloatArray]:
         """The observables ``(n, samples)`` of states ``(n, samples, k)`` as the integrators return them."""
 
     @abstractmethod
@@ -193,7 +193,7 @@ class Model(ABC, Generic[C]):
         found = dict(self.run(integrator, coefficients, request).outputs)
         if wanted := [quantity for quantity in self.outputs if quantity.peak_of and quantity.name in outputs]:
 
-            def observed(lanes: slice, part: Request) -> dict[str, FloatArray]:
+            def observed(lanes: slice, part: Request) -> Mapping[str, FloatArray]:
                 some = coefficients.take(lanes)
                 return self.observe(some, self.run(integrator, some, part).samples)
 
@@ -210,10 +210,10 @@ class Model(ABC, Generic[C]):
         samples: int,
         initial: Mapping[str, FloatArray],
         options: Mapping[str, str] | None = None,
-    ) -> dict[str, FloatArray]:
+    ) -> Mapping[str, FloatArray]:
         """Observables ``(n, samples)`` of n lanes, lane k from sample ``first[k]`` of the shaking and its own state.
 
-        ``initial``: arrays ``(n,)`` by the names of `states`, and of what laws with a memory need.
+        ``initial``: arrays ``(n,)`` by the names of `states`, and of what laws with a memory need, ``(n, ...)``.
         """
         steps = np.full(first.size, samples - 1)
         return self.follow(values, shaking, first=first, steps=steps, initial=initial, options=options)[0]
@@ -227,18 +227,67 @@ class Model(ABC, Generic[C]):
         steps: NDArray[np.int64],
         initial: Mapping[str, FloatArray],
         options: Mapping[str, str] | None = None,
-    ) -> tuple[dict[str, FloatArray], dict[str, FloatArray]]:
+    ) -> tuple[Mapping[str, FloatArray], dict[str, FloatArray]]:
         """As `trajectories`, lane k over ``steps[k]`` samples, and what each lane would go on from (`resume`)."""
         n, end = first.size, shaking.horizontal.size - 1
         coefficients = self._shaken(values, options, shaking, n, "lanes")
         last = np.minimum(first + steps, end)
         request = Request(
             shaking, np.ones(n), self.resolve_options(options), first=first, last=last, samples=int(np.max(steps)) + 1,
-            initial={name: np.broadcast_to(np.asarray(v, dtype=np.float64), (n,)) for name, v in initial.items()},
+            initial={name: by_lane(v, n) for name, v in initial.items()},
         )  # fmt: skip
         run = self.run("lanes", coefficients, request)
         after = self.resume(run.samples[np.arange(n), last - first], run.outputs, request.initial)
         return self.observe(coefficients, run.samples), after
+
+    def carry(
+        self,
+        values: Values,
+        shaking: Shaking,
+        motion: Mapping[str, FloatArray],
+        marks: NDArray[np.int64],
+        *,
+        first: NDArray[np.int64],
+        initial: Mapping[str, FloatArray] | None = None,
+        options: Mapping[str, str] | None = None,
+    ) -> dict[str, FloatArray]:
+        """What ``initial`` of `trajectories` needs beside ``motion``, arrays ``(n, k, ...)`` at samples ``marks`` (k,).
+
+        Lane k runs along ``motion``, states ``(1 or n, samples)`` by name, from sample ``first[k]`` of the shaking, at
+        rest or from ``initial``; ``marks`` are counted from there, in order. What cannot stand is nan.
+        """
+        n = first.size
+        coefficients = self._shaken(values, options, shaking, n, "lanes")
+        given = {name: by_lane(v, n) for name, v in (initial or {}).items()}
+        unable = _any_of(self.cannot_stand(coefficients))
+        if not np.any(unable):
+            return self.carry_lanes(coefficients, shaking, motion, marks, first, given)
+        able = np.flatnonzero(~unable)
+        if not able.size:
+            return {}
+        some = {name: x if len(x) == 1 else x[able] for name, x in motion.items()}
+        started = {name: x[able] for name, x in given.items()}
+        found = self.carry_lanes(coefficients.take(able), shaking, some, marks, first[able], started)
+        whole = {name: np.full((n, *x.shape[1:]), np.nan) for name, x in found.items()}
+        for name, x in found.items():
+            whole[name][able] = x
+        return whole
+
+    def declared(
+        self, values: Values, names: Sequence[str], options: Mapping[str, str] | None = None
+    ) -> Mapping[str, FloatArray]:
+        """Parameters (n,) of those ``names`` that ``values`` give as what a fit works with instead.
+
+        Such names stand in `Identification.coordinates`; default: there are none.
+        """
+        return {}
+
+    def carry_lanes(
+        self, coefficients: C, shaking: Shaking, motion: Mapping[str, FloatArray], marks: NDArray[np.int64],
+        first: NDArray[np.int64], initial: Mapping[str, FloatArray],
+    ) -> dict[str, FloatArray]:  # fmt: skip
+        """`carry` of walls that all stand; default: nothing has to be carried."""
+        return {}
 
     def simulate(
         self,
@@ -316,6 +365,12 @@ class Model(ABC, Generic[C]):
         if coefficients.size != size:
             raise ValueError(f"values broadcast to {coefficients.size} lanes, {size} are asked for")
         return coefficients
+
+
+def by_lane(values: Any, lanes: int) -> FloatArray:
+    """Numbers of all lanes alike (a scalar) or of each (lanes, ...)."""
+    array = np.asarray(values, dtype=np.float64)
+    return array if array.ndim > 1 else np.broadcast_to(array, (lanes,))
 
 
 def _any_of(found: Sequence[tuple[NDArray[np.bool_], str]]) -> NDArray[np.bool_]:

@@ -11,17 +11,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
 from operator import or_
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from models.base import Event, FloatArray, History, Values
 from models.errors import InputError
+from models.model import Model, by_lane
 from models.shaking import Shaking
-
-if TYPE_CHECKING:
-    from models.model import Model
 
 FIRST, LARGEST, LEAST, TOTAL, LAST, BITS = "first", "largest", "least", "total", "last", "bits"
 OVER_PARTS = {
@@ -188,7 +186,7 @@ def trajectories(
     samples: int,
     initial: Mapping[str, FloatArray],
     options: Mapping[str, str] | None = None,
-) -> dict[str, FloatArray]:
+) -> Mapping[str, FloatArray]:
     """As `Model.trajectories`; lane k goes from part j to part j + 1 at sample ``changes[k, j]``.
 
     The change may lie before or after the lane's window, which then is of one part.
@@ -199,7 +197,7 @@ def trajectories(
     edges = [first, *(np.clip(changes[:, j], first, end) for j in range(len(parts) - 1)), end]
     if np.any(np.count_nonzero(np.diff(edges, axis=0) > 0, axis=0) > 1):
         check(model, parts)
-    state = {name: np.broadcast_to(np.asarray(v, float), (n,)).copy() for name, v in initial.items()}
+    state = {name: by_lane(v, n).copy() for name, v in initial.items()}
     found: dict[str, FloatArray] = {}
     for values, start, stop in zip(parts, edges[:-1], edges[1:], strict=True):
         lanes = np.flatnonzero(stop > start)

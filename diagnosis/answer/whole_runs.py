@@ -45,8 +45,7 @@ def sensed_run(
     initial: Mapping[str, float] | None = None,
 ) -> dict[str, FloatArray]:
     """Channels of one run under the recording's base motion, as the instruments would record them."""
-    misfit = explanation.fitted.misfit
-    values = {**misfit.fixed, **explanation.fitted.values}
+    misfit, values = explanation.fitted.misfit, explanation.fitted.point.values
     like = measured.shakings[0]
     shaking = recording.shaking(like.vertical is not None, vertical_acts=like.vertical_acts)
     predictor = misfit.predictor

@@ -29,7 +29,7 @@ class Measured:
     """W windows of some recordings, C channels, at most N samples a window.
 
     ``values`` and ``mask`` (W, C, N); ``sigma`` (W, C); ``base`` (W, N), the measured base acceleration;
-    ``states`` (W, S), the model's states at the windows' starts as the measurement suggests, ``state_size`` (S,)
+    ``states`` (W, S), the model's free states at the windows' starts as the measurement suggests, ``state_size`` (S,)
     their scatter; ``memory``: what happened before each window (W,), for laws with a memory.
     ``reference_peak``: largest value of the leading channel of the first recording; ``lengths`` of windows in s.
     """
@@ -53,6 +53,11 @@ class Measured:
     @property
     def identification(self) -> Identification:
         return identification_of(self.model)
+
+    @property
+    def free(self) -> tuple[str, ...]:
+        """Names of the states (S,) that every window has its own of; the model carries the others to its start."""
+        return tuple(state.name for state in self.identification.free)
 
     @property
     def recording_of(self) -> NDArray[np.int64]:
@@ -119,7 +124,7 @@ def arrange(
     declared = identification_of(model)
     observed = [q.name for q in model.observables if q.unit != SHARE]
     channels = tuple(c for c in observed if all(c in r.channels for r in recordings))
-    for state in declared.states:
+    for state in declared.free:
         lacking = [r.name for r in recordings if state.channel not in r.channels]
         if lacking:
             raise InputError(
@@ -142,7 +147,7 @@ def arrange(
             f"{', '.join(r.name for r in recordings)}: nothing can be compared; shake harder, or reduce the noise."
         )
     with_vertical = vertical or all("base_acceleration_z" in r.channels for r in recordings)
-    start = np.stack([_start(recordings, windows, state) for state in declared.states], axis=1)
+    start = np.stack([_start(recordings, windows, state) for state in declared.free], axis=1)
     if reference_peak is None:
         reference_peak = float(np.max(np.abs(_smoothed(recordings[0], leads[0], lengths))))
     return Measured(

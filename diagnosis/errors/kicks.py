@@ -7,6 +7,8 @@ the responses to short pulses of base acceleration is 15-20 % low).
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -39,7 +41,7 @@ def kicks(predictor: Predictor, point: Point) -> FloatArray:
 
         def run(
             windows: NDArray[np.intp], after: NDArray[np.intp], states: FloatArray, shaking: Shaking = shaking
-        ) -> dict[str, FloatArray]:
+        ) -> Mapping[str, FloatArray]:
             initial = dict(zip(m.model.states, states.T, strict=True)) | {k: v[windows] for k, v in m.memory.items()}
             first = m.first[windows] + after
             return m.model.trajectories(

@@ -66,7 +66,7 @@ def correlation(fitted: Fitted) -> FloatArray:
 def estimates(fitted: Fitted, profiled: Sequence[str] = ()) -> dict[str, Estimate]:
     """Every unknown with its 95 % interval, in its own unit; a profile for the names in ``profiled``."""
     sandwich, laplace = covariances(fitted)
-    found = {}
+    found, own = {}, fitted.point.values
     for i, unknown in enumerate(fitted.misfit.unknowns):
         naive = float(np.sqrt(max(laplace[i, i], 0.0)))
         sd = max(naive, float(np.sqrt(max(sandwich[i, i], 0.0))))
@@ -76,7 +76,12 @@ def estimates(fitted: Fitted, profiled: Sequence[str] = ()) -> dict[str, Estimat
             ends = _profile(fitted, i, sd, (sd / naive) ** 2)
         else:
             ends = (fitted.u[i] - QUANTILE * sd, fitted.u[i] + QUANTILE * sd)
-        found[unknown.name] = _estimate(unknown, float(fitted.u[i]), ends, fitted.at_bound(i))
+        one = _estimate(unknown, float(fitted.u[i]), ends, fitted.at_bound(i))
+        # the model's own parameter goes in proportion with the fit's coordinate
+        share = own[unknown.name] / one.estimate if unknown.name in fitted.misfit.predictor.coordinates else 1.0
+        found[unknown.name] = replace(
+            one, estimate=share * one.estimate, low95=share * one.low95, high95=share * one.high95
+        )
     return found
 
 

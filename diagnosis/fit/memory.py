@@ -38,7 +38,7 @@ def counted(predictor: Predictor, point: Point) -> Measured:
             continue
         starts = [0, *(m.windows[w].first for w in own)]
         pieces = [Window(r, a, b - a) for a, b in pairwise(starts)]
-        states = np.concatenate([[[rest[name] for name in m.model.states]], point.states[own]])
+        states = np.concatenate([[[rest[name] for name in m.free]], point.states[own]])
         events = _events(predictor, point, pieces, states[:-1])
         for one in counts:
             found[one.name][own] = np.cumsum([sum(e.kind == one.event for e in piece) for piece in events])
@@ -58,7 +58,7 @@ def _events(
         part = slice(piece.first, piece.first + piece.samples + 1)
         vertical = None if shaking.vertical is None else shaking.vertical[part]
         cut = replace(shaking, horizontal=shaking.horizontal[part], vertical=vertical)
-        initial = {name: float(x) for name, x in zip(m.model.states, state, strict=True)}
+        initial = {name: float(x) for name, x in zip(m.free, state, strict=True)}
         acting = in_force(predictor.parts(point.values, recording), piece.first)
         ran = simulate(m.model, acting, cut, initial=initial, duration=cut.duration, options=predictor.options)
         found.append(ran.events)

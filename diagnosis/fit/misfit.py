@@ -14,6 +14,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from diagnosis.data.measured import Measured
 from diagnosis.fit.prediction import Point, Predictor
@@ -64,11 +65,11 @@ class Misfit:
         return self.predictor.measured
 
     def point(self, u: FloatArray, states: FloatArray) -> Point:
-        return Point({**self.fixed, **values_of(self.unknowns, u)}, states)
+        return Point({**self.fixed, **values_of(self.unknowns, u)}, states, self.predictor.coordinates)
 
-    def residuals(self, points: Sequence[Point]) -> FloatArray:
-        """Whitened residuals (P, W, M), predicted minus measured."""
-        predicted = self.predictor.predict(points)
+    def residuals(self, points: Sequence[Point], only: NDArray[np.bool_] | None = None) -> FloatArray:
+        """Whitened residuals (P, W, M), predicted minus measured; meaningless but in windows ``only``."""
+        predicted = self.predictor.predict(points, only=only)
         difference = predicted - self.measured.values
         return self.whitening(np.where(np.isfinite(difference), difference, 1e3))
 

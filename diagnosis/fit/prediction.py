@@ -9,12 +9,13 @@ state (`models.piecewise`), and what instruments do to it changes at that sample
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.data.measured import Measured
+from diagnosis.fit.carrying import Carrying, Setting
 from diagnosis.fit.unknowns import instruments_of, without_instruments
 from grids.instruments.base import Surroundings, Switched
 from grids.instruments.staged import moved_in_stages, recorded_in_stages
@@ -28,23 +29,38 @@ from models.shaking import Shaking
 
 @dataclass(frozen=True)
 class Point:
-    """One parameter setting (``mechanism.parameter`` for mechanisms) with the states (W, S) it starts from."""
+    """One parameter setting (``mechanism.parameter`` for mechanisms) with the states (W, S) it starts from.
+
+    ``coordinates``: names of values that are those of a fit (`Identification.coordinates`), not of the model.
+    """
 
     values: Mapping[str, float]
     states: FloatArray
+    coordinates: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
 class Predictor:
-    """Predictions for the windows of ``measured``; ``stages`` by mechanism, of those that do not always act."""
+    """Predictions for the windows of ``measured``; ``stages`` by mechanism, of those that do not always act.
+
+    ``coordinates``: which parameters a fit gives its points by what recordings tell better.
+    """
 
     measured: Measured
     options: Mapping[str, str] = field(default_factory=dict)
     stages: Mapping[str, Sequence[Stage]] = field(default_factory=dict)
+    coordinates: tuple[str, ...] = ()
+    carrying: Carrying = field(default_factory=Carrying, repr=False, compare=False)
 
-    def predict(self, points: Sequence[Point], shakings: Sequence[Shaking] | None = None) -> FloatArray:
-        """Channels (P, W, C, N) of P points; ``shakings`` replace the measured ones."""
+    def predict(
+        self,
+        points: Sequence[Point],
+        shakings: Sequence[Shaking] | None = None,
+        only: NDArray[np.bool_] | None = None,
+    ) -> FloatArray:
+        """Channels (P, W, C, N) of P points; ``shakings`` replace the measured ones; zeros but in windows ``only``."""
         m = self.measured
+        points = self.declared(points)
         out = np.zeros((len(points), *m.values.shape))
         instruments = [instruments_of(p.values) for p in points]
         complete = self._complete(points)
@@ -52,14 +68,44 @@ class Predictor:
         for k, switched in enumerate(instruments):
             groups.setdefault(same_base(switched), []).append(k)
         for r, recording in enumerate(m.recordings):
-            windows = np.flatnonzero(m.recording_of == r)
+            windows = np.flatnonzero((m.recording_of == r) & (True if only is None else only))
             if not windows.size:
                 continue
-            given = m.shakings[r] if shakings is None else shakings[r]
             for members in groups.values():
-                shaking = moved_in_stages(given, self.sets(instruments[members[0]], recording), moved_in_windows)
-                self._run(points, members, windows, shaking, complete, recording, instruments, out)
+                sets = self.sets(instruments[members[0]], recording)
+                shaking = moved_in_stages(m.shakings[r], sets, moved_in_windows)
+                carried = self._carried(members, windows, shaking, complete, recording, instruments)
+                if shakings is not None:
+                    shaking = moved_in_stages(shakings[r], sets, moved_in_windows)
+                self._run(points, members, windows, shaking, complete, recording, instruments, carried, out)
         return out
+
+    def declared(self, points: Sequence[Point]) -> list[Point]:
+        """The points with the model's own parameters in the place of a fit's coordinates."""
+        found = list(points)
+        given = [k for k, point in enumerate(points) if point.coordinates]
+        complete = self._complete([points[k] for k in given])
+        if not any("." in name for values in complete[:1] for name in values):
+            return [replace(point, coordinates=()) for point in points]
+        names = points[given[0]].coordinates
+        own = self.measured.model.declared(self._values(complete, frozenset(), 1), names, self.options)
+        for i, k in enumerate(given):
+            values = {name: float(np.broadcast_to(x, (len(given),))[i]) for name, x in own.items()}
+            found[k] = Point({**points[k].values, **values}, points[k].states)
+        return found
+
+    def carried(self, point: Point) -> dict[str, FloatArray]:
+        """What the model carries to the starts of all windows at a point, arrays (W, ...) by name."""
+        m = self.measured
+        values, instruments = without_instruments(point.values), instruments_of(point.values)
+        found: dict[str, FloatArray] = {}
+        for r, recording in enumerate(m.recordings):
+            own = np.flatnonzero(m.recording_of == r)
+            if own.size:
+                shaking = moved_in_stages(m.shakings[r], self.sets(instruments, recording), moved_in_windows)
+                for name, x in self._carried([0], own, shaking, [values], recording, [instruments]).items():
+                    found.setdefault(name, np.zeros((len(m.windows), *x.shape[2:])))[own] = x[0]
+        return found
 
     def _complete(self, points: Sequence[Point]) -> list[dict[str, float]]:
         """The wall's values of every point with all keys that some point uses, so that all can run together.
@@ -79,6 +125,22 @@ class Predictor:
                     values[key] = values[key.rpartition("_")[0]]
         return found
 
+    def _carried(
+        self,
+        members: Sequence[int],
+        windows: NDArray[np.intp],
+        shaking: Shaking,
+        complete: Sequence[Mapping[str, float]],
+        recording: Recording,
+        instruments: Sequence[Switched],
+    ) -> dict[str, FloatArray]:
+        """What the model carries to the starts of the windows (P, n, ...), under the base as measured."""
+        m = self.measured
+        if m.identification.carrying is None:
+            return {}
+        settings = [Setting(self.parts(complete[p], recording), self.sets(instruments[p], recording)) for p in members]
+        return self.carrying.at(m.first[windows], m, recording, shaking, settings, self.options)
+
     def _run(
         self,
         points: Sequence[Point],
@@ -88,6 +150,7 @@ class Predictor:
         complete: Sequence[Mapping[str, float]],
         recording: Recording,
         instruments: Sequence[Switched],
+        carried: Mapping[str, FloatArray],
         out: FloatArray,
     ) -> None:
         m, time_step, ways = self.measured, recording.time_step, self._ways(recording)
@@ -98,8 +161,9 @@ class Predictor:
         parts = [self._values([complete[p] for p in members], off, n) for _, off in ways]
         instants = np.tile(np.array([first for first, _ in ways[1:]], np.int64), (n * count, 1))
         states = np.stack([points[p].states[windows] for p in members])
-        initial = {s: states[:, :, k].ravel() for k, s in enumerate(m.model.states)}
+        initial = {s: states[:, :, k].ravel() for k, s in enumerate(m.free)}
         initial |= {k: np.tile(v[windows], count) for k, v in m.memory.items()}
+        initial |= {k: v.reshape(n * count, *v.shape[2:]) for k, v in carried.items()}
         first = np.tile(m.first[windows], count)
         ran = trajectories(
             m.model, parts, instants, shaking, first=first, samples=samples, initial=initial, options=self.options
@@ -130,7 +194,14 @@ class Predictor:
     def parts(self, values: Mapping[str, float], recording: Recording) -> list[Part]:
         """A point's values of the wall from sample to sample of a recording."""
         plain = without_instruments(values)
-        return [Part(first, self._values([plain], off, 1)) for first, off in self._ways(recording)]
+        mechanisms = self.measured.model.mechanisms
+
+        def acting(off: frozenset[str]) -> dict[str, float]:
+            split = {name: name.partition(".") for name in plain}
+            nulls = {n: mechanisms[m].parameter(p).null for n, (m, _, p) in split.items() if m in off}
+            return {**plain, **nulls}
+
+        return [Part(first, acting(off)) for first, off in self._ways(recording)]
 
     def _values(
         self, points: Sequence[Mapping[str, float]], off: frozenset[str], windows: int
@@ -148,6 +219,9 @@ class Predictor:
 
 def _held(channel: FloatArray, shaking: Shaking, first: NDArray[np.int64]) -> FloatArray:
     """Channel (P, n, samples) with the last value held beyond the end of the recording."""
-    last = np.clip(shaking.horizontal.size - 1 - first, 0, channel.shape[2] - 1)
+    left = shaking.horizontal.size - 1 - first
+    if np.all(left >= channel.shape[2] - 1):
+        return channel
+    last = np.clip(left, 0, channel.shape[2] - 1)
     index = np.minimum(np.arange(channel.shape[2])[None, :], last[:, None])
     return np.take_along_axis(channel, np.broadcast_to(index, channel.shape), axis=2)

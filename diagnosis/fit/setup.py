@@ -47,8 +47,10 @@ def measure(specimen: Specimen, recordings: Sequence[Recording], reference_peak:
 
 def base_fit(specimen: Specimen, measured: Measured, seed: int = 0) -> Fitted:
     """The calibrated base: first against sensor noise alone, then with the noise of the base motion."""
-    predictor = Predictor(measured, specimen.options, specimen.stages)
     unknowns = of_specimen(specimen, measured.model)
+    ranged = {u.name for u in unknowns if u.prior is None}
+    coordinates = tuple(name for name in measured.identification.coordinates if name in ranged)
+    predictor = Predictor(measured, specimen.options, specimen.stages, coordinates)
     plain = Misfit(predictor, sensor_noise_only(predictor), unknowns, fixed_values(specimen))
     first = calibrate_base(plain, seed)
     point = plain.point(first.u, first.states)

@@ -44,10 +44,12 @@ class Fitted:
 
     @property
     def point(self) -> Point:
-        return self.misfit.point(self.u, self.states)
+        """With the model's own parameters."""
+        return self.misfit.predictor.declared([self.misfit.point(self.u, self.states)])[0]
 
     @property
     def values(self) -> dict[str, float]:
+        """Of the unknowns as the fit has them (`Identification.coordinates`)."""
         return values_of(self.misfit.unknowns, self.u)
 
     def at_bound(self, index: int) -> str:
@@ -77,7 +79,7 @@ def scatter(found: Fitted, seed: int) -> FloatArray | None:
     draws = qmc.MultivariateNormalQMC(np.zeros(found.states.shape[1]), seed=seed).random(SCATTERED)
     width = m.state_size * np.where(np.arange(SCATTERED) % 2 == 0, 0.05, 0.25)[:, None]
     trials = found.states[None] + (draws * width)[:, None, :]
-    losses = misfit.losses(misfit.residuals([misfit.point(found.u, x) for x in trials]))
+    losses = misfit.losses(misfit.residuals([misfit.point(found.u, x) for x in trials], only=bad))
     pick = np.argmin(losses, axis=0)
     better = bad & (losses.min(axis=0) < found.window_losses - 1.0)
     if not better.any():

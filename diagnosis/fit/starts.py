@@ -7,12 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from diagnosis.fit.misfit import Misfit
-from diagnosis.fit.solver import Fitted, fit_thoroughly
+from diagnosis.fit.solver import Fitted, fit, fit_thoroughly
 from diagnosis.fit.unknowns import Unknown, clip
 from models.base import FloatArray
 
 GLOBAL_POINTS = 64
-STARTS = 3
+STARTS, QUICK = 3, 5
+"""The best of them are taken a few iterations on, and the best of these to the end."""
 
 
 def calibrate_base(misfit: Misfit, seed: int = 0) -> Fitted:
@@ -22,8 +23,9 @@ def calibrate_base(misfit: Misfit, seed: int = 0) -> Fitted:
     ranged = [i for i, unknown in enumerate(misfit.unknowns) if unknown.prior is None]
     if ranged:
         starts = _best_of_sobol(misfit, ranged, starts[0], seed)
-    fits = [fit_thoroughly(misfit, u, states) for u in starts]
-    return min(fits, key=lambda f: f.loss)
+    if len(starts) > 1:
+        starts = [min((fit(misfit, u, states, QUICK) for u in starts), key=lambda f: f.loss).u]
+    return fit_thoroughly(misfit, starts[0], states)
 
 
 def start_of(unknowns: Sequence[Unknown]) -> FloatArray:

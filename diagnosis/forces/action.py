@@ -62,7 +62,7 @@ def action(predictor: Predictor, point: Point, effect: str) -> Action:
     if instrument is not None and "base" not in instrument.acts:
         return Action(effect, "error", _errors(predictor, point, effect, states), _events(predictor, motion), motion)
     amount = np.zeros(m.values.shape)
-    ahead = _one_step(predictor, _without(predictor, point, effect), states)
+    ahead = _one_step(predictor, _without(predictor, point, effect), states, _carried(predictor, point, states))
     both = inside[:, :-1] & inside[:, 1:]
     for state in rates:
         if state.channel in m.channels:
@@ -83,33 +83,39 @@ def _without(predictor: Predictor, point: Point, effect: str) -> Point:
 def _states(predictor: Predictor, point: Point) -> dict[str, FloatArray]:
     """The model's states and leading channels (W, N) along the windows, before any sensor of the responses."""
     m = predictor.measured
-    names = dict.fromkeys([*m.model.states, *(lead.channel for lead in m.identification.leads), *m.channels])
+    names = dict.fromkeys([*m.free, *(lead.channel for lead in m.identification.leads), *m.channels])
     found = {name: np.zeros((len(m.windows), m.values.shape[2])) for name in names}
+    carried = predictor.carried(point)
     for r in range(len(m.recordings)):
         own = np.flatnonzero(m.recording_of == r)
         if own.size:
-            initial = {name: point.states[own, k] for k, name in enumerate(m.model.states)}
-            memory = {name: before[own] for name, before in m.memory.items()}
-            ran = _run(predictor, point.values, r, m.first[own], m.values.shape[2], initial | memory)
+            initial = {name: point.states[own, k] for k, name in enumerate(m.free)}
+            initial |= {name: before[own] for name, before in (m.memory | carried).items()}
+            ran = _run(predictor, point.values, r, m.first[own], m.values.shape[2], initial)
             for name in names:
                 found[name][own] = ran[name]
     return found
 
 
-def _one_step(predictor: Predictor, point: Point, states: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
-    """The states (W, N - 1) one sample after each sample of the motion ``states``, by the model at ``point``."""
+def _one_step(
+    predictor: Predictor, point: Point, states: Mapping[str, FloatArray], carried: dict[str, FloatArray]
+) -> dict[str, FloatArray]:
+    """The states (W, N - 1) one sample after each sample of the motion ``states``, by the model at ``point``.
+
+    ``carried`` (W, N, ...): what else the motion has at each sample.
+    """
     m = predictor.measured
     count = m.values.shape[2] - 1
-    found = {name: np.zeros((len(m.windows), count)) for name in m.model.states}
-    memory = _memories(predictor, states)
+    found = {name: np.zeros((len(m.windows), count)) for name in m.free}
+    memory = _memories(predictor, states) | carried
     for r, recording in enumerate(m.recordings):
         own = np.flatnonzero(m.recording_of == r)
         if not own.size:
             continue
         first = m.first[own][:, None] + np.arange(count)
         first = np.minimum(first, recording.time.size - 2)
-        initial = {name: states[name][own, :-1].ravel() for name in m.model.states}
-        initial |= {name: values[own, :-1].ravel() for name, values in memory.items()}
+        initial = {name: states[name][own, :-1].ravel() for name in m.free}
+        initial |= {name: x[own, :-1].reshape(own.size * count, *x.shape[2:]) for name, x in memory.items()}
         ran = _run(predictor, point.values, r, first.ravel(), 2, initial)
         for name in found:
             found[name][own] = ran[name][:, 1].reshape(own.size, count)
@@ -126,6 +132,24 @@ def _run(
     return m.model.trajectories(
         without_instruments(values), shaking, first=first, samples=samples, initial=initial, options=predictor.options
     )
+
+
+def _carried(predictor: Predictor, point: Point, states: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+    """What the model carries (W, N, ...) at every sample of the motion ``states``."""
+    m = predictor.measured
+    found: dict[str, FloatArray] = {}
+    for r in range(len(m.recordings)):
+        own = np.flatnonzero(m.recording_of == r)
+        if own.size:
+            shaking: Shaking = moved_in_windows(m.shakings[r], instruments_of(point.values))
+            ran = m.model.carry(
+                without_instruments(point.values), shaking, {name: states[name][own] for name in m.free},
+                np.arange(m.values.shape[2]), first=m.first[own],
+                initial={name: x[own] for name, x in predictor.carried(point).items()}, options=predictor.options,
+            )  # fmt: skip
+            for name, x in ran.items():
+                found.setdefault(name, np.zeros((len(m.windows), *x.shape[1:])))[own] = x
+    return found
 
 
 def _memories(predictor: Predictor, states: Mapping[str, FloatArray]) -> dict[str, FloatArray]:

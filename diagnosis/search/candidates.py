@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
@@ -88,9 +88,20 @@ def candidates(measured: Measured, specimen: Specimen) -> tuple[Candidate, ...]:
         of_joints = mechanism.addressable(measured.model.name)[len(plain) :]
         for parameters in (plain, of_joints[0::2], of_joints[1::2]):
             if parameters:
-                unknowns = tuple(_unknown(mechanism, p, measured) for p in parameters)
-                found.append(Candidate(mechanism, unknowns, {}))
+                found += _with_whole_numbers_held(mechanism, parameters, measured)
     return tuple(found)
+
+
+def _with_whole_numbers_held(
+    mechanism: Mechanism, parameters: Sequence[MechanismParameter], measured: Measured
+) -> list[Candidate]:
+    """One candidate for each choice of the whole-number parameters, which are no continuous unknowns."""
+    declared = measured.identification.whole
+    plain = [p.name for p in mechanism.parameters]
+    whole = {p.name: declared.get(f"{mechanism.name}.{own}", ()) for p, own in zip(parameters, plain, strict=True)}
+    unknowns = tuple(_unknown(mechanism, p, measured) for p in parameters if not whole[p.name])
+    held = {f"{mechanism.name}.{name}": values for name, values in whole.items() if values}
+    return [Candidate(mechanism, unknowns, dict(zip(held, chosen, strict=True))) for chosen in product(*held.values())]
 
 
 def absent(measured: Measured) -> dict[str, str]:

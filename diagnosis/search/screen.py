@@ -13,7 +13,7 @@ parameters and states answering linearly.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -42,7 +42,7 @@ def score(
     screen: Linearisation, candidates: Sequence[Candidate], not_tried: dict[str, str] | None = None
 ) -> list[Score]:
     """Statistics of all candidates, strongest first; why the model refuses the others goes into ``not_tried``."""
-    base = screen.fitted.point
+    base = screen.fitted.misfit.point(screen.fitted.u, screen.fitted.states)
     found = []
     for candidate in candidates:
         try:
@@ -90,4 +90,4 @@ def _gain(screen: Linearisation, off: FloatArray) -> float:
 def at(base: Point, candidate: Candidate, u: FloatArray) -> Point:
     """A point with the candidate's coordinates."""
     values = {x.name: x.value(float(c)) for x, c in zip(candidate.unknowns, u, strict=True)}
-    return Point({**base.values, **candidate.held, **values}, base.states)
+    return replace(base, values={**base.values, **candidate.held, **values})

@@ -1,4 +1,4 @@
-"""What a diagnosis needs to know of walls on rubber layers that lift: vertical states are not measured."""
+"""What a diagnosis needs to know of walls on rubber layers that lift: rotations lead, the rest is carried."""
 
 from __future__ import annotations
 
@@ -20,5 +20,7 @@ IDENTIFICATION = Identification(
         shortest=0.8, aim=1.5, longest=3.0, quiet=1.0, smoothing=0.1, unit=lambda d: 1.0 / d["frequency_1"]
     ),
     chaotic=False,
-    not_carried=("the strain history of the rubber that its laws remember",),
+    coordinates=("base_stiffness", "top_stiffness", "layer_modulus", "base_layer_modulus", "top_layer_modulus"),
+    whole={"bouc_wen.exponent": (1.0, 2.0)},
+    carrying=0.06,
 )

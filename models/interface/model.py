@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.base import FloatArray, Values
 from models.errors import InputError
@@ -13,8 +14,10 @@ from models.interface.assembly import assemble, build
 from models.interface.identification import IDENTIFICATION
 from models.interface.layered import LayeredWall
 from models.interface.observe import observe
+from models.interface.tangent import unstressed
 from models.model import Model
 from models.runs import Request, Run
+from models.shaking import Shaking
 
 
 class Interface(Model[LayeredWall]):
@@ -77,7 +80,21 @@ class Interface(Model[LayeredWall]):
 
         return run(coefficients, request)
 
-    def observe(self, coefficients: LayeredWall, samples: FloatArray) -> dict[str, FloatArray]:
+    def declared(
+        self, values: Values, names: Sequence[str], options: Mapping[str, str] | None = None
+    ) -> Mapping[str, FloatArray]:
+        """The stiffness of the unstressed layers, from their slope under the static load."""
+        return unstressed(values, self.resolve_options(options), names, self.name)
+
+    def carry_lanes(
+        self, coefficients: LayeredWall, shaking: Shaking, motion: Mapping[str, FloatArray], marks: NDArray[np.int64],
+        first: NDArray[np.int64], initial: Mapping[str, FloatArray],
+    ) -> dict[str, FloatArray]:  # fmt: skip
+        from models.interface.lanes.carried import carry
+
+        return carry(coefficients, shaking, motion, marks, first, initial)
+
+    def observe(self, coefficients: LayeredWall, samples: FloatArray) -> Mapping[str, FloatArray]:
         return observe(coefficients, samples)
 
     def settle(self, run: Run, time_step: float) -> FloatArray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -10,37 +10,67 @@ from models.base import Event, FloatArray
 from models.interface.layered import LayeredWall
 
 
-def observe(wall: LayeredWall, state: FloatArray) -> dict[str, FloatArray]:
+class Observed(Mapping[str, FloatArray]):
+    """Observables by name, each computed when it is asked for."""
+
+    def __init__(self, forms: Mapping[str, Callable[[], FloatArray]]) -> None:
+        self._forms = forms
+
+    def __getitem__(self, name: str) -> FloatArray:
+        return self._forms[name]()
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._forms)
+
+    def __len__(self) -> int:
+        return len(self._forms)
+
+
+def observe(wall: LayeredWall, state: FloatArray) -> Observed:
     """Observables ``(n, m)`` of states q, q' ``(n, m, 8)`` of n walls; see `declaration.OBSERVABLES`."""
     t1, t2, z1, z2, v1, v2, y1, y2 = np.moveaxis(state, 2, 0)
+    toe = 1.0 if wall.toe_held else 0.0
 
     def lane(values: FloatArray) -> FloatArray:
         return values[:, None]
 
-    toe = 1.0 if wall.toe_held else 0.0
-    turn = t2 - t1
-    roll = toe * np.sign(t1) * lane(wall.base_half_width) * (1.0 - np.cos(t1))
-    along = toe * np.sign(turn) * lane(wall.top_half_width) * (1.0 - np.cos(turn))
-    height = lane(wall.height_1 + wall.top_thickness_in_height) + z2
-    base, top = np.ones_like(t1), np.ones_like(t1)
-    if wall.joints != "top":
+    def roll() -> FloatArray:
+        return np.asarray(toe * np.sign(t1) * lane(wall.base_half_width) * (1.0 - np.cos(t1)))
+
+    def upper() -> FloatArray:
+        turn = t2 - t1
+        along = toe * np.sign(turn) * lane(wall.top_half_width) * (1.0 - np.cos(turn))
+        height = lane(wall.height_1 + wall.top_thickness_in_height) + z2
+        moved = roll() + along * np.cos(t1) + height * np.sin(t1) + lane(wall.centre_2) * np.sin(t2)
+        return np.asarray(moved)
+
+    def contact_1() -> FloatArray:
+        if wall.joints == "top":
+            return np.ones_like(t1)
         late = np.where(wall.clip, wall.base_damping / wall.base_stiffness, 0.0)
-        base = share(lane(wall.base_half_width), lane(late), z1, np.sin(t1), y1, np.cos(t1) * v1)
-    if wall.joints != "base":
+        return share(lane(wall.base_half_width), lane(late), z1, np.sin(t1), y1, np.cos(t1) * v1)
+
+    def contact_2() -> FloatArray:
+        if wall.joints == "base":
+            return np.ones_like(t1)
+        turn = t2 - t1
         late = np.where(wall.clip, wall.top_damping / wall.top_stiffness, 0.0)
-        top = share(lane(wall.top_half_width), lane(late), z2, np.sin(turn), y2, np.cos(turn) * (v2 - v1))
-    return {
-        "rotation_1": t1,
-        "rotation_2": t2,
-        "rotation_rate_1": v1,
-        "rotation_rate_2": v2,
-        "displacement_1_x": roll + lane(wall.centre_1) * np.sin(t1),
-        "displacement_2_x": roll + along * np.cos(t1) + height * np.sin(t1) + lane(wall.centre_2) * np.sin(t2),
-        "compression_base": -z1,
-        "compression_top": -z2,
-        "contact_1": base,
-        "contact_2": top,
-    }
+        return share(lane(wall.top_half_width), lane(late), z2, np.sin(turn), y2, np.cos(turn) * (v2 - v1))
+
+    return Observed(
+        {
+            "rotation_1": lambda: t1,
+            "rotation_2": lambda: t2,
+            "rotation_rate_1": lambda: v1,
+            "rotation_rate_2": lambda: v2,
+            "displacement_1_x": lambda: roll() + lane(wall.centre_1) * np.sin(t1),
+            "displacement_2_x": upper,
+            "compression_base": lambda: -z1,
+            "compression_top": lambda: -z2,
+            "contact_1": contact_1,
+            "contact_2": contact_2,
+        }
+    )
 
 
 def share(

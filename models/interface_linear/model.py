@@ -48,7 +48,7 @@ class InterfaceLinear(Interface):
 
         return run(coefficients, request)
 
-    def observe(self, coefficients: LayeredWall, samples: FloatArray) -> dict[str, FloatArray]:
+    def observe(self, coefficients: LayeredWall, samples: FloatArray) -> Mapping[str, FloatArray]:
         return observe(coefficients, samples)
 
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 
 from models.base import FloatArray
@@ -12,19 +15,34 @@ from models.interface.strip import stored
 from models.rubber import lanes as rubber
 
 JOINTS = ("base", "top")
+HISTORY = "strain_history"
+"""Name of the hidden states of both layers, (n, 2, laws, 16), among what a run starts from."""
 
 
-def given_laws(wall: LayeredWall, rest: FloatArray, step: FloatArray) -> Rubber | None:
-    """Layers of n walls, relaxed at ``rest`` (n, 4), for steps of ``step`` (n,) seconds; None without laws."""
+def given_laws(
+    wall: LayeredWall, rest: FloatArray, step: FloatArray, initial: Mapping[str, FloatArray]
+) -> Rubber | None:
+    """Layers of n walls for steps of ``step`` (n,) seconds; None without laws.
+
+    With the history that ``initial`` holds, else relaxed at ``rest`` (n, 4).
+    """
     if not wall.laws:
         return None
     numbers = np.stack([rubber.number_table(wall.laws_at(joint), step) for joint in JOINTS], axis=1)
     hidden = np.zeros((wall.size, 2, rubber.N_HIDDEN, COUNT))
     for k, joint in enumerate(JOINTS):
-        if laws := wall.laws_at(joint):
+        if HISTORY not in initial and (laws := wall.laws_at(joint)):
             hidden[:, k] = rubber.hidden_table(laws, Fibres(wall, joint).relaxed(-rest[:, 2 + k]))
+    if HISTORY in initial:
+        hidden = np.ascontiguousarray(initial[HISTORY])
     base, top = (rubber.variant_for(wall.laws_at(joint)) for joint in JOINTS)
     return Rubber(numbers, hidden, hidden.copy(), base, top)
+
+
+def together(laws: Rubber, lanes: Any) -> Rubber:
+    """Some of the lanes, both layers in the variant that holds all laws."""
+    every = (None,) * (len(rubber.VARIANTS) - 1)
+    return Rubber(laws.numbers[lanes], laws.hidden[lanes], laws.ended[lanes], every, every)
 
 
 def stored_in_layers(wall: LayeredWall, q: FloatArray, hidden: FloatArray | None) -> FloatArray:

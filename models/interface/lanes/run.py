@@ -67,7 +67,7 @@ def run(wall: LayeredWall, request: Request, refinement: int = 1) -> Run:
     given = given_table(wall, request.scale, request.initial, rest)
     given[:, r.Q_PERIOD] = 2.0 * np.pi / np.sqrt(np.abs(squares[:, 0]))
     given[:, r.Q_STEPS] = substeps(wall, squares, shaking.time_step) * refinement
-    laws = given_laws(wall, rest, shaking.time_step / given[:, r.Q_STEPS])
+    laws = given_laws(wall, rest, shaking.time_step / given[:, r.Q_STEPS], request.initial)
     tables = empty(request, r.N_RESULT, 8)
     steps = advance(
         record, *request.steps(1, record.end), given, tables, request.history,

@@ -1,0 +1,74 @@
+"""What no sensor measures, carried along a measured motion: W walls whose rotations are prescribed at every sample.
+
+Each wall runs by the step rule of `step`; at every sample its prescribed states are set to the measured ones, so that
+between two samples they go on by the equations of motion and never leave the measurement. What the layers remember and
+how far they are compressed then is that of the measured motion.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from models.interface.fibres import COUNT
+from models.interface.lanes.fibres import APART, LAST, N_WORK_LAWS, fibres_all
+from models.interface.lanes.rows import GROWTH_A, GROWTH_V, N_RESULT, N_WORK, Q_STEPS, RA, RV, T1, W
+from models.interface.lanes.settle import empty, load, start
+from models.interface.lanes.step import step_all
+from models.lanes.arrays import Counts, Record, Table
+from models.lanes.compiler import compiled
+from models.rubber.lanes import N_HIDDEN
+
+
+@compiled
+def carry(
+    record: Record, first: Counts, given: Table, motion: Table, held: Counts, marks: Counts, states: Table,
+    history: Table, mixed: Any, laws: Any, rubber: Any,
+) -> None:  # fmt: skip
+    """Run n lanes from sample ``first`` (n,), each as many steps a sample as the first of them takes.
+
+    ``motion`` (1 or n, m, h): the states ``held`` (h,), by their place among the model's, at the samples from ``first``
+    on. ``marks`` (k,), counted from ``first``, in order: where ``states`` (n, k, 8) and ``history`` (n, k, joints,
+    laws, fibres) are written. ``mixed``, ``laws``, ``rubber``: as of `models.interface.lanes.advance.advance`.
+    """
+    n, per = given.shape[0], int(given[0, Q_STEPS])
+    result = np.zeros((n, N_RESULT))
+    w = np.zeros((N_WORK if laws is None else N_WORK_LAWS, W))
+    flat = w.reshape(w.size)
+    for begin in range(0, n, W):
+        count = min(W, n - begin)
+        for slot in range(W):
+            empty(w, slot)
+            if slot < count:
+                lane = begin + slot
+                start(
+                    given, result, w, lane, slot, record.samples, first[lane], record.step, False, mixed, laws, rubber
+                )
+        mark = 0
+        for i in range(marks[-1] + 1):
+            for slot in range(count):
+                row = begin + slot if motion.shape[0] > 1 else 0
+                for k in range(held.size):
+                    w[T1 + held[k], slot] = motion[row, i, k]
+            while mark < marks.size and marks[mark] == i:
+                for slot in range(count):
+                    for k in range(states.shape[2]):
+                        states[begin + slot, mark, k] = w[T1 + k, slot]
+                    if laws is not None:
+                        for joint in range(2):
+                            for law in range(N_HIDDEN):
+                                for f in range(COUNT):
+                                    at = LAST[joint] + ((law + 1) * APART + f) * W + slot
+                                    history[begin + slot, mark, joint, law, f] = flat[at]
+                mark += 1
+            for slot in range(count):
+                at_sample = min(first[begin + slot] + i, record.shaken)
+                load(w, slot, record.samples, at_sample, record.shaken, float(per))
+            for _ in range(per):
+                for slot in range(W):
+                    w[RA, slot] += w[GROWTH_A, slot]
+                    w[RV, slot] += w[GROWTH_V, slot]
+                if laws is not None:
+                    fibres_all(flat, rubber.base, rubber.top)
+                step_all(w, mixed, laws)

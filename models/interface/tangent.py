@@ -1,0 +1,80 @@
+"""Stiffness of the layers as recordings tell it: the slope of each layer's law on unloading from its static state.
+
+Small motions see that slope, whatever law made it, and large ones see the law about it; the stiffness k of the
+unstressed layer is a combination of both. So a fit works with the slope and k follows,
+
+    k <- k (target/slope(k))^(1/p),        p = d ln slope/d ln k from the last two rounds, 1 at first,
+
+the slope taken at the compression that carries the load by the law with k. A Maxwell arm is left out of the slope: at
+rest it carries nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from models.base import FloatArray, Values
+from models.interface import modes
+from models.interface.assembly import build
+from models.interface.layered import LayeredWall
+from models.rubber.layer import Layer
+
+JOINTS = {
+    "base_stiffness": ("base",),
+    "top_stiffness": ("top",),
+    "base_layer_modulus": ("base",),
+    "top_layer_modulus": ("top",),
+    "layer_modulus": ("base", "top"),
+}
+"""The parameters that can stand for a slope, and the joints whose layers they make; of two the mean counts."""
+LEFT_OUT = ("maxwell",)
+ROUNDS, LEAST = 6, 0.1
+"""Rounds of the iteration, and the least p that is believed."""
+
+
+def unstressed(values: Values, options: Mapping[str, str], names: Sequence[str], model: str) -> dict[str, FloatArray]:
+    """The ``names``, given as slopes of n lanes, as the parameters (n,) of the unstressed layers that have them.
+
+    Where no stiffness has the slope the one with the nearest of those tried is taken; where a layer cannot carry its
+    load at all, they stay as given.
+    """
+    wall = build(values, options, False, 1, model)
+    joints = [joint for joint in wall.rubber_joints if any(joint in JOINTS[name] for name in names)]
+    asked = {joint: _stiffness(wall, joint) for joint in joints}
+    power = {joint: np.ones(wall.size) for joint in joints}
+    before: dict[str, tuple[FloatArray, FloatArray]] = {}
+    best = {joint: (asked[joint], np.full(wall.size, np.inf)) for joint in joints}
+    for _ in range(ROUNDS):
+        rest, found = modes.static_state(wall), {}
+        for joint in joints:
+            k, slope = _stiffness(wall, joint), _slope(wall, joint, rest)
+            miss = np.abs(np.log(slope / asked[joint]))
+            nearer = miss < best[joint][1]
+            best[joint] = np.where(nearer, k, best[joint][0]), np.where(nearer, miss, best[joint][1])
+            if joint in before:
+                with np.errstate(divide="ignore", invalid="ignore"):
+                    local = np.log(slope / before[joint][1]) / np.log(k / before[joint][0])
+                power[joint] = np.where(np.isfinite(local) & (local > LEAST), local, power[joint])
+            before[joint] = k, slope
+            with np.errstate(invalid="ignore"):
+                found[f"{joint}_stiffness"] = k * (asked[joint] / slope) ** (1.0 / power[joint])
+        wall = wall.replace(**{name: np.where(np.isfinite(x), x, 1.0) for name, x in found.items()})
+    shares = {joint: best[joint][0] / asked[joint] for joint in joints}
+    return {
+        name: values[name] * np.mean([shares[joint] for joint in joints if joint in JOINTS[name]], axis=0)
+        for name in names
+        if set(joints) & set(JOINTS[name])
+    }
+
+
+def _stiffness(wall: LayeredWall, joint: str) -> FloatArray:
+    return wall.base_stiffness if joint == "base" else wall.top_stiffness
+
+
+def _slope(wall: LayeredWall, joint: str, rest: FloatArray) -> FloatArray:
+    """Of the layer without what is left out, at ``rest`` (n, 4)."""
+    layer, compression = wall.layer(joint), -rest[:, 2 if joint == "base" else 3]
+    kept = Layer(layer.stiffness, [(law, p) for law, p in layer.laws if law.name not in LEFT_OUT])
+    return np.asarray(kept.slope(compression, kept.relaxed(compression)) + 0.0 * compression)

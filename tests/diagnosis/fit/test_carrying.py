@@ -1,0 +1,116 @@
+"""States at the windows' starts that no recording holds: carried along what was measured, freed of the instruments."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+
+import models
+from diagnosis.data.measured import Measured
+from diagnosis.fit.prediction import Point, Predictor
+from diagnosis.fit.setup import measure
+from grids.instruments import recorded as instrumented
+from grids.instruments.base import Surroundings, Switched
+from grids.recordings.base import Recording
+from grids.specimen import Specimen
+from grids.stages import Stage
+from models.piecewise import Part, simulate
+from tests.diagnosis.made import TIME_STEP, motion
+
+TRUE = {
+    "wall_length": 0.72, "wall_height": 1.8, "wall_mass": 161.0, "top_mass": 5000.0, "top_length": 0.72,
+    "top_height": 0.6, "layer_thickness": 0.01, "base_stiffness": 4.0e7, "top_stiffness": 4.4e7, "base_damping": 8.7e5,
+    "top_damping": 4.0e5,
+}  # fmt: skip
+MAXWELL = {"maxwell.arm_stiffness_ratio": 0.6, "maxwell.relaxation_time": 0.1}
+HARDENING = {"hardening.beta2": 60.0}
+WALL = Specimen("wall on rubber", "interface", TRUE, tolerance={"wall_height": 0.005})
+MODEL = models.get("interface")
+PEAK = 0.005
+BASE = motion(1, pga=3.0)
+
+
+@cache
+def made(law: tuple[tuple[str, float], ...], begins: int = 0) -> Recording:
+    """A recording without noise of a wall with a law, from a sample on."""
+    parts = [Part(0, TRUE), Part(begins, {**TRUE, **dict(law)})] if begins else [Part(0, {**TRUE, **dict(law)})]
+    ran = simulate(MODEL, parts, BASE, duration=BASE.duration)
+    names = ("rotation_1", "rotation_2", "rotation_rate_1", "rotation_rate_2")
+    channels = {name: np.asarray(ran.channels[name]) for name in names}
+    return Recording("shake_1", TIME_STEP, BASE.time, {"base_acceleration_x": BASE.horizontal, **channels})
+
+
+def seen(recording: Recording, instruments: Switched) -> Recording:
+    """Without the rates, and as the instruments record it."""
+    true = {name: recording.channels[name] for name in ("rotation_1", "rotation_2")}
+    around = Surroundings(TIME_STEP, BASE.horizontal, PEAK)
+    channels = instrumented(true, instruments, around)
+    return replace(recording, channels={"base_acceleration_x": BASE.horizontal, **channels})
+
+
+def measured_of(recording: Recording) -> Measured:
+    return measure(WALL, [recording], PEAK)
+
+
+def true_states(recording: Recording, measured: Measured, late: int = 0) -> np.ndarray:
+    """At the windows' starts on the clock of responses that come ``late`` by some samples."""
+    return np.stack([recording.channels[name][measured.first - late] for name in measured.free], axis=1)
+
+
+def misses(predicted: np.ndarray, recording: Recording, measured: Measured) -> float:
+    """Rms of the prediction's error of the rotations as they were, over their peak."""
+    values = replace(measured, recordings=(recording,)).values
+    return float(np.sqrt(np.mean(np.where(measured.mask, predicted - values, 0.0) ** 2)) / np.max(np.abs(values)))
+
+
+def test_only_what_is_recorded_is_free_and_the_rest_is_right_at_the_true_parameters() -> None:
+    true = made(tuple(MAXWELL.items()))
+    measured = measured_of(seen(true, {}))
+    assert measured.free == ("rotation_1", "rotation_2", "rotation_rate_1", "rotation_rate_2")
+    states = true_states(true, measured)
+    point, without = Point({**TRUE, **MAXWELL}, states), Point(TRUE, states)
+    right, wrong = Predictor(measured).predict([point, without])
+    assert misses(right, true, measured) < 2e-3
+    assert misses(wrong, true, measured) > 0.05
+
+
+def test_the_motion_is_freed_of_what_the_sensors_add_to_it() -> None:
+    true = made(tuple(MAXWELL.items()))
+    instruments: Switched = {"offset": {"offset_over_peak": 0.1}, "gain": {"gain": 0.08}, "delay": {"delay": 0.01}}
+    switched = {f"{name}.{k}": v for name, values in instruments.items() for k, v in values.items()}
+    measured = measured_of(seen(true, instruments))
+    states = true_states(true, measured, late=2)
+    known, unknown = Predictor(measured).predict(
+        [Point({**TRUE, **MAXWELL, **switched}, states), Point({**TRUE, **MAXWELL}, states)]
+    )
+    assert misses(known, true, measured) < 0.015 < 0.035 < misses(unknown, true, measured)
+
+
+def test_what_is_carried_is_computed_once_for_all_states_and_probes() -> None:
+    measured = measured_of(seen(made(tuple(MAXWELL.items())), {}))
+    predictor = Predictor(measured)
+    states = measured.states
+    first = predictor.predict([Point({**TRUE, **MAXWELL}, states)])
+    before = list(predictor.carrying.kept)
+    moved = Point({**TRUE, **MAXWELL}, states * 1.01)
+    predictor.predict([moved], [replace(s, horizontal=s.horizontal + 0.1) for s in measured.shakings])
+    assert list(predictor.carrying.kept) == before
+    again = predictor.predict(
+        [moved, Point({**TRUE, **MAXWELL, "wall_height": 1.81}, states), Point({**TRUE, **MAXWELL}, states)]
+    )
+    assert len(predictor.carrying.kept) == len(before) + 1
+    np.testing.assert_array_equal(again[2], first[0])
+
+
+def test_a_law_that_begins_is_carried_as_it_acts() -> None:
+    begins = 900
+    true = made(tuple(HARDENING.items()), begins)
+    measured = measured_of(seen(true, {}))
+    states = true_states(true, measured)
+    point = Point({**TRUE, **HARDENING}, states)
+    stages = {"hardening": (Stage("shake_1", (begins - 0.5) * TIME_STEP),)}
+    staged, always = (Predictor(measured, stages=s).predict([point])[0] for s in (stages, {}))
+    assert misses(staged, true, measured) < 2e-3
+    assert misses(always, true, measured) > 2e-2

@@ -1,0 +1,105 @@
+"""States that no sensor holds, carried along the rotations: those of the wall that made them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.signal import savgol_filter
+
+from models.shaking import Shaking
+from tests.models.interface.walls import MODEL
+
+STEP, COUNT, NOISE = 0.002, 3500, 0.01
+MARKS = np.arange(500, 3001, 250)
+AHEAD = 400
+"""Samples of a window."""
+WALL: dict[str, Any] = {
+    "wall_length": 0.72, "wall_height": 1.8, "wall_mass": 161.0, "top_mass": 5000.0, "top_length": 0.72,
+    "top_height": 0.6, "layer_thickness": 0.01, "base_stiffness": 4.0e7, "top_stiffness": 4.4e7, "base_damping": 8.7e5,
+    "top_damping": 4.0e5,
+}  # fmt: skip
+MAXWELL = {"maxwell.arm_stiffness_ratio": 0.6, "maxwell.relaxation_time": 0.1}
+MULLINS = {"mullins.softening": 0.3, "mullins.strain": 0.3}
+RATES = ("rotation_rate_1", "rotation_rate_2")
+HELD = ("rotation_1", "rotation_2", *RATES)
+
+
+def shaking() -> Shaking:
+    time = STEP * np.arange(COUNT)
+    rng = np.random.default_rng(5)
+    pieces = np.interp(time, np.arange(0.0, 8.0, 0.1), rng.normal(size=80))
+    signal = pieces * np.exp(-(((time - 3.0) / 1.5) ** 2))
+    return Shaking(STEP, 1.5 * signal / np.max(np.abs(signal)))
+
+
+def carried(values: dict[str, Any], motion: dict[str, np.ndarray], **more: Any) -> dict[str, np.ndarray]:
+    return MODEL.carry(values, shaking(), motion, MARKS, first=np.zeros(1, np.int64), **more)
+
+
+def in_windows(values: dict[str, Any], channels: Any, carried: dict[str, np.ndarray]) -> np.ndarray:
+    """Rotations (2, windows, samples) from the true rotations and rates at the marks, and what was carried there."""
+    initial = {name: channels[name][MARKS] for name in HELD} | {name: x[0] for name, x in carried.items()}
+    ran = MODEL.trajectories(values, shaking(), first=MARKS, samples=AHEAD, initial=initial)
+    return np.stack([ran["rotation_1"], ran["rotation_2"]])
+
+
+def recorded(channels: Any) -> np.ndarray:
+    return np.array([[channels[name][k : k + AHEAD] for k in MARKS] for name in HELD[:2]])
+
+
+@pytest.mark.parametrize("law", [{}, MAXWELL, MULLINS])
+def test_windows_from_carried_states_are_parts_of_the_run(law: dict[str, float]) -> None:
+    values = WALL | law
+    channels = MODEL.simulate(values, shaking()).channels
+    found = carried(values, {name: channels[name][None] for name in HELD})
+    np.testing.assert_allclose(found["displacement_z_1"][0], -channels["compression_base"][MARKS], rtol=2e-3, atol=1e-7)
+    np.testing.assert_allclose(found["displacement_z_2"][0], -channels["compression_top"][MARKS], rtol=2e-3, atol=1e-7)
+    peak = np.max(np.abs(channels["rotation_1"]))
+    assert peak > 2.0 * MODEL.derive(values)["uplift_rotation"][0]  # it lifts, so its compression changes
+    assert np.max(np.abs(in_windows(values, channels, found) - recorded(channels))) < 1e-3 * peak
+    relaxed = np.max(np.abs(in_windows(values, channels, {}) - recorded(channels)))
+    assert relaxed > (0.02 if law else 1e-3) * peak
+
+
+def test_noise_of_the_measured_motion_hardly_enters_what_is_carried() -> None:
+    values = WALL | MAXWELL
+    channels = MODEL.simulate(values, shaking()).channels
+    rng = np.random.default_rng(1)
+    motion = {}
+    for name, rate in zip(HELD[:2], RATES, strict=True):
+        sigma = NOISE * np.max(np.abs(channels[name]))
+        noisy = channels[name] + sigma * rng.normal(size=COUNT)
+        motion[name] = savgol_filter(noisy, 31, 3)[None]
+        motion[rate] = savgol_filter(noisy, 31, 3, deriv=1, delta=STEP)[None]
+    wrong = in_windows(values, channels, carried(values, motion)) - recorded(channels)
+    sigma = NOISE * np.max(np.abs(recorded(channels)))
+    assert np.sqrt(np.mean(wrong**2)) < 0.2 * sigma
+
+
+def test_lanes_do_not_depend_on_one_another_and_what_cannot_stand_carries_nothing() -> None:
+    channels = MODEL.simulate(WALL, shaking()).channels
+    motion = {name: channels[name][None] for name in HELD}
+    soft = np.array([4.0e7, 4.0e4, 8.0e7])
+    each = MODEL.carry({**WALL, "base_stiffness": soft}, shaking(), motion, MARKS, first=np.zeros(3, np.int64))
+    for name, together in each.items():
+        assert np.all(np.isnan(together[1]))
+        for k in (0, 2):
+            np.testing.assert_array_equal(together[k], carried({**WALL, "base_stiffness": soft[k]}, motion)[name][0])
+
+
+def test_a_run_cut_in_two_carries_what_the_whole_one_does() -> None:
+    values = WALL | MAXWELL
+    channels = MODEL.simulate(values, shaking()).channels
+    motion = {name: channels[name][None] for name in HELD}
+    whole, cut = carried(values, motion), 1100
+    first, begun = np.zeros(1, np.int64), MARKS[cut < MARKS] - cut
+    at_cut = MODEL.carry(values, shaking(), motion, np.array([cut]), first=first)
+    later = MODEL.carry(
+        values, shaking(), {name: x[:, cut:] for name, x in motion.items()}, begun, first=first + cut,
+        initial={name: x[:, 0] for name, x in at_cut.items()},
+    )  # fmt: skip
+    for name, x in later.items():
+        scale = np.max(np.abs(whole[name]))
+        np.testing.assert_allclose(x[0], whole[name][0, cut < MARKS], atol=2e-4 * scale)
