@@ -17,6 +17,7 @@ from diagnosis.answer.rescale import over_peak, true_peak
 from diagnosis.answer.result import Diagnosis, Effect, Located, Rival, Screened, Visited
 from diagnosis.answer.shows import shows
 from diagnosis.answer.statement import statement
+from diagnosis.answer.when import stages_of
 from diagnosis.answer.whole_runs import with_runs_from_rest
 from diagnosis.data.measured import Measured
 from diagnosis.errors.model import calibrated
@@ -27,6 +28,7 @@ from diagnosis.forces.columns import Forces, forces
 from diagnosis.forces.constancy import Tested, flags, tests
 from diagnosis.progress import Progress, Stages, silent
 from diagnosis.search import bootstrap as bootstrapping
+from diagnosis.search.beginnings import beginnings
 from diagnosis.search.candidates import absent, candidates
 from diagnosis.search.found import Search, misfit_per_sample, rivals
 from diagnosis.search.law import Law, estimate
@@ -62,6 +64,8 @@ def diagnose(
     try:
         for stage in search(found, progress):
             found = stage
+        for stage in beginnings(found, progress):
+            found = stage
     except KeyboardInterrupt:
         finished = False
         if found.best is None:
@@ -89,7 +93,8 @@ def _assemble(
 
     def of_chosen() -> Forces:
         progress("testing constancy", 0.85)
-        return forces(chosen.fitted)
+        tested = found.about is not None and found.about.fitted is chosen.fitted
+        return found.about if found.about is not None and tested else forces(chosen.fitted)
 
     about = stages.needed(of_chosen)
     tested = stages.needed(lambda: tests(about))
@@ -167,8 +172,9 @@ def _assemble(
             lambda: with_runs_from_rest(specimen, shown, found.base, final),
             lambda: tuple(t for k, s in enumerate(shown) for t in traces_of(s, k == 1)),
         ),
-        prediction_horizon=stages.optional("prediction horizons", lambda: _horizons(shown, specimen), dict),
+        prediction_horizon=stages.optional("prediction horizons", lambda: _horizons(shown, found.base, final), dict),
         missing_force=force,
+        held_stages=held.held_stages if held else (),
         errors=errors,
         not_tried=not_tried(found),
         reference_peak=true_peak(chosen),
@@ -201,7 +207,8 @@ def _estimates(
             short = name.partition(".")[2]
             parameters[short] = Estimate(value, value, value, candidate.mechanism.parameter(short).unit)
         parameters = over_peak(parameters, candidate, chosen.measured.reference_peak, peak)
-        effects.append(Effect(candidate.name, candidate.effect_class, parameters, gain, chance))
+        stages = stages_of(chosen, candidate)
+        effects.append(Effect(candidate.name, candidate.effect_class, parameters, gain, chance, stages))
     tabulated = tuple(f"{name}." for name, m in chosen.measured.model.mechanisms.items() if m.tabulated)
     return tuple(effects), {name: value for name, value in values.items() if not name.startswith(tabulated)}
 
@@ -233,8 +240,9 @@ def not_tried(found: Search) -> dict[str, str]:
     return {**never, **found.not_tried}
 
 
-def _horizons(shown: Sequence[Shown], specimen: Specimen) -> dict[str, tuple[float, float]]:
-    return {k: v for s in shown for k, v in horizons(s, specimen).items()}
+def _horizons(shown: Sequence[Shown], before: Explanation, after: Explanation) -> dict[str, tuple[float, float]]:
+    predictors = (before.fitted.misfit.predictor, after.fitted.misfit.predictor)
+    return {k: v for s in shown for k, v in horizons(s, *predictors).items()}
 
 
 def _provenance(specimen: Specimen, found: Search, tested: Sequence[Tested], seed: int) -> Mapping[str, Any]:

@@ -7,12 +7,14 @@ of the sensors' noise.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.answer.result import Fit, Trace, Windows
+from diagnosis.answer.result import Fit, HeldStage, Trace, Windows
+from diagnosis.answer.when import as_stages, held_stages
 from diagnosis.data.measured import Measured
 from diagnosis.data.noise import RELATIVE_FLOOR
 from diagnosis.fit.memory import counted
@@ -21,7 +23,6 @@ from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.solver import fit_thoroughly
 from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.search.refit import Explanation
-from grids.specimen import Specimen
 from models.base import FloatArray
 
 HORIZON = 4.0
@@ -40,13 +41,17 @@ class Shown:
     after: FloatArray
     point_before: Point
     point_after: Point
+    held_stages: tuple[HeldStage, ...] = ()
+    """When effects that do not always act do so in these recordings, if they were not learned from."""
 
 
-def frozen(explanation: Explanation, measured: Measured) -> tuple[Point, FloatArray]:
+def frozen(
+    explanation: Explanation, measured: Measured, held: Sequence[HeldStage] = ()
+) -> tuple[Point, FloatArray]:  # fmt: skip
     """The explanation's parameters on other windows: the point with fitted states, and channels (W, C, N)."""
     misfit = explanation.fitted.misfit
     fixed = {**misfit.fixed, **explanation.fitted.values}
-    predictor = replace(misfit.predictor, measured=measured)
+    predictor = replace(with_held(misfit.predictor, held), measured=measured)
     states = measured.states
     for _ in range(2):
         alone = Misfit(predictor, sensor_noise_only(predictor), (), fixed)
@@ -58,8 +63,21 @@ def frozen(explanation: Explanation, measured: Measured) -> tuple[Point, FloatAr
 
 def compare(before: Explanation, after: Explanation, measured: Measured) -> Shown:
     """Both explanations on some recordings, states estimated anew."""
-    one, other = frozen(before, measured), frozen(after, measured)
-    return Shown(measured, one[1], other[1], one[0], other[0])
+    learned = {r.name for r in after.measured.recordings}
+    held: tuple[HeldStage, ...] = ()
+    if not any(r.name in learned for r in measured.recordings):
+        misfit = after.fitted.misfit
+        predictor = replace(misfit.predictor, measured=measured)
+        fixed = {**misfit.fixed, **after.fitted.values}
+        held = held_stages(after, Misfit(predictor, sensor_noise_only(predictor), (), fixed), measured.states)
+    one, other = frozen(before, measured), frozen(after, measured, held)
+    return Shown(measured, one[1], other[1], one[0], other[0], held)
+
+
+def with_held(predictor: Predictor, held: Sequence[HeldStage]) -> Predictor:
+    """The predictor with the stages of recordings held out after those learned from."""
+    stages = {name: (*predictor.stages.get(name, ()), *more) for name, more in as_stages(held).items()}
+    return replace(predictor, stages={**predictor.stages, **stages})
 
 
 def relative_misfit(measured: Measured, predicted: FloatArray | None) -> float:
@@ -136,15 +154,17 @@ def traces_of(shown: Shown, held_out: bool) -> list[Trace]:
     return found
 
 
-def horizons(shown: Shown, specimen: Specimen) -> dict[str, tuple[float, float]]:
-    """By recording: median seconds from a window's start until a prediction leaves the noise."""
+def horizons(shown: Shown, before: Predictor, after: Predictor) -> dict[str, tuple[float, float]]:
+    """By recording: median seconds from a window's start until a prediction leaves the noise.
+
+    ``before``, ``after``: what predicts the recordings learned from."""
     from scipy.ndimage import uniform_filter1d
 
     m = shown.measured
     longer = lengthened(m)
     times = []
-    for point in (shown.point_before, shown.point_after):
-        predicted = Predictor(longer, specimen.options, specimen.stages).predict([point])[0]
+    for predictor, point in ((before, shown.point_before), (with_held(after, shown.held_stages), shown.point_after)):
+        predicted = replace(predictor, measured=longer).predict([point])[0]
         rest = np.where(longer.mask, predicted - longer.values, 0.0) / longer.sigma[..., None]
         smooth = uniform_filter1d(rest, AVERAGED, axis=-1)
         out = np.any(np.abs(smooth) > LEAVES, axis=1)

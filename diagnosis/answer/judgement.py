@@ -10,7 +10,7 @@ from diagnosis.answer.heldout import Shown
 from diagnosis.answer.result import Undecided, Verdict
 from diagnosis.errors.adequacy import Inadequacy
 from diagnosis.search.candidates import Candidate
-from diagnosis.search.found import MISSING, PER_SHAPE, Search, adjusted
+from diagnosis.search.found import MISSING, Search, adjusted, price
 from diagnosis.search.null import LEAST_P
 from diagnosis.search.refit import Explanation, gain_by_window
 
@@ -48,9 +48,8 @@ def p_value(found: Search, gain: float) -> float:
 
 
 def p_of_effects(found: Search, gains: Sequence[float]) -> list[float]:
-    """p-value of each effect of the answer, from its evidence less the price of its shape parameters."""
-    price = [PER_SHAPE * (len(c.unknowns) - 1 + len(c.held)) for c in found.chosen.candidates]
-    return [p_value(found, gain - cost) for gain, cost in zip(gains, price, strict=True)]
+    """p-value of each effect of the answer, from its evidence less the price of its details."""
+    return [p_value(found, gain - price(c)) for gain, c in zip(gains, found.chosen.candidates, strict=True)]
 
 
 def p_of_missing(found: Search, gains: Sequence[float], left: Inadequacy, finished: bool) -> float | None:

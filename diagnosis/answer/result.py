@@ -17,10 +17,42 @@ Verdict = Literal["missing", "nothing_missing", "not_in_library", "cannot_tell_a
 
 
 @dataclass(frozen=True)
+class EffectStage:
+    """From when to when (s) an effect acts in a recording learned from; ``ends`` inf: to its end; both equal: never.
+
+    ``begins_low95`` and so on: the 95 % interval of an instant within the recording; None of the recording's own ends.
+    """
+
+    recording: str
+    begins: float
+    ends: float
+    begins_low95: float | None = None
+    begins_high95: float | None = None
+    ends_low95: float | None = None
+    ends_high95: float | None = None
+
+
+@dataclass(frozen=True)
+class HeldStage:
+    """From when to when (s) an effect with stages acts in the prediction of a recording held out.
+
+    As after the last recording learned from, or, of one that came and went (``found_there``), where the recording held
+    out asks for it itself.
+    """
+
+    effect: str
+    recording: str
+    begins: float
+    ends: float
+    found_there: bool
+
+
+@dataclass(frozen=True)
 class Effect:
     """A mechanism that the recordings ask for.
 
-    ``evidence``: its gain in 2 log likelihood, refitted; ``p_value``: chance of it, LEAST_P for at most that.
+    ``evidence``: its gain in 2 log likelihood, refitted; ``p_value``: chance of it, LEAST_P for at most that;
+    ``stages`` by recording in the order of the tests: when it acts, none for always.
     """
 
     name: str
@@ -28,6 +60,7 @@ class Effect:
     parameters: Mapping[str, Estimate]
     evidence: float
     p_value: float
+    stages: tuple[EffectStage, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -174,6 +207,8 @@ class Diagnosis:
     """By recording: seconds until the prediction from a window's start leaves the noise, before and after."""
     missing_force: Mapping[str, Any] | None = None
     """The force that is not in the library, as a law in a table (`diagnosis.answer.missing_force`)."""
+    held_stages: tuple[HeldStage, ...] = ()
+    """In which state recordings held out were predicted, of effects that do not always act."""
     visited: tuple[Visited, ...] = ()
     """The force, jump or error of each named effect over what was visited."""
     reference_peak: float | None = None

@@ -7,6 +7,7 @@ from string import Formatter
 
 from diagnosis.answer.phases import words_of
 from diagnosis.answer.result import Diagnosis, Effect, Fit, Located
+from diagnosis.answer.when import held_text, when_text
 from diagnosis.data.measured import identification_of
 from diagnosis.fit.unknowns import library
 from diagnosis.forces.constancy import FOR_A_WHILE, Constancy
@@ -58,6 +59,7 @@ def statement(found: Diagnosis, model: Model) -> str:
         names = ", ".join(r.name.replace("_", " ") for r in found.rivals)
         parts.append(f"{names[0].upper()}{names[1:]} would explain nearly as much.")
     parts.append(_fit(found.train, found.holdout))
+    parts += held_text(found.held_stages)
     parts += _untested(declared)
     if found.next_experiment and found.next_experiment.get("static_test"):
         parts.append(f"To settle it: {found.next_experiment['static_test']}.")
@@ -177,7 +179,8 @@ def effect_text(effect: Effect, mechanism: Mechanism) -> str:
     unit = "" if main.unit == "1" or form else f" {main.unit}"
     bound = ", at the end of its range" if main.at_bound else ""
     interval = f"95 % interval {low} to {high}{unit}{bound}"
-    return f"{effect.name.replace('_', ' ')}: {mechanism.says(values)} ({interval}; evidence {effect.evidence:.0f})"
+    said = f"{effect.name.replace('_', ' ')}: {mechanism.says(values)} ({interval}; evidence {effect.evidence:.0f})"
+    return f"{said}, {when_text(effect.stages)}" if effect.stages else said
 
 
 def _form(sentence: str, parameter: str) -> str:

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.answer.heldout import Shown, traces_of
-from diagnosis.answer.result import Trace
+from diagnosis.answer.heldout import Shown, traces_of, with_held
+from diagnosis.answer.result import HeldStage, Trace
 from diagnosis.data.measured import Measured
 from diagnosis.fit.unknowns import instruments_of
 from diagnosis.search.refit import Explanation
@@ -28,8 +28,8 @@ def with_runs_from_rest(
         runs: dict[str, list[dict[str, FloatArray]]] = {}
         for recording in each.measured.recordings:
             runs[recording.name] = [
-                sensed_run(e, each.measured, recording, each.measured.channels, specimen.initial)
-                for e in (before, after)
+                sensed_run(e, each.measured, recording, each.measured.channels, specimen.initial, held)
+                for e, held in ((before, ()), (after, each.held_stages))
             ]
         for trace in traces_of(each, held_out=k == 1):
             pair = [run[trace.channel] for run in runs[trace.recording]]
@@ -43,12 +43,13 @@ def sensed_run(
     recording: Recording,
     channels: Sequence[str],
     initial: Mapping[str, float] | None = None,
+    held: Sequence[HeldStage] = (),
 ) -> dict[str, FloatArray]:
     """Channels of one run under the recording's base motion, as the instruments would record them."""
     misfit, values = explanation.fitted.misfit, explanation.fitted.point.values
     like = measured.shakings[0]
     shaking = recording.shaking(like.vertical is not None, vertical_acts=like.vertical_acts)
-    predictor = misfit.predictor
+    predictor = with_held(misfit.predictor, held)
     sets = predictor.sets(instruments_of(values), recording)
     history = simulate(
         measured.model,

@@ -86,6 +86,15 @@ class Measured:
         """Averaged samples compared in each window, all channels together (W,)."""
         return np.asarray(self.compared.sum(axis=(1, 2)), np.float64)
 
+    def of_windows(self, windows: NDArray[np.int64]) -> Measured:
+        """Some of the windows alone."""
+        return replace(
+            self,
+            windows=tuple(self.windows[w] for w in windows),
+            values=self.values[windows], mask=self.mask[windows], sigma=self.sigma[windows], base=self.base[windows],
+            states=self.states[windows], memory={name: before[windows] for name, before in self.memory.items()},
+        )  # fmt: skip
+
     def cut_again(self, windows: tuple[Window, ...]) -> Measured:
         """The same starts with other lengths."""
         return replace(self, windows=windows, **gather(self.recordings, windows, self.channels))

@@ -14,6 +14,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from diagnosis.data.measured import Measured
 from diagnosis.fit.prediction import Point, Predictor
@@ -51,6 +52,11 @@ class Whitening:
         inside = np.swapaxes(self.basis, 1, 2) @ rows
         rows = rows - self.basis @ (self.shrink[:, :, None] * inside)
         return np.ascontiguousarray(np.moveaxis(rows, -1, 0)).reshape(flat.shape)
+
+    def of_windows(self, windows: NDArray[np.int64]) -> Whitening:
+        """The whitening of some of the windows."""
+        basis, shrink = (None if each is None else each[windows] for each in (self.basis, self.shrink))
+        return Whitening(self.measured.of_windows(windows), self.sensor[windows], basis, shrink)
 
     def of_sensors(self, averages: FloatArray) -> FloatArray:
         """Averages (..., W, C, n) in units of the sensors' errors, flat (..., W, M)."""

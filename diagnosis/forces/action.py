@@ -7,7 +7,8 @@ to the next sample. What it then lacks,
 
 is the effect's force over the step (an acceleration times dt), or its jump where an event lies in the step:
 sharp to one sample, to the integrator's error. What an instrument adds to a channel is its error there; the lag
-and the clock of the responses to first order, -(lag - rate t) times the channel's slope.
+and the clock of the responses to first order, -(lag - rate t) times the channel's slope. An effect with stages acts in
+them alone.
 """
 
 from __future__ import annotations
@@ -20,13 +21,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.fit.prediction import Point, Predictor
-from diagnosis.fit.unknowns import instruments_of, library, without_instruments
+from diagnosis.fit.unknowns import instruments_of, library
 from grids.instruments import INSTRUMENTS
 from grids.instruments.base import Surroundings
+from grids.instruments.staged import moved_in_stages, recorded_in_stages
 from grids.instruments.windowed import moved_in_windows, recorded_in_windows
+from grids.stages import intervals
 from models.base import FloatArray
 from models.identification import Largest, Motion
-from models.shaking import Shaking
+from models.piecewise import trajectories
 
 Kind = Literal["force", "error"]
 
@@ -128,10 +131,14 @@ def _run(
 ) -> Mapping[str, FloatArray]:  # fmt: skip
     """Observables (n, samples) of recording ``r`` from each of the samples ``first`` (n,) on."""
     m = predictor.measured
-    shaking: Shaking = moved_in_windows(m.shakings[r], instruments_of(values))
-    return m.model.trajectories(
-        without_instruments(values), shaking, first=first, samples=samples, initial=initial, options=predictor.options
-    )
+    recording = m.recordings[r]
+    shaking = moved_in_stages(m.shakings[r], predictor.sets(instruments_of(values), recording), moved_in_windows)
+    parts = predictor.parts(values, recording)
+    instants = np.tile(np.array([part.first for part in parts[1:]], np.int64), (first.size, 1))
+    return trajectories(
+        m.model, [part.values for part in parts], instants, shaking, first=first, samples=samples, initial=initial,
+        options=predictor.options,
+    )  # fmt: skip
 
 
 def _carried(predictor: Predictor, point: Point, states: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
@@ -187,11 +194,19 @@ def _errors(predictor: Predictor, point: Point, effect: str, states: Mapping[str
     found = np.zeros(m.values.shape)
     for r, recording in enumerate(m.recordings):
         own = np.flatnonzero(m.recording_of == r)
-        around = Surroundings(recording.time_step, m.base[own], m.reference_peak)
+        start = np.asarray(recording.time_step * m.first[own, None], float)
+        around = Surroundings(recording.time_step, m.base[own], m.reference_peak, start)
         true = {channel: states[channel][own] for channel in m.channels}
-        seen, plain = (recorded_in_windows(true, switched, around) for switched in (instruments, less))
+        seen, plain = (
+            recorded_in_stages(true, predictor.sets(switched, recording), around, recorded_in_windows)
+            for switched in (instruments, less)
+        )
         time = (m.first[own][:, None] + np.arange(m.values.shape[2])) * recording.time_step
+        spans = intervals(predictor.stages.get(effect, ()), recording.name)
+        acts = np.any(
+            [(begins <= time) & (time < ends) for begins, ends in spans] or [np.zeros(time.shape, bool)], axis=0
+        )
         for c, channel in enumerate(m.channels):
             slope = np.gradient(true[channel], axis=1) / recording.time_step
-            found[own, c] = seen[channel] - plain[channel] + slope * (rate * time - lag)
+            found[own, c] = seen[channel] - plain[channel] + acts * slope * (rate * time - lag)
     return np.where(m.mask, found, 0.0)

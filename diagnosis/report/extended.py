@@ -8,6 +8,7 @@ import models
 from diagnosis.answer.result import Diagnosis
 from diagnosis.fit.unknowns import library
 from grids.specimen import Specimen
+from grids.stages import Stage
 
 
 def extend(specimen: Specimen, diagnosis: Diagnosis) -> Specimen:
@@ -26,12 +27,15 @@ def extend(specimen: Specimen, diagnosis: Diagnosis) -> Specimen:
         else:
             parameters[name] = value.estimate
     known = library(models.get(specimen.model))
+    stages = dict(specimen.stages)
     for effect in diagnosis.effects:
         fitted = {name: value.estimate for name, value in effect.parameters.items()}
         off = {p.name: p.null for p in known[effect.name].parameters if not p.shape}
         if not off.keys() & fitted.keys() and effect.name not in mechanisms:
             fitted = off | fitted  # what acts through a shape alone (a high-pass) names the effect's own value too
         mechanisms[effect.name] = mechanisms.get(effect.name, {}) | fitted
+        if effect.stages:
+            stages[effect.name] = tuple(Stage(one.recording, one.begins, one.ends) for one in effect.stages)
     if diagnosis.missing_force:
         form = next(name for name, mechanism in known.items() if mechanism.tabulated)
         mechanisms[form] = dict(diagnosis.missing_force["parameters"])
@@ -43,5 +47,6 @@ def extend(specimen: Specimen, diagnosis: Diagnosis) -> Specimen:
         calibrate=unknown,
         tolerance={name: value for name, value in specimen.tolerance.items() if name in parameters},
         mechanisms=mechanisms,
+        stages=stages,
         reference_peak=diagnosis.reference_peak or specimen.reference_peak,
     )

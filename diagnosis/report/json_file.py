@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
-from diagnosis.answer.result import Diagnosis, Fit
+from diagnosis.answer.result import Diagnosis, Fit, HeldStage
 from study.provenance import as_json
 
 
@@ -37,7 +37,7 @@ def as_mapping(diagnosis: Diagnosis) -> dict[str, Any]:
         "reference_peak": diagnosis.reference_peak,
         "fit": {
             "train": _fit(diagnosis.train),
-            "holdout": None if diagnosis.holdout is None else _holdout(diagnosis.holdout),
+            "holdout": None if diagnosis.holdout is None else _holdout(diagnosis.holdout, diagnosis.held_stages),
         },
         "statement": diagnosis.statement,
         "next_experiment": None if diagnosis.next_experiment is None else dict(diagnosis.next_experiment),
@@ -67,8 +67,9 @@ def _fit(fit: Fit) -> dict[str, Any]:
     return {"before": fit.before, "after": fit.after, "noise_floor": fit.noise_floor}
 
 
-def _holdout(fit: Fit) -> dict[str, Any]:
-    return {**_fit(fit), "share_of_achievable": fit.share_of_achievable}
+def _holdout(fit: Fit, held: Sequence[HeldStage]) -> dict[str, Any]:
+    stages = [asdict(one) for one in held]
+    return {**_fit(fit), "share_of_achievable": fit.share_of_achievable, "stages": stages}
 
 
 def _finite(value: Any) -> Any:

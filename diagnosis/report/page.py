@@ -12,6 +12,7 @@ import models
 from diagnosis.answer.heldout import HORIZON
 from diagnosis.answer.phases import words_of
 from diagnosis.answer.result import Diagnosis, Rival, Windows
+from diagnosis.answer.when import when_text
 from diagnosis.data.measured import identification_of
 from diagnosis.data.windows import ABOVE_NOISE
 from diagnosis.errors.words import error_lines
@@ -74,6 +75,7 @@ def report_page(
                     effect,
                     known[effect.name],
                     known[effect.name].says({n: v.estimate for n, v in effect.parameters.items()}),
+                    when_text(effect.stages),
                 )
                 for effect in diagnosis.effects
             ],

@@ -10,6 +10,7 @@ import numpy as np
 
 from diagnosis.data.measured import Measured
 from diagnosis.fit.unknowns import Unknown, library, of_parameter
+from diagnosis.search.spells import Spell
 from grids.specimen import Specimen
 from models.base import FloatArray, Mechanism, MechanismParameter
 
@@ -25,12 +26,15 @@ ORDERS = (1.0, 2.0, 4.0)
 class Candidate:
     """One mechanism, or one variant of it with some parameters held.
 
-    ``unknowns``: the effect's parameter first, then those that shape it; ``held``: the others.
+    ``unknowns``: the effect's parameter first, then those that shape it; ``held``: the others. ``spell``: when it acts,
+    None for always; ``price``: what the choice of the spell costs, in 2 log likelihood.
     """
 
     mechanism: Mechanism
     unknowns: tuple[Unknown, ...]
     held: dict[str, float]
+    spell: Spell | None = None
+    price: float = 0.0
 
     @property
     def name(self) -> str:

@@ -13,6 +13,7 @@ import numpy as np
 
 from diagnosis.data.measured import Measured
 from diagnosis.errors.model import Errors
+from diagnosis.forces.columns import Forces
 from diagnosis.forces.constancy import Constancy
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.null import Null
@@ -53,6 +54,8 @@ class Search:
     """By mechanism: why the model refused it."""
     outside: Constancy | None = None
     """A force outside the library that explains what the best single leaves."""
+    about: Forces | None = None
+    """The force columns about an explanation that was tested for constancy."""
 
     @property
     def measured(self) -> Measured:
@@ -73,19 +76,27 @@ class Search:
 
 
 def adjusted(explanation: Explanation) -> float:
-    """Loss plus the price of parameters beyond the first of each mechanism, chosen ones (an order) included."""
-    return explanation.loss + PER_SHAPE * sum(len(c.unknowns) - 1 + len(c.held) for c in explanation.candidates)
+    """Loss plus what the choice of its mechanisms' details costs."""
+    return explanation.loss + sum(price(c) for c in explanation.candidates)
+
+
+def price(candidate: Candidate) -> float:
+    """Of parameters beyond the first, chosen ones (an order) included, and of the time in which it acts."""
+    return PER_SHAPE * (len(candidate.unknowns) - 1 + len(candidate.held)) + candidate.price
 
 
 def survives(before: Explanation, after: Explanation, threshold: float = MISSING) -> bool:
-    """Whether the gain passes without its most influential window and, of more than two, any one recording."""
+    """Whether the gain passes without its most influential window and, of more than two, any one recording.
+
+    What does not always act may rest on one recording.
+    """
     gains = gain_by_window(before, after)
     total = before.loss - adjusted(after) + (adjusted(before) - before.loss)
     largest = float(gains.max(initial=0.0))
     if total - largest < threshold:
         return largest >= ALONE * threshold and total - largest > -threshold and settles(before, after)
     measured = after.measured
-    if len(measured.recordings) > 2:
+    if len(measured.recordings) > 2 and all(c.spell is None for c in after.candidates):
         each = [float(gains[measured.recording_of == r].sum()) for r in range(len(measured.recordings))]
         return total - max(each) >= 0.3 * threshold
     return True

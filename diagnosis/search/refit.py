@@ -11,6 +11,7 @@ from diagnosis.data.measured import Measured
 from diagnosis.fit.memory import counted
 from diagnosis.fit.solver import ITERATIONS, Fitted, fit, fit_thoroughly
 from diagnosis.search.candidates import Candidate
+from diagnosis.search.spells import in_spell
 from models.base import FloatArray
 
 RECOUNTS = 4
@@ -53,7 +54,7 @@ def extend(
     """Fit with one more mechanism, from the explanation's optimum and the candidate's ``start``."""
     base = explanation.fitted
     misfit = replace(
-        base.misfit,
+        in_spell(base.misfit, candidate.name, candidate.spell),
         unknowns=(*base.misfit.unknowns, *candidate.unknowns),
         fixed={**base.misfit.fixed, **candidate.held},
     )
@@ -69,7 +70,7 @@ def without(explanation: Explanation, candidate: Candidate) -> Explanation:
     gone = {x.name for x in candidate.unknowns}
     keep = [i for i, x in enumerate(base.misfit.unknowns) if x.name not in gone]
     misfit = replace(
-        base.misfit,
+        in_spell(base.misfit, candidate.name, None),
         unknowns=tuple(base.misfit.unknowns[i] for i in keep),
         fixed={k: v for k, v in base.misfit.fixed.items() if k not in candidate.held},
     )

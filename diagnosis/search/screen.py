@@ -21,6 +21,7 @@ from diagnosis.fit.linearisation import Linearisation
 from diagnosis.fit.misfit import STEP
 from diagnosis.fit.prediction import Point
 from diagnosis.search.candidates import Candidate
+from diagnosis.search.spells import in_spell
 from models.base import FloatArray
 from models.errors import InputError
 
@@ -29,13 +30,17 @@ from models.errors import InputError
 class Score:
     """``statistic``: the larger of score and grid gain; ``starts``: coordinates (d,) worth a refit, best first.
 
-    ``column`` (W, M): the direction in which the effect moves the residuals, off the states.
+    ``column`` (W, M): the direction in which the effect moves the residuals, off the states: the derivative at the null
+    if it is a ``slope``, else the change by the first start; ``side``: the sign that an amplitude along it may have, 0
+    for either.
     """
 
     candidate: Candidate
     statistic: float
     starts: tuple[FloatArray, ...]
     column: FloatArray
+    slope: bool = True
+    side: int = 0
 
 
 def score(
@@ -54,7 +59,7 @@ def score(
 
 
 def _score_one(screen: Linearisation, base: Point, candidate: Candidate) -> Score:
-    misfit = screen.fitted.misfit
+    misfit = in_spell(screen.fitted.misfit, candidate.name, candidate.spell)
     null = candidate.null
     low, high = candidate.unknowns[0].bounds
     near = [null.copy(), null.copy()]
@@ -77,8 +82,10 @@ def _score_one(screen: Linearisation, base: Point, candidate: Candidate) -> Scor
     if best > 0.0:
         starts.insert(0 if not gains.size or best * 0.8 > gains[order[0]] else 1, start)
     statistic = max(best if np.isfinite(best) else 0.0, float(gains.max(initial=0.0)))
-    column = derivative if information > 1e-12 or not order.size else off[int(order[0])] - screen.residual
-    return Score(candidate, statistic, tuple(starts[:2]), column)
+    if information > 1e-12 or not order.size:
+        side = 0 if not candidate.one_sided else 1 if null[0] < high else -1
+        return Score(candidate, statistic, tuple(starts[:2]), derivative, True, side)
+    return Score(candidate, statistic, tuple(starts[:2]), off[int(order[0])] - screen.residual, False, 1)
 
 
 def _gain(screen: Linearisation, off: FloatArray) -> float:

@@ -13,6 +13,7 @@ from diagnosis.data.measured import Measured
 from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.setup import measure
 from diagnosis.forces.action import Action, action
+from grids.stages import Stage
 from tests.diagnosis.made import SPECIMEN, TRUE, recording
 
 SAMPLE = 0.005
@@ -105,3 +106,20 @@ def test_intervals_are_as_long_as_the_action(at_impacts: bool, part: str) -> Non
                 assert overlap(measured, places, r, own & (time >= happens.min()) & (time <= happens.max())) > 0.7
             else:
                 assert one.name not in {place.recording for place in places}
+
+
+@pytest.mark.parametrize("effect", [{"restitution.factor_on_housner": 0.94}, {"gain.gain": 0.05}, {"tilt.tilt": 0.005}])
+def test_what_begins_acts_from_there_on(effect: Mapping[str, float]) -> None:
+    name, begins = next(iter(effect)).partition(".")[0], 4.0
+    measured = measure(SPECIMEN, [recording("a", 1), recording("b", 2)])
+    point = Point({**TRUE, **effect}, measured.states)
+    stages = {name: (Stage("a", 0.0, 0.0), Stage("b", begins))}
+    staged = action(Predictor(measured, stages=stages), point, name)
+    time = np.stack([measured.times(w) for w in range(len(measured.windows))])
+    inside = (measured.recording_of[:, None] == 1) & (time >= begins - 1.5 * SAMPLE)
+    assert np.any(staged.amount[inside[:, None]])
+    assert not np.any(staged.amount[~inside[:, None]])
+    places = acts(measured, staged)
+    assert {place.recording for place in places} == {"b"} and min(
+        place.start for place in places
+    ) >= begins - 2 * SAMPLE

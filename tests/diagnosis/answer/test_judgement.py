@@ -23,7 +23,9 @@ NULL = Null(np.sort(np.random.default_rng(0).chisquare(1, 20_000)), 1.0)
 
 
 def candidate(name: str, shapes: int = 0) -> Any:
-    return SimpleNamespace(name=name, effect_class=name, unknowns=(None,) * (1 + shapes), held={})
+    return SimpleNamespace(
+        name=name, effect_class=name, unknowns=(None,) * (1 + shapes), held={}, spell=None, price=0.0
+    )
 
 
 def explanation(window_losses: list[float], *candidates: Any) -> Explanation:

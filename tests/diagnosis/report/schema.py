@@ -24,12 +24,23 @@ class ParameterPart(Part):
     at_bound: Literal["low", "high"] | None
 
 
+class StagePart(Part):
+    recording: str
+    begins: float = Field(ge=0.0)
+    ends: float | None
+    begins_low95: float | None
+    begins_high95: float | None
+    ends_low95: float | None
+    ends_high95: float | None
+
+
 class EffectPart(Part):
     name: str
     effect_class: str = Field(alias="class")
     parameters: dict[str, ParameterPart]
     evidence: float
     p_value: float = Field(ge=1e-6, le=1.0)
+    stages: list[StagePart]
 
 
 class RivalPart(Part):
@@ -78,8 +89,17 @@ class TrainPart(Part):
     noise_floor: float
 
 
+class HeldStagePart(Part):
+    effect: str
+    recording: str
+    begins: float
+    ends: float | None
+    found_there: bool
+
+
 class HoldoutPart(TrainPart):
     share_of_achievable: float | None
+    stages: list[HeldStagePart]
 
 
 class FitPart(Part):

@@ -1,0 +1,151 @@
+"""When an effect acts that does not always act: stages in the recordings learned from and held out, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from diagnosis.answer.result import EffectStage, HeldStage
+from diagnosis.data.measured import Measured
+from diagnosis.fit.misfit import Misfit
+from diagnosis.fit.solver import fit
+from diagnosis.search.beginnings import largest_run
+from diagnosis.search.candidates import Candidate
+from diagnosis.search.found import MISSING
+from diagnosis.search.instants import NO_UNKNOWNS, Instant, ends_of
+from diagnosis.search.refit import Explanation
+from diagnosis.search.spells import Spell
+from grids.stages import Stage
+from models.base import FloatArray
+from models.errors import InputError
+
+LASTS = float("inf")
+
+
+def stages_of(explanation: Explanation, candidate: Candidate) -> tuple[EffectStage, ...]:
+    """The stages of one of the explanation's effects with intervals of their instants; none of one that always acts."""
+    spell = candidate.spell
+    if spell is None:
+        return ()
+    names = [r.name for r in explanation.measured.recordings]
+    stages = [EffectStage(one.recording, one.begins, one.ends) for one in spell.stages(names)]
+    if not spell.instants:
+        return tuple(stages)
+    try:
+        ends = ends_of(explanation, candidate.name, spell)
+    except InputError:  # it acts in whole recordings only
+        return tuple(stages)
+    if spell.begins is not None and (interval := _interval(ends.begins, spell.begins)):
+        stages[spell.first] = replace(stages[spell.first], begins_low95=interval[0], begins_high95=interval[1])
+    if spell.ends is not None and (interval := _interval(ends.ends, spell.ends)):
+        stages[spell.last] = replace(stages[spell.last], ends_low95=interval[0], ends_high95=interval[1])
+    return tuple(stages)
+
+
+def _interval(instant: Instant, estimate: float) -> tuple[float, float] | None:
+    """The 95 % interval, which holds the estimate that the parameters were fitted with."""
+    if instant.low95 is None or instant.high95 is None:
+        return None
+    return min(instant.low95, estimate), max(instant.high95, estimate)
+
+
+def comes_and_goes(spell: Spell, recordings: int) -> bool:
+    """Whether it both begins and ends within what was learned from, so that nothing is known of later recordings."""
+    begins = spell.begins is not None or spell.first > 0
+    return begins and (spell.ends is not None or spell.last < recordings - 1)
+
+
+def held_stages(explanation: Explanation, misfit: Misfit, states: FloatArray) -> tuple[HeldStage, ...]:
+    """How each effect with stages is predicted in other recordings, those of ``misfit`` (nothing unknown in it).
+
+    An effect that comes and goes acts in the run of windows that asks for it there by more than MISSING, or not at
+    all; any other one as after the last recording learned from.
+    """
+    learned = len(explanation.measured.recordings)
+    found: list[HeldStage] = []
+    for candidate in explanation.candidates:
+        if candidate.spell is None:
+            continue
+        own = comes_and_goes(candidate.spell, learned)
+        acts = candidate.spell.last == learned - 1 and candidate.spell.ends is None
+        gain = _gain(misfit, candidate, states) if own else np.zeros(0)
+        for r, recording in enumerate(misfit.measured.recordings):
+            begins, ends = (0.0, LASTS) if acts else (0.0, 0.0)
+            if own:
+                begins, ends = _own(misfit.measured, r, gain)
+            found.append(HeldStage(candidate.name, recording.name, begins, ends, own))
+    return tuple(found)
+
+
+def as_stages(held: Sequence[HeldStage]) -> Mapping[str, tuple[Stage, ...]]:
+    """The stages of recordings held out by effect."""
+    names = dict.fromkeys(one.effect for one in held)
+    return {
+        name: tuple(Stage(one.recording, one.begins, one.ends) for one in held if one.effect == name) for name in names
+    }
+
+
+def _gain(misfit: Misfit, candidate: Candidate, states: FloatArray) -> FloatArray:
+    """What the effect takes off the loss of each window (W,) when it acts everywhere."""
+    stages = {name: one for name, one in misfit.predictor.stages.items() if name != candidate.name}
+    on = replace(misfit, predictor=replace(misfit.predictor, stages=stages))
+    nulls = {x.name: x.value(float(u)) for x, u in zip(candidate.unknowns, candidate.null, strict=True)}
+    off = replace(on, fixed={**on.fixed, **nulls})
+    return np.asarray(np.subtract(*(fit(one, NO_UNKNOWNS, states).window_losses for one in (off, on))))
+
+
+def _own(m: Measured, r: int, gain: FloatArray) -> tuple[float, float]:
+    """Begin and end (s) of the run of windows of recording ``r`` that asks for the effect; twice 0 for none."""
+    own = np.flatnonzero(m.recording_of == r)
+    if not own.size:
+        return 0.0, 0.0
+    low, high = largest_run(gain[own])
+    if float(gain[own[low : high + 1]].sum()) < MISSING:
+        return 0.0, 0.0
+    step = m.recordings[r].time_step
+    last = m.windows[own[high]]
+    begins = 0.0 if low == 0 else m.windows[own[low]].first * step
+    return begins, LASTS if high == own.size - 1 else (last.first + last.samples) * step
+
+
+def when_text(stages: Sequence[EffectStage]) -> str:
+    """In which part of the sequence of recordings an effect acts, as in "from 4.2 s (3.9 to 4.4 s) of b on"."""
+    acting = [one for one in stages if one.ends > one.begins]
+    if not acting:
+        return ""
+    first, last = acting[0], acting[-1]
+    begins = first.begins > 0.0 or first is not stages[0]
+    ends = last.ends < LASTS or last is not stages[-1]
+    start = _instant(first.begins, first.begins_low95, first.begins_high95)
+    end = _instant(last.ends, last.ends_low95, last.ends_high95)
+    if first is last and first.begins == 0.0 and last.ends == LASTS and len(stages) > 1 and ends:
+        return f"in {first.recording} only"
+    if first is last and first.begins > 0.0 and last.ends < LASTS:
+        return f"from {start} to {end} of {first.recording} only"
+    opening = f"from {start} of {first.recording}" if first.begins > 0.0 else f"from {first.recording} on"
+    closing = f"to {end} of {last.recording}" if last.ends < LASTS else f"to the end of {last.recording}"
+    if not ends:
+        return f"{opening} and stays" if first.begins == 0.0 else f"{opening} on, and stays"
+    return f"{opening} {closing}" if begins else f"until {closing.removeprefix('to ')}, and is gone then"
+
+
+def _instant(time: float, low: float | None, high: float | None) -> str:
+    return f"{time:.1f} s" if low is None or high is None else f"{time:.1f} s ({low:.1f} to {high:.1f} s)"
+
+
+def held_text(held: Sequence[HeldStage]) -> list[str]:
+    """In which state the recordings held out are predicted."""
+    said = []
+    for one in held:
+        name = one.effect.replace("_", " ")
+        if not one.found_there:
+            state = "as after the last recording learned from" + ("" if one.ends > one.begins else ", without it")
+        elif one.ends <= one.begins:
+            state = "without it: it came and went, and nothing asks for it there"
+        else:
+            until = "its end" if one.ends == LASTS else f"{one.ends:.1f} s"
+            state = f"with it from {one.begins:.1f} s to {until}, the interval found there"
+        said.append(f"{one.recording} is predicted {state} ({name}).")
+    return said

@@ -1,0 +1,228 @@
+"""Effects that begin or end: what explains the recordings when it acts in one spell of their sequence only.
+
+Tests go in sequence and things happen: a joint cracks, a strap slips off, a sensor is knocked. Where nothing that
+always acts explains the recordings, every mechanism is screened in every run of successive windows
+(`diagnosis.search.runs`), and the strongest are refitted so: parameters with the spell held, then the run of windows
+in which the recordings ask for the effect with the parameters held, in turn; last the instants within the windows
+(`diagnosis.search.instants`).
+
+Many runs are searched, so a spell has a price: how much more of the largest statistic chance brings (its 5 % level,
+from noise drawn under the estimated errors) with runs than without. It is taken off the gain, so that an effect in a
+spell is named by chance as rarely as one that always acts, and an effect always acting is preferred to it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.fit.linearisation import linearise_about
+from diagnosis.fit.solver import fit
+from diagnosis.forces.columns import forces
+from diagnosis.forces.constancy import flags, tests
+from diagnosis.progress import Progress
+from diagnosis.search.candidates import Candidate
+from diagnosis.search.found import MISSING, Search, adjusted, explains_all, price, survives
+from diagnosis.search.instants import NO_UNKNOWNS, WHOLE, ends_of
+from diagnosis.search.null import null_distribution
+from diagnosis.search.refit import QUICK, Explanation, again, best_of, extend, with_memory
+from diagnosis.search.runs import InRuns, chance, in_runs, runs
+from diagnosis.search.select import seconds
+from diagnosis.search.spells import Spell, in_spell, of_windows
+from diagnosis.search.weighing import by_white_noise, weigh_again
+from models.base import FloatArray
+from models.errors import InputError
+
+FAINT = 8.0
+"""Statistic less the price of a spell under which nothing is refitted."""
+SHARE, NEAR = 0.25, 0.85
+"""Of the strongest statistic, what a mechanism must reach to be refitted; of the largest gain, to be refined."""
+MOST, THOROUGH = 6, 3
+TURNS = 3
+FEWEST_WINDOWS = 4
+
+
+def beginnings(found: Search, progress: Progress) -> Iterator[Search]:
+    """Yields the search with an effect in a spell, if one explains the recordings better than what was found.
+
+    Alone if it can, else beside the one effect that was found.
+    """
+    if found.null is None or len(found.measured.windows) < FEWEST_WINDOWS or _settled(found):
+        return
+    progress("looking for effects that begin or end", 0.82)
+    starts = [found.base]
+    if found.best is not None and len(found.best.candidates) == 1:
+        starts.append(found.best)
+    for start in starts:
+        fits = _in_spells(found, start)
+        if fits and adjusted(start) - adjusted(fits[0]) >= MISSING and survives(start, fits[0]):
+            trial = _weighed(found, fits)
+            if trial is not None:
+                yield trial
+                return
+
+
+def _in_spells(found: Search, start: Explanation) -> list[Explanation]:
+    """The explanation with one more mechanism, in its spell, the best first; none that gains too little."""
+    screen = linearise_about(start.fitted)
+    of_base = found.best is None and start is found.base
+    scores = found.scores if of_base else seconds(found, start)
+    ends = runs(len(found.measured.windows))
+    cost = max(0.0, chance(screen, scores, ends).band - null_distribution(screen, scores).band)
+    fits = sorted(_quick(found, start, in_runs(screen, scores, ends), ends, cost), key=adjusted)
+    if not fits:
+        return []
+    least = max(MISSING, NEAR * (adjusted(start) - adjusted(fits[0])))
+    near = [single for single in fits if adjusted(start) - adjusted(single) >= least]
+    return sorted((_thorough(single) for single in near[:THOROUGH]), key=adjusted)
+
+
+def _settled(found: Search) -> bool:
+    """Whether one effect that always acts explains everything."""
+    if found.best is None or found.outside is not None or len(found.best.candidates) > 1:
+        return False
+    if not explains_all(found.best):
+        return False
+    found.about = forces(found.best.fitted)
+    return not flags(found.about, tests(found.about), found.more)
+
+
+def _quick(
+    found: Search, start: Explanation, screened: Sequence[InRuns], ends: NDArray[np.int64], cost: float
+) -> Iterator[Explanation]:
+    """Quick refits of the strongest mechanisms, each in the run in which its statistic is largest."""
+    m = found.measured
+    strongest = sorted(screened, key=lambda one: -float(one.statistic.max()))
+    largest = float(strongest[0].statistic.max()) if strongest else 0.0
+    whole = _of_whole_recordings(m.recording_of, ends)
+    for one in strongest[:MOST]:
+        if float(one.statistic.max()) < max(FAINT + cost, SHARE * largest):
+            return
+        for allowed in (np.ones(len(ends), bool), whole):
+            if not allowed.any():
+                continue
+            run = int(np.argmax(np.where(allowed, one.statistic, -1.0)))
+            staged = replace(one.score.candidate, spell=of_windows(m, *ends[run].tolist()), price=cost)
+            try:
+                yield _in_run(found, start, staged, one.starts(run))
+                break
+            except InputError:  # it cannot change within a recording
+                continue
+
+
+def _in_run(found: Search, start: Explanation, staged: Candidate, coordinates: Sequence[FloatArray]) -> Explanation:
+    """Quick refits in a spell, and again in the run of windows that they ask for."""
+    single = best_of([extend(start, staged, u, QUICK) for u in coordinates])
+    if found.best is None:
+        single = by_white_noise(single, found.errors)
+    return _moved(single)
+
+
+def _moved(single: Explanation) -> Explanation:
+    """The same mechanism in the run of windows that asks for it, parameters and run in turn."""
+    for _ in range(TURNS):
+        candidate = single.candidates[-1]
+        spell = _asked_for(single)
+        if spell is None or spell == candidate.spell:
+            break
+        try:
+            other = _in(single, spell)
+        except InputError:
+            break
+        if _with_instants(other) >= _with_instants(single):
+            break
+        single = other
+    return single
+
+
+def _in(single: Explanation, spell: Spell) -> Explanation:
+    """The same model refitted with its last mechanism in another spell."""
+    *others, candidate = single.candidates
+    f = single.fitted
+    fitted = fit(in_spell(f.misfit, candidate.name, spell), f.u, f.states, QUICK)
+    return Explanation((*others, replace(candidate, spell=spell)), fitted)
+
+
+def _asked_for(single: Explanation) -> Spell | None:
+    """The run of windows in which the mechanism takes most off the loss, parameters held; None where it is all."""
+    candidate = single.candidates[-1]
+    f = single.fitted
+    on = in_spell(replace(f.misfit, unknowns=(), fixed=f.point.values, smooth=None), candidate.name, None)
+    nulls = {x.name: x.value(float(u)) for x, u in zip(candidate.unknowns, candidate.null, strict=True)}
+    off = replace(on, fixed={**on.fixed, **nulls})
+    gain = np.subtract(*(fit(one, NO_UNKNOWNS, f.states, QUICK).window_losses for one in (off, on)))
+    low, high = _simplest(gain, f.measured.recording_of)
+    return None if (low, high) == (0, gain.size - 1) else of_windows(f.measured, low, high)
+
+
+def _simplest(gain: FloatArray, recording_of: NDArray[np.int64]) -> tuple[int, int]:
+    """The run with the largest gain, or a longer one that begins or ends with a recording and gains as much."""
+    low, high = largest_run(gain)
+    first = int(np.flatnonzero(recording_of == recording_of[low])[0])
+    last = int(np.flatnonzero(recording_of == recording_of[high])[-1])
+    low = first if float(gain[first:low].sum()) > -WHOLE else low
+    high = last if float(gain[high + 1 : last + 1].sum()) > -WHOLE else high
+    return low, high
+
+
+def largest_run(values: FloatArray) -> tuple[int, int]:
+    """First and last place of the run with the largest sum."""
+    total = np.concatenate([[0.0], np.cumsum(values)])
+    sums = np.where(np.arange(total.size)[:, None] < np.arange(total.size), total[None, :] - total[:, None], -np.inf)
+    low, high = np.unravel_index(int(np.argmax(sums)), sums.shape)
+    return int(low), int(high) - 1
+
+
+def _thorough(single: Explanation) -> Explanation:
+    """Refitted thoroughly, with the instants found within the windows."""
+    single = _moved(single)
+    for _ in range(TURNS):
+        candidate = single.candidates[-1]
+        if candidate.spell is None:
+            break
+        try:
+            spell = ends_of(single, candidate.name, candidate.spell).spell
+        except InputError:  # acts in whole recordings only
+            break
+        if spell == candidate.spell:
+            break
+        single = min(single, _in(single, spell), key=_with_instants)
+        if single.candidates[-1].spell != spell:
+            break
+    return again(single)
+
+
+def _with_instants(single: Explanation) -> float:
+    """Loss with what the instants of the last mechanism's spell cost: spells of whole recordings are simpler."""
+    spell = single.candidates[-1].spell
+    return single.loss + (WHOLE * spell.instants if spell is not None else 0.0)
+
+
+def _of_whole_recordings(recording_of: NDArray[np.int64], ends: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Which runs (R, 2) begin and end with recordings."""
+    new = np.flatnonzero(np.diff(recording_of)) + 1
+    firsts, lasts = [0, *new.tolist()], [*(new - 1).tolist(), recording_of.size - 1]
+    return np.isin(ends[:, 0], firsts) & np.isin(ends[:, 1], lasts)
+
+
+def _weighed(found: Search, fits: Sequence[Explanation]) -> Search | None:
+    """The search with the best of ``fits``, under errors estimated with it; None where what stood is likelier."""
+    before = found.best
+    if before is not None and adjusted(fits[0]) >= adjusted(before):
+        return None
+    trial = replace(found, best=fits[0], tried=[*fits, *([before] if before is not None else [])], outside=None)
+    weigh_again(trial)
+    if trial.best is None or trial.best.candidates[-1].spell is None:
+        return None
+    if before is not None and _likelihood(trial) >= _likelihood(found):
+        return None
+    trial.best = with_memory(_thorough(trial.best))
+    return trial
+
+
+def _likelihood(found: Search) -> float:
+    """-2 log likelihood under errors of its own, with what the details cost."""
+    return found.errors.loss + sum(price(c) for c in found.chosen.candidates)

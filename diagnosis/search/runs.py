@@ -1,0 +1,115 @@
+"""The screen for effects that begin or end: every mechanism in every run of successive windows, without a new run.
+
+A mechanism that acts in a run A of the windows alone moves their residuals only, so its score statistic follows from
+the sums over A of what the ordinary screen has for each window w,
+
+    S_A = (s_A - a_A' H^-1 g)^2 / (i_A - a_A' H^-1 a_A),      s_w = d_w'r_w,  i_w = d_w'd_w,  a_w = J_w'd_w,
+
+d the mechanism's column and J the base parameters' derivatives, both off the states; H, g: Hessian and gradient of the
+base. The windows of all recordings stand in one row, in the order of the tests.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import chi2
+
+from diagnosis.fit.linearisation import Linearisation
+from diagnosis.search.null import TAIL, Null
+from diagnosis.search.screen import Score
+from models.base import FloatArray
+
+SHORTEST = 2
+"""Windows of a run: one alone must not decide."""
+FEWEST = 1e-3
+"""Information of a run over that of all windows under which it is not tried."""
+DRAWS, AT_ONCE = 1000, 100
+
+
+@dataclass(frozen=True)
+class InRuns:
+    """One mechanism's statistic in every run (R,), 0 where it would act to the wrong side, and its amplitude there."""
+
+    score: Score
+    statistic: FloatArray
+    amplitude: FloatArray
+
+    def starts(self, run: int) -> list[FloatArray]:
+        """Coordinates (d,) worth a refit in one run."""
+        found = list(self.score.starts[:1])
+        if self.score.slope:
+            start = self.score.candidate.null
+            start[0] += self.amplitude[run]
+            found.insert(0, start)
+        return found
+
+
+def runs(windows: int) -> NDArray[np.int64]:
+    """First and last window (R, 2) of every run but the whole row."""
+    found = [(a, b) for a in range(windows) for b in range(a + SHORTEST - 1, windows) if b - a + 1 < windows]
+    return np.array(found, np.int64).reshape(-1, 2)
+
+
+def in_runs(screen: Linearisation, scores: Sequence[Score], ends: NDArray[np.int64]) -> list[InRuns]:
+    """The statistics of all mechanisms in the runs ``ends`` (R, 2)."""
+    found = []
+    for one in scores:
+        sums = _Sums.of(screen, one.column, ends)
+        along = np.einsum("w,wm,wm->w", screen.weights, one.column, screen.residual)
+        amount = _over(along[None], ends)[0] - sums.path @ screen.inverse @ screen.gradient
+        amplitude = -amount / np.where(sums.usable, sums.free, np.inf)
+        found.append(InRuns(one, sums.statistic(amount[None], one.side)[0], amplitude))
+    return found
+
+
+def chance(screen: Linearisation, scores: Sequence[Score], ends: NDArray[np.int64], seed: int = 0) -> Null:
+    """What chance alone does to the largest statistic of all mechanisms in all runs: noise drawn and screened alike."""
+    rng = np.random.default_rng(seed)
+    root = np.sqrt(screen.weights)
+    sums = [_Sums.of(screen, one.column, ends) for one in scores]
+    largest = np.zeros(DRAWS)
+    for start in range(0, DRAWS, AT_ONCE):
+        noise = root[:, None] * rng.normal(size=(AT_ONCE, *screen.residual.shape))
+        gradient = np.einsum("wmi,swm->si", screen.by_unknown, noise, optimize=True)
+        part = slice(start, start + AT_ONCE)
+        for one, of_runs in zip(scores, sums, strict=True):
+            along = np.einsum("wm,swm->sw", one.column, noise, optimize=True)
+            amount = _over(along, ends) - gradient @ screen.inverse @ of_runs.path.T
+            largest[part] = np.maximum(largest[part], of_runs.statistic(amount, one.side).max(axis=1, initial=0.0))
+    draws = np.sort(largest)
+    level = float(np.quantile(draws, 1.0 - TAIL))
+    effective = TAIL / float(chi2.sf(level, 1)) if level > 0.0 else 1.0
+    return Null(draws, max(effective, 1.0))
+
+
+@dataclass(frozen=True)
+class _Sums:
+    """Of one column over the runs: information off the base parameters (R,), and the path along them (R, k)."""
+
+    free: FloatArray
+    path: FloatArray
+    usable: NDArray[np.bool_]
+
+    @classmethod
+    def of(cls, screen: Linearisation, column: FloatArray, ends: NDArray[np.int64]) -> _Sums:
+        weighted = screen.weights[:, None] * column
+        information = np.einsum("wm,wm->w", weighted, column)
+        along = np.einsum("wmi,wm->wi", screen.by_unknown, weighted, optimize=True)
+        path = _over(along.T, ends).T
+        free = _over(information[None], ends)[0] - np.einsum("ri,ij,rj->r", path, screen.inverse, path)
+        return cls(free, path, free > FEWEST * max(float(information.sum()), 1e-9))
+
+    def statistic(self, amount: FloatArray, side: int) -> FloatArray:
+        """Statistics (s, R) of scores (s, R); ``side``: the sign that the effect's amplitude may have, 0 for either."""
+        right = self.usable & ((side * amount <= 0.0) if side else True)
+        return np.where(right, amount**2 / np.where(self.usable, self.free, 1.0), 0.0)
+
+
+def _over(values: FloatArray, ends: NDArray[np.int64]) -> FloatArray:
+    """Sums of values (s, W) over the runs (s, R)."""
+    total = np.pad(np.cumsum(values, axis=1), ((0, 0), (1, 0)))
+    return np.asarray(total[:, ends[:, 1] + 1] - total[:, ends[:, 0]])

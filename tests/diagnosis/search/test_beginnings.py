@@ -1,0 +1,91 @@
+"""Effects that begin: found with their instants; recordings in which nothing begins are left alone."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import models
+from diagnosis.answer.when import comes_and_goes, stages_of, when_text
+from diagnosis.errors.model import calibrated
+from diagnosis.fit.linearisation import linearise_about
+from diagnosis.fit.setup import measure
+from diagnosis.progress import silent
+from diagnosis.search.beginnings import beginnings
+from diagnosis.search.candidates import candidates
+from diagnosis.search.found import Search
+from diagnosis.search.null import null_distribution
+from diagnosis.search.refit import Explanation
+from diagnosis.search.screen import score
+from diagnosis.search.spells import Spell
+from grids.recordings.base import Recording
+from models.piecewise import Part, simulate
+from tests.diagnosis.made import SPECIMEN, TIME_STEP, TRUE, motion
+
+MODEL = models.get("housner")
+FEW = ("restitution", "viscous_damping", "tilt", "gain", "offset")
+STILL = 1.5
+"""s of rest before and after the shaking, by which errors of the sensors are told from the model's."""
+
+
+def made(name: str, seed: int, changes: Sequence[tuple[float, Mapping[str, float]]], error: float = 0.0) -> Recording:
+    """A block whose mechanisms change at instants (s), the sensor off by ``error`` of the peak from the last on."""
+    plain = motion(seed)
+    rest = np.zeros(round(STILL / TIME_STEP))
+    shaking = replace(plain, horizontal=np.concatenate([rest, plain.horizontal, rest]))
+    parts = [Part(0, TRUE), *(Part(round(at / TIME_STEP), {**TRUE, **values}) for at, values in changes if values)]
+    rotation = np.ravel(simulate(MODEL, parts, shaking, integrator="reference").channels["rotation_1"])
+    time = TIME_STEP * np.arange(rotation.size)
+    peak = float(np.max(np.abs(rotation)))
+    rng = np.random.default_rng(seed + 1000)
+    seen = rotation + 0.005 * peak * rng.normal(size=time.size)
+    seen += error * peak * (time >= (changes[-1][0] if changes else 0.0))
+    base = shaking.horizontal + 0.003 * shaking.pga * rng.normal(size=time.size)
+    return Recording(name, TIME_STEP, time, {"base_acceleration_x": base, "rotation_1": seen})
+
+
+def searched(recordings: Sequence[Recording]) -> tuple[Search, list[Search]]:
+    """What an ordinary search that found nothing goes on with, and what the search for beginnings yields."""
+    measured = measure(SPECIMEN, recordings)
+    fitted, errors = calibrated(SPECIMEN, measured)
+    some = tuple(c for c in candidates(measured, SPECIMEN) if c.name in FEW)
+    found = Search(Explanation((), fitted), some, errors)
+    opened = linearise_about(fitted)
+    found.scores = score(opened, some)
+    found.null = null_distribution(opened, found.scores)
+    return found, list(beginnings(found, silent))
+
+
+@pytest.mark.parametrize(
+    ("name", "changes", "error"),
+    [("restitution", [(6.0, {"restitution.factor_on_housner": 0.9})], 0.0), ("offset", [(6.0, {})], 0.06)],
+)
+def test_what_begins_in_the_second_recording_is_named_with_its_instant(
+    name: str, changes: list[tuple[float, dict[str, float]]], error: float
+) -> None:
+    _, yielded = searched([made("a", 13, []), made("b", 6, changes, error)])
+    assert yielded[-1].best is not None
+    [candidate] = yielded[-1].best.candidates
+    assert candidate.name == name and candidate.spell is not None
+    assert candidate.spell.first == 1 and candidate.spell.ends is None and candidate.spell.last == 1
+    stages = stages_of(yielded[-1].best, candidate)
+    assert stages[0].begins == stages[0].ends == 0.0
+    assert stages[1].begins == pytest.approx(6.0, abs=0.7)
+    assert stages[1].begins_low95 is not None and stages[1].begins_high95 is not None
+    assert stages[1].begins_low95 - 0.1 <= 6.0 <= stages[1].begins_high95 + 0.1
+    assert when_text(stages).startswith("from ") and when_text(stages).endswith("of b on, and stays")
+
+
+def test_nothing_begins_where_nothing_is_missing() -> None:
+    _, yielded = searched([made("a", 13, []), made("b", 6, [])])
+    assert yielded == []
+
+
+def test_what_comes_and_goes_is_told_from_what_stays_or_is_gone() -> None:
+    assert comes_and_goes(Spell(0, 2.0, 0, 5.0), 2)
+    assert comes_and_goes(Spell(0, 2.0, 0, None), 2)
+    assert not comes_and_goes(Spell(0, 2.0, 1, None), 2)
+    assert not comes_and_goes(Spell(0, None, 1, 3.0), 2)

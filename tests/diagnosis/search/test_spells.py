@@ -1,0 +1,105 @@
+"""Spells in the sequence of recordings, and the screen over runs of windows held against screens of spells."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy.stats import chi2
+
+from diagnosis.data.measured import Measured
+from diagnosis.fit.linearisation import Linearisation, linearise_about
+from diagnosis.fit.setup import base_fit, measure
+from diagnosis.search.beginnings import largest_run
+from diagnosis.search.candidates import candidates
+from diagnosis.search.runs import FEWEST, chance, in_runs, runs
+from diagnosis.search.screen import Score, score
+from diagnosis.search.spells import Spell, of_windows
+from grids.stages import intervals
+from tests.diagnosis.made import SPECIMEN, recording
+
+NAMES = ("a", "b", "c")
+MECHANISMS = ("restitution", "tilt", "gain", "viscous_damping")
+
+
+@cache
+def opened() -> tuple[Measured, Linearisation]:
+    """The base model linearised about two recordings of a plain block."""
+    measured = measure(SPECIMEN, [recording("a", 1), recording("b", 2)])
+    return measured, linearise_about(base_fit(SPECIMEN, measured))
+
+
+@cache
+def screened() -> tuple[Score, ...]:
+    measured, screen = opened()
+    return tuple(score(screen, [c for c in candidates(measured, SPECIMEN) if c.name in MECHANISMS]))
+
+
+@pytest.mark.parametrize(
+    ("spell", "acting", "afterwards"),
+    [
+        (Spell(1, 4.2, 2, None), [(), ((4.2, np.inf),), ((0.0, np.inf),)], True),
+        (Spell(0, None, 1, 3.0), [((0.0, np.inf),), ((0.0, 3.0),), ()], False),
+        (Spell(1, None, 1, None), [(), ((0.0, np.inf),), ()], False),
+        (Spell(0, 2.0, 0, 5.0), [((2.0, 5.0),), (), ()], False),
+    ],
+)
+def test_a_spell_is_written_as_stages(
+    spell: Spell, acting: list[tuple[tuple[float, float], ...]], afterwards: bool
+) -> None:
+    stages = spell.stages(NAMES)
+    assert [intervals(stages, name) for name in NAMES] == acting
+    assert bool(intervals(stages, "another motion")) is afterwards
+
+
+def test_a_spell_of_windows_holds_these_and_no_other() -> None:
+    measured, _ = opened()
+    second = int(np.searchsorted(measured.recording_of, 1))
+    for low, high in ((2, second - 1), (second - 2, second + 2), (second, len(measured.windows) - 1), (3, 5)):
+        stages = of_windows(measured, low, high).stages(("a", "b"))
+        for w, window in enumerate(measured.windows):
+            recorded = measured.recordings[window.recording]
+            middle = (window.first + window.samples / 2) * recorded.time_step
+            acts = any(begins <= middle < ends for begins, ends in intervals(stages, recorded.name))
+            assert acts is (low <= w <= high)
+
+
+def test_a_run_has_the_statistic_of_the_mechanism_in_that_spell() -> None:
+    measured, screen = opened()
+    ends, compared = runs(len(measured.windows)), 0
+    for one in in_runs(screen, screened(), ends):
+        for k in range(0, len(ends), 17):
+            low, high = ends[k].tolist()
+            staged = replace(one.score.candidate, spell=of_windows(measured, low, high))
+            [alone] = score(screen, [staged])
+            along, information = screen.scores_with_residual(alone.column), screen.product(alone.column, alone.column)
+            if information < 2.0 * FEWEST * np.einsum("w,wm->", screen.weights, one.score.column**2):
+                continue
+            compared += 1
+            assert one.amplitude[k] == pytest.approx(-along / information, rel=1e-6)
+            if one.score.side * along <= 0.0:
+                assert one.statistic[k] == pytest.approx(along**2 / information, rel=1e-6)
+    assert compared > 10
+
+
+def test_chance_of_one_run_is_that_of_chi_squared_and_grows_with_their_number() -> None:
+    measured, screen = opened()
+    ends = runs(len(measured.windows))
+    plain = [one for one in screened() if one.side == 0][:1]
+    one = chance(screen, plain, ends[:1])
+    for probability in (0.5, 0.8, 0.95):
+        drawn = float(np.quantile(one.draws, probability))
+        assert chi2.cdf(drawn, 1) == pytest.approx(probability, abs=4 * np.sqrt(probability * (1 - probability) / 1000))
+    many = chance(screen, plain, ends)
+    assert many.band > one.band + 2.0
+    assert chance(screen, screened(), ends).band > many.band
+
+
+def test_the_largest_run_is_the_one_with_the_largest_sum() -> None:
+    rng = np.random.default_rng(0)
+    for _ in range(20):
+        values = rng.normal(size=9)
+        sums = {(a, b): values[a : b + 1].sum() for a in range(9) for b in range(a, 9)}
+        assert largest_run(values) == max(sums, key=lambda ends: sums[ends])
