@@ -142,17 +142,22 @@ def _run(
 
 
 def _carried(predictor: Predictor, point: Point, states: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
-    """What the model carries (W, N, ...) at every sample of the motion ``states``."""
+    """What the model carries (W, N, ...) at every sample of the motion ``states``; by what acts at a window's start."""
     m = predictor.measured
     found: dict[str, FloatArray] = {}
-    for r in range(len(m.recordings)):
-        own = np.flatnonzero(m.recording_of == r)
-        if own.size:
-            shaking: Shaking = moved_in_windows(m.shakings[r], instruments_of(point.values))
+    starts = predictor.carried(point)
+    for r, recording in enumerate(m.recordings):
+        sets = predictor.sets(instruments_of(point.values), recording)
+        shaking = moved_in_stages(m.shakings[r], sets, moved_in_windows)
+        parts = predictor.parts(point.values, recording)
+        begun = np.searchsorted([part.first for part in parts], m.first, side="right") - 1
+        for k, part in enumerate(parts):
+            own = np.flatnonzero((m.recording_of == r) & (begun == k))
+            if not own.size:
+                continue
             ran = m.model.carry(
-                without_instruments(point.values), shaking, {name: states[name][own] for name in m.free},
-                np.arange(m.values.shape[2]), first=m.first[own],
-                initial={name: x[own] for name, x in predictor.carried(point).items()}, options=predictor.options,
+                part.values, shaking, {name: states[name][own] for name in m.free}, np.arange(m.values.shape[2]),
+                first=m.first[own], initial={name: x[own] for name, x in starts.items()}, options=predictor.options,
             )  # fmt: skip
             for name, x in ran.items():
                 found.setdefault(name, np.zeros((len(m.windows), *x.shape[1:])))[own] = x
