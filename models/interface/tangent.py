@@ -30,8 +30,8 @@ JOINTS = {
 }
 """The parameters that can stand for a slope, and the joints whose layers they make; of two the mean counts."""
 LEFT_OUT = ("maxwell",)
-ROUNDS, LEAST = 6, 0.1
-"""Rounds of the iteration, and the least p that is believed."""
+ROUNDS, LEAST, FARTHEST = 6, 0.1, 1.5
+"""Rounds of the iteration, the least p that is believed, and the largest step of ln k."""
 
 
 def unstressed(values: Values, options: Mapping[str, str], names: Sequence[str], model: str) -> dict[str, FloatArray]:
@@ -41,25 +41,24 @@ def unstressed(values: Values, options: Mapping[str, str], names: Sequence[str],
     load at all, they stay as given.
     """
     wall = build(values, options, False, 1, model)
-    joints = [joint for joint in wall.rubber_joints if any(joint in JOINTS[name] for name in names)]
+    joints = [j for j in wall.rubber_joints if _kept(wall, j).laws and any(j in JOINTS[name] for name in names)]
     asked = {joint: _stiffness(wall, joint) for joint in joints}
     power = {joint: np.ones(wall.size) for joint in joints}
     before: dict[str, tuple[FloatArray, FloatArray]] = {}
     best = {joint: (asked[joint], np.full(wall.size, np.inf)) for joint in joints}
-    for _ in range(ROUNDS):
+    for _ in range(ROUNDS if joints else 0):
         rest, found = modes.static_state(wall), {}
         for joint in joints:
             k, slope = _stiffness(wall, joint), _slope(wall, joint, rest)
-            miss = np.abs(np.log(slope / asked[joint]))
-            nearer = miss < best[joint][1]
-            best[joint] = np.where(nearer, k, best[joint][0]), np.where(nearer, miss, best[joint][1])
-            if joint in before:
-                with np.errstate(divide="ignore", invalid="ignore"):
+            with np.errstate(divide="ignore", invalid="ignore"):
+                gap = np.log(asked[joint] / slope)
+                if joint in before:
                     local = np.log(slope / before[joint][1]) / np.log(k / before[joint][0])
-                power[joint] = np.where(np.isfinite(local) & (local > LEAST), local, power[joint])
+                    power[joint] = np.where(np.isfinite(local) & (local > LEAST), local, power[joint])
+            nearer = np.abs(gap) < best[joint][1]
+            best[joint] = np.where(nearer, k, best[joint][0]), np.where(nearer, np.abs(gap), best[joint][1])
             before[joint] = k, slope
-            with np.errstate(invalid="ignore"):
-                found[f"{joint}_stiffness"] = k * (asked[joint] / slope) ** (1.0 / power[joint])
+            found[f"{joint}_stiffness"] = k * np.exp(np.clip(gap / power[joint], -FARTHEST, FARTHEST))
         wall = wall.replace(**{name: np.where(np.isfinite(x), x, 1.0) for name, x in found.items()})
     shares = {joint: best[joint][0] / asked[joint] for joint in joints}
     return {
@@ -73,8 +72,12 @@ def _stiffness(wall: LayeredWall, joint: str) -> FloatArray:
     return wall.base_stiffness if joint == "base" else wall.top_stiffness
 
 
+def _kept(wall: LayeredWall, joint: str) -> Layer:
+    layer = wall.layer(joint)
+    return Layer(layer.stiffness, [(law, p) for law, p in layer.laws if law.name not in LEFT_OUT])
+
+
 def _slope(wall: LayeredWall, joint: str, rest: FloatArray) -> FloatArray:
-    """Of the layer without what is left out, at ``rest`` (n, 4)."""
-    layer, compression = wall.layer(joint), -rest[:, 2 if joint == "base" else 3]
-    kept = Layer(layer.stiffness, [(law, p) for law, p in layer.laws if law.name not in LEFT_OUT])
+    """Of the layer at ``rest`` (n, 4), without what is left out."""
+    kept, compression = _kept(wall, joint), -rest[:, 2 if joint == "base" else 3]
     return np.asarray(kept.slope(compression, kept.relaxed(compression)) + 0.0 * compression)

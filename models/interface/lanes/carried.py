@@ -12,7 +12,7 @@ from models.interface import modes
 from models.interface.declaration import STATES
 from models.interface.lanes import rows as r
 from models.interface.lanes.carry import carry as advance
-from models.interface.lanes.laws import HISTORY, given_laws, together
+from models.interface.lanes.laws import HISTORY, given_laws, some
 from models.interface.lanes.run import given_table, substeps
 from models.interface.layered import LayeredWall
 from models.lanes.record import recorded
@@ -29,7 +29,7 @@ def carry(
 ) -> dict[str, FloatArray]:
     """The states that ``motion`` does not hold, and the history of the layers, of n walls at k ``marks``.
 
-    As `models.model.Model.carry`; every law runs by the kernel for all laws, so that one alone is compiled.
+    As `models.model.Model.carry`.
     """
     rest = modes.static_state(wall)
     begun = {**initial, **{name: x[:, 0] for name, x in motion.items()}}
@@ -48,7 +48,7 @@ def carry(
         advance(
             record, first[lanes], given[lanes], prescribed if prescribed.shape[0] == 1 else prescribed[lanes], held,
             marks, of_lanes, past, None if wall.joints == "both" else True, None if laws is None else True,
-            None if laws is None else together(laws, lanes),
+            None if laws is None else some(laws, lanes),
         )  # fmt: skip
         states[lanes], history[lanes] = of_lanes, past
     found = {name: states[:, :, k] for k, name in enumerate(STATES) if name not in motion}

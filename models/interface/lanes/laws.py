@@ -39,10 +39,9 @@ def given_laws(
     return Rubber(numbers, hidden, hidden.copy(), base, top)
 
 
-def together(laws: Rubber, lanes: Any) -> Rubber:
-    """Some of the lanes, both layers in the variant that holds all laws."""
-    every = (None,) * (len(rubber.VARIANTS) - 1)
-    return Rubber(laws.numbers[lanes], laws.hidden[lanes], laws.ended[lanes], every, every)
+def some(laws: Rubber, lanes: Any) -> Rubber:
+    """The laws of some of the lanes."""
+    return laws._replace(numbers=laws.numbers[lanes], hidden=laws.hidden[lanes], ended=laws.ended[lanes])
 
 
 def stored_in_layers(wall: LayeredWall, q: FloatArray, hidden: FloatArray | None) -> FloatArray:

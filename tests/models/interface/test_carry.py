@@ -21,7 +21,6 @@ WALL: dict[str, Any] = {
     "top_damping": 4.0e5,
 }  # fmt: skip
 MAXWELL = {"maxwell.arm_stiffness_ratio": 0.6, "maxwell.relaxation_time": 0.1}
-MULLINS = {"mullins.softening": 0.3, "mullins.strain": 0.3}
 RATES = ("rotation_rate_1", "rotation_rate_2")
 HELD = ("rotation_1", "rotation_2", *RATES)
 
@@ -49,7 +48,7 @@ def recorded(channels: Any) -> np.ndarray:
     return np.array([[channels[name][k : k + AHEAD] for k in MARKS] for name in HELD[:2]])
 
 
-@pytest.mark.parametrize("law", [{}, MAXWELL, MULLINS])
+@pytest.mark.parametrize("law", [{}, MAXWELL])
 def test_windows_from_carried_states_are_parts_of_the_run(law: dict[str, float]) -> None:
     values = WALL | law
     channels = MODEL.simulate(values, shaking()).channels

@@ -32,7 +32,7 @@ def test_layers_have_the_slope_that_was_asked_for(law: dict[str, float]) -> None
 
 def test_an_arm_that_is_relaxed_at_rest_is_no_part_of_it() -> None:
     found = MODEL.declared({**LAYERS, **GIVEN, "maxwell.arm_stiffness_ratio": 0.8}, tuple(GIVEN))
-    assert {name: float(x[0]) for name, x in found.items()} == GIVEN
+    assert not found
 
 
 def test_each_wall_has_its_own_and_one_that_cannot_stand_keeps_what_it_has() -> None:
