@@ -69,12 +69,17 @@ class Count:
     channel: str
 
 
+NARROWEST = 0.04
+"""s, of a filter along which states are carried."""
+
+
 @dataclass(frozen=True)
 class WindowLengths:
     """How a recording is cut, in units of ``unit(derived)`` s (None: in s).
 
     ``shortest``, ``aim``, ``longest``: length of a window; ``quiet``: time without motion that ends one;
-    ``smoothing``: width of the filter that finds the peaks.
+    ``smoothing``: width of the filter that finds the peaks; ``carrying``: of the one that frees the measured motion of
+    noise where the model runs along it, `NARROWEST` s at least.
     """
 
     shortest: float
@@ -82,6 +87,7 @@ class WindowLengths:
     longest: float
     quiet: float
     smoothing: float
+    carrying: float = 0.0
     unit: Callable[[Derived], FloatArray] | None = None
 
     def in_seconds(self, derived: Derived) -> WindowLengths:
@@ -90,7 +96,12 @@ class WindowLengths:
             return self
         unit = float(np.min(self.unit(derived)))
         return WindowLengths(
-            unit * self.shortest, unit * self.aim, unit * self.longest, unit * self.quiet, unit * self.smoothing
+            unit * self.shortest,
+            unit * self.aim,
+            unit * self.longest,
+            unit * self.quiet,
+            unit * self.smoothing,
+            max(NARROWEST, unit * self.carrying),
         )
 
 
@@ -173,10 +184,9 @@ class Identification:
     ``coordinates``: parameters in whose place a fit within a range works with something that recordings tell better
     (`models.model.Model.declared`), as soon as a mechanism acts. ``whole``: whole-number parameters of mechanisms, with
     the values that are tried.
-    ``carrying``: width (s) of the filter that frees the measured motion of noise before the model runs along it
-    (`models.model.Model.carry`) and gives the latent states, and whatever else it remembers, at every window's start;
-    None: it cannot. ``not_carried``: what else a window would have to inherit; with it, or with a latent state that is
-    not carried, calibration and diagnosis are refused.
+    ``carrying``: whether the model runs along the measured motion (`models.model.Model.carry`) and gives the latent
+    states, and whatever else it remembers, at every window's start. ``not_carried``: what else a window would have to
+    inherit; with it, or with a latent state that is not carried, calibration and diagnosis are refused.
     """
 
     leads: tuple[Lead, ...]
@@ -191,7 +201,7 @@ class Identification:
     phases: Mapping[str, str] = field(default_factory=dict)
     coordinates: tuple[str, ...] = ()
     whole: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
-    carrying: float | None = None
+    carrying: bool = False
     not_carried: tuple[str, ...] = ()
 
     @property
@@ -205,6 +215,6 @@ class Identification:
 
     def refusal(self) -> str:
         """Why recordings cannot be compared with this model; empty where they can."""
-        latent = [state.name for state in self.states if state.latent and self.carrying is None]
+        latent = [state.name for state in self.states if state.latent and not self.carrying]
         lacking = [f"{', '.join(latent)} at the start of a window, which no recording holds"] if latent else []
         return " and ".join([*lacking, *self.not_carried])

@@ -24,6 +24,7 @@ from grids.instruments.staged import Sets, recorded_in_stages
 from grids.instruments.windowed import recorded_in_windows
 from grids.recordings.base import REQUIRED, Recording
 from models.base import FloatArray
+from models.identification import NARROWEST
 from models.piecewise import Part, begun_at
 from models.shaking import Shaking
 
@@ -121,7 +122,7 @@ def _motion(
 ) -> dict[str, FloatArray]:  # fmt: skip
     """The free states along a recording, (1, samples) where all settings share them, else (P, samples)."""
     each = [_freed(measured, recording, one) for one in (sets if any(one != sets[0] for one in sets) else sets[:1])]
-    width = measured.identification.carrying or 0.0
+    width = measured.lengths.carrying if measured.lengths else NARROWEST
     found = {}
     for state in measured.identification.free:
         slope = state.rate and state.name not in recording.channels

@@ -136,7 +136,7 @@ class Predictor:
     ) -> dict[str, FloatArray]:
         """What the model carries to the starts of the windows (P, n, ...), under the base as measured."""
         m = self.measured
-        if m.identification.carrying is None:
+        if not m.identification.carrying:
             return {}
         settings = [Setting(self.parts(complete[p], recording), self.sets(instruments[p], recording)) for p in members]
         return self.carrying.at(m.first[windows], m, recording, shaking, settings, self.options)

@@ -17,10 +17,16 @@ IDENTIFICATION = Identification(
         State("velocity_z_2"),
     ),
     windows=WindowLengths(
-        shortest=0.8, aim=1.5, longest=3.0, quiet=1.0, smoothing=0.1, unit=lambda d: 1.0 / d["frequency_1"]
+        shortest=0.8,
+        aim=1.5,
+        longest=3.0,
+        quiet=1.0,
+        smoothing=0.1,
+        carrying=0.13,
+        unit=lambda d: 1.0 / d["frequency_1"],
     ),
     chaotic=False,
     coordinates=("base_stiffness", "top_stiffness", "layer_modulus", "base_layer_modulus", "top_layer_modulus"),
     whole={"bouc_wen.exponent": (1.0, 2.0)},
-    carrying=0.06,
+    carrying=True,
 )

@@ -6,4 +6,4 @@ from dataclasses import replace
 
 from models.interface import identification
 
-IDENTIFICATION = replace(identification.IDENTIFICATION, carrying=None)
+IDENTIFICATION = replace(identification.IDENTIFICATION, carrying=False)
