@@ -58,7 +58,7 @@ def beginnings(found: Search, progress: Progress) -> Iterator[Search]:
         starts.append(found.best)
     for start in starts:
         fits = _in_spells(found, start)
-        if fits and adjusted(start) - adjusted(fits[0]) >= MISSING and survives(start, fits[0]):
+        if fits and _needed(found, start, fits[0]):
             trial = _weighed(found, fits)
             if trial is not None:
                 yield trial
@@ -78,6 +78,19 @@ def _in_spells(found: Search, start: Explanation) -> list[Explanation]:
     least = max(MISSING, NEAR * (adjusted(start) - adjusted(fits[0])))
     near = [single for single in fits if adjusted(start) - adjusted(single) >= least]
     return sorted((_thorough(single) for single in near[:THOROUGH]), key=adjusted)
+
+
+def _needed(found: Search, start: Explanation, single: Explanation) -> bool:
+    """Whether the effect counts, and that it does not always act does too: against the same one always acting."""
+    if adjusted(start) - adjusted(single) < MISSING or not survives(start, single):
+        return False
+    *others, candidate = single.candidates
+    f = single.fitted
+    fitted = fit(in_spell(f.misfit, candidate.name, None), f.u, f.states)
+    always = Explanation((*others, replace(candidate, spell=None, price=0.0)), fitted)
+    if found.best is not None and found.best.names == always.names:
+        always = min(always, found.best, key=adjusted)
+    return adjusted(always) - adjusted(single) >= found.more and survives(always, single)
 
 
 def _settled(found: Search) -> bool:

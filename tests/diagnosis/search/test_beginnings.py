@@ -61,7 +61,10 @@ def searched(recordings: Sequence[Recording]) -> tuple[Search, list[Search]]:
 
 @pytest.mark.parametrize(
     ("name", "changes", "error"),
-    [("restitution", [(6.0, {"restitution.factor_on_housner": 0.9})], 0.0), ("offset", [(6.0, {})], 0.06)],
+    [
+        ("restitution", [(6.0, {"restitution.factor_on_housner": 0.9})], 0.0),
+        ("offset", [(6.0, {})], 0.06),
+    ],
 )
 def test_what_begins_in_the_second_recording_is_named_with_its_instant(
     name: str, changes: list[tuple[float, dict[str, float]]], error: float
@@ -81,6 +84,13 @@ def test_what_begins_in_the_second_recording_is_named_with_its_instant(
 
 def test_nothing_begins_where_nothing_is_missing() -> None:
     _, yielded = searched([made("a", 13, []), made("b", 6, [])])
+    assert yielded == []
+
+
+def test_what_always_acts_does_not_begin() -> None:
+    """Even if the ordinary search has not named it."""
+    from_rest = [(1.0, {"restitution.factor_on_housner": 0.93})]  # before anything moves
+    _, yielded = searched([made("a", 13, from_rest), made("b", 6, from_rest)])
     assert yielded == []
 
 
