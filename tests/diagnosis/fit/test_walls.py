@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -17,6 +18,7 @@ from diagnosis.fit.solver import fit
 from diagnosis.fit.starts import start_of
 from diagnosis.fit.unknowns import fixed_values, of_specimen
 from diagnosis.fit.whitening import sensor_noise_only
+from diagnosis.forces.action import action
 from diagnosis.search.candidates import candidates
 from diagnosis.search.refit import Explanation, extend
 from diagnosis.search.screen import score
@@ -106,3 +108,15 @@ def test_a_law_of_the_rubber_stands_out_with_its_parameters() -> None:
     assert np.sum(found.fitted.misfit.residuals([found.fitted.point])[0] ** 2) / measured.count.sum() < 1.15
     for name, true in MAXWELL.items():
         assert abs(found.fitted.values[name] / true - 1.0) < 0.15, name
+
+
+def test_what_a_law_does_along_the_motion_starts_from_what_the_layers_remember_there() -> None:
+    measured = measure(WALL, [recorded(1, tuple(MAXWELL.items()))])
+    one = misfit(measured)
+    point = one.point(np.array([x.coordinate(TRUE[x.name]) for x in one.unknowns]), measured.states)
+    point = one.predictor.declared([replace(point, values={**point.values, **MAXWELL})])[0]
+    off = replace(point, values={**point.values, "maxwell.arm_stiffness_ratio": 0.0})
+    acting, nothing = (action(one.predictor, p, "maxwell") for p in (point, off))
+    assert acting.kind == "force"
+    # without the effect the run to the next sample is that of the motion itself: nothing was lost on the way
+    assert np.max(np.abs(nothing.amount)) < 0.02 * np.max(np.abs(acting.amount))
