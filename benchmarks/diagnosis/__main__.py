@@ -11,9 +11,10 @@ from benchmarks.diagnosis.suite import EVALUATION_SEED
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.diagnosis", description=__doc__)
     parser.add_argument(
-        "what", nargs="?", choices=("diagnosis", "laboratory", "beginnings", "methods", "same"), default="diagnosis",
-        help="cases with white noise (default), with a laboratory's errors or with effects that begin, what other "
-        "methods say of the first, or whether two runs over them answer the same",
+        "what", nargs="?", default="diagnosis",
+        choices=("diagnosis", "laboratory", "beginnings", "walls", "methods", "same"),
+        help="cases with white noise (default), with a laboratory's errors, with effects that begin or of walls on "
+        "rubber, what other methods say of the first, or whether two runs over them answer the same",
     )  # fmt: skip
     parser.add_argument("--out", type=Path, default=Path("results/bench"), help="folder of the results")
     parser.add_argument("--jobs", type=int, default=2, help="processes")

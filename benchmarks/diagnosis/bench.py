@@ -1,15 +1,16 @@
 """The benchmark of the diagnosis on concealed cases of our own: with white noise, with a
-laboratory's errors, or with effects that begin.
+laboratory's errors, with effects that begin, or of walls on rubber.
 """
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from benchmarks.diagnosis import beginnings, laboratory, report, runner, suite
+from benchmarks.diagnosis import beginnings, laboratory, report, runner, suite, walls
 from diagnosis.prove.answers import Answering, diagnosed, write_json
 from diagnosis.prove.figures import draw_confusion
 from diagnosis.prove.report import wrong as wrong_answers
@@ -22,12 +23,15 @@ class Bench:
 
     designs: Callable[[int], list[suite.CaseDesign]]
     figures: Callable[[Sequence[Scored]], dict[str, Any]]
+    made_by: str = ""
+    """A file of this folder that its cases depend on beside those of `suite.MAKERS`."""
 
 
 BENCHES = {
     "diagnosis": Bench(suite.suite, report.grouped),
     "laboratory": Bench(laboratory.suite, report.by_imperfection),
     "beginnings": Bench(beginnings.suite, report.by_beginning),
+    "walls": Bench(walls.designs, report.of_all, "walls.py"),
 }
 
 
@@ -51,6 +55,9 @@ def bench(
     """
     designs = BENCHES[name].designs(seed)[:cases]
     here = suite.place(folder, seed, name)
+    if made_by := BENCHES[name].made_by:
+        digest = hashlib.sha256(Path(__file__).with_name(made_by).read_bytes()).hexdigest()
+        here = here.with_name(f"{here.name}-{digest[:8]}")
     runner.run_all(designs, seed, here / "cases", here / run, jobs=jobs, minutes=minutes, say=say, answering=answering)
     answered = [scored for _, scored in runner.answered(designs, here / "cases", here / run)]
     if not answered:

@@ -10,7 +10,7 @@ from benchmarks.diagnosis.cases import Case
 from diagnosis.prove.answers import write_json
 from grids.netcdf_lock import NETCDF_LOCK
 
-UNITS = {"rotation_1": "rad", "base_acceleration_x": "m s-2", "base_acceleration_z": "m s-2"}
+UNITS = {"rotation_1": "rad", "rotation_2": "rad", "base_acceleration_x": "m s-2", "base_acceleration_z": "m s-2"}
 
 
 def write_case(case: Case, folder: Path, key: Path) -> None:

@@ -40,6 +40,11 @@ def grouped(cases: Sequence[Scored]) -> dict[str, Any]:
     }
 
 
+def of_all(cases: Sequence[Scored]) -> dict[str, Any]:
+    """The figures of all cases together."""
+    return {**summary(cases), **provenance(cases)}
+
+
 def by_imperfection(cases: Sequence[Scored]) -> dict[str, Any]:
     """The figures of cases with a laboratory's errors: all, and counts by imperfection, of mixtures also together."""
 

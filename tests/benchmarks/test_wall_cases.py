@@ -1,0 +1,58 @@
+"""Cases of walls on rubber, by seed: how many of what, how large an effect is, and that the chain can read them."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from benchmarks.diagnosis import walls
+from benchmarks.diagnosis.files import write_case
+from benchmarks.diagnosis.scene import Unsuitable
+from grids.instruments import INSTRUMENTS
+from grids.recordings import read_recording
+from grids.specimen import read_specimen
+from models.shaking import Shaking
+
+
+def test_every_effect_is_asked_for_as_often_and_stands_in_the_catalogue() -> None:
+    asked = walls.designs(7)
+    assert Counter(design.kind for design in asked) == walls.COUNTS
+    singles = Counter(design.names[0] for design in asked if design.kind == "single")
+    assert set(singles) == set(walls.CATALOGUE) and len(set(singles.values())) == 1
+    for name, row in walls.CATALOGUE.items():
+        known = (INSTRUMENTS if row.sensor else walls.MODEL.mechanisms)[name]
+        assert known.effect_class == row.effect_class and known.parameter(row.parameter).null == row.null
+        low, high = known.parameter(row.parameter).low, known.parameter(row.parameter).high
+        assert all(low <= end <= high for end in row.ends)
+
+
+def test_size_is_nothing_without_an_effect_and_grows_with_one() -> None:
+    rng = np.random.default_rng(3)
+    drawn: tuple[dict[str, float], tuple[str, Shaking, float]] | None = None
+    while drawn is None:
+        try:
+            true = walls._wall(rng)[1]
+            drawn = true, walls._motion(true, rng, 22.0)
+        except Unsuitable:
+            continue
+    true, (_, shaking, peak) = drawn
+    assert walls.strength(true, {}, {}, shaking, peak) < 0.05
+    small, twice = (
+        walls.strength(true, {}, {"offset": {"offset_over_peak": share}}, shaking, peak) for share in (0.05, 0.1)
+    )
+    assert small > 1.0
+    assert twice / small == pytest.approx(2.0, rel=0.1)  # an offset adds, and no refit takes it up
+
+
+def test_a_case_is_read_as_it_was_made(tmp_path: Path) -> None:
+    design = next(one for one in walls.designs(7) if one.kind == "null")
+    case = walls.make(design, 7)
+    write_case(case, tmp_path / "case", tmp_path / "key.json")
+    specimen, recording = read_specimen(tmp_path / "case/specimen.toml"), read_recording(tmp_path / "case/train_1.nc")
+    assert specimen.model == "interface" and set(specimen.calibrate) == set(walls.RANGES)
+    assert set(walls.ROTATIONS) <= set(recording.channels)
+    again = walls.make(design, 7).channels["train_1"]["rotation_1"]
+    np.testing.assert_array_equal(case.channels["train_1"]["rotation_1"], again)
