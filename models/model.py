@@ -16,7 +16,7 @@ from models.errors import InputError, nearest
 from models.identification import Identification
 from models.mechanisms import acting_on, applied
 from models.peaks import peaks
-from models.runs import Request, Run
+from models.runs import DONE, Request, Run
 from models.shaking import Shaking
 
 MOST_LOGGED = 50_000
@@ -123,7 +123,9 @@ class Model(ABC, Generic[C]):
 
     def _integrated(self, integrator: str, coefficients: C, request: Request) -> Run:
         if integrator == "lanes":
-            return self.run_lanes(coefficients, request)
+            found = self.run_lanes(coefficients, request)
+            DONE.steps += found.steps
+            return found
         lanes = [slice(k, k + 1) for k in range(coefficients.size)]
         return Run.joined([self.run_reference(coefficients.take(k), request.take(k)) for k in lanes])
 

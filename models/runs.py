@@ -81,6 +81,16 @@ class Request:
         return {name: float(values[0]) for name, values in self.initial.items()}
 
 
+@dataclass
+class Work:
+    """What the kernels of this process have computed: lane-steps. A budget that does not depend on the machine."""
+
+    steps: int = 0
+
+
+DONE = Work()
+
+
 @dataclass(frozen=True)
 class Run:
     """Outputs ``(n,)`` by name, states ``(n, samples, k)`` as the model orders them, and events lane by lane.

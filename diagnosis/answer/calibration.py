@@ -9,8 +9,8 @@ import numpy as np
 
 from diagnosis.answer.heldout import frozen, relative_misfit
 from diagnosis.data.measured import Measured
-from diagnosis.errors.model import calibrated
-from diagnosis.fit.intervals import Estimate, correlation, estimates, profile_rise
+from diagnosis.errors.model import Errors, calibrated
+from diagnosis.fit.intervals import Estimate, correlation, estimates, profile_rise, settled
 from diagnosis.fit.setup import measure
 from diagnosis.fit.solver import Fitted
 from diagnosis.progress import Progress, silent
@@ -78,16 +78,16 @@ def calibrate(
     measured = measure(specimen, recordings)
     alone = list(recordings) if len(recordings) > 1 else []
     profiles = len(specimen.tolerance) + len(specimen.calibrate) if profile else 0
-    steps = _steps(progress, 1 + len(alone) + 2 * profiles)
+    steps = _steps(progress, 2 + len(alone) + profiles)
     steps("fitting all recordings together")
-    fitted, _ = calibrated(specimen, measured, seed)
+    fitted, errors = calibrated(specimen, measured, seed)
     by_recording = {}
     for recording in alone:
         steps(f"fitting {recording.name} alone")
         by_recording[recording.name] = estimates(
             calibrated(specimen, measure(specimen, [recording], measured.reference_peak), seed)[0]
         )
-    return _summary(fitted, measured, profile, by_recording, steps)
+    return _summary(fitted, errors, measured, profile, by_recording, steps)
 
 
 def _steps(progress: Progress, count: int) -> Callable[[str], None]:
@@ -98,25 +98,22 @@ def _steps(progress: Progress, count: int) -> Callable[[str], None]:
 
 def _summary(
     fitted: Fitted,
+    errors: Errors,
     measured: Measured,
     profile: bool,
     by_recording: Mapping[str, Mapping[str, Estimate]],
     steps: Callable[[str], None],
 ) -> Calibration:
-    misfit = fitted.misfit
-    names = [x.name for x in misfit.unknowns]
-    point = fitted.point
-    residual = misfit.residuals([point])[0]
-    found = estimates(fitted)
+    names = [x.name for x in fitted.misfit.unknowns]
+    steps("intervals by profile likelihood" if profile else "intervals")
+    fitted, found = settled(fitted, names if profile else ())
+    residual = fitted.misfit.residuals([fitted.point])[0]
     profiles = {}
     if profile:
-        for name in names:
-            steps(f"interval of {name} by profile likelihood")
-            found[name] = estimates(fitted, [name])[name]
         for i, name in enumerate(names):
             steps(f"profile of {name}")
             profiles[name] = _profile(fitted, i, found[name])
-    _, predicted = frozen(Explanation((), fitted), measured)
+    _, predicted = frozen(Explanation((), fitted), measured, errors)
     return Calibration(
         parameters=found,
         correlation=correlation(fitted),

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from diagnosis.answer.experiment import next_experiment
-from diagnosis.answer.heldout import Shown, compare, fit_figures, horizons, traces_of, windows_of
+from diagnosis.answer.heldout import Shown, compare, fit_figures, horizons, traces_of, windows_of, worsens
 from diagnosis.answer.judgement import explains, p_of_effects, p_of_missing, undecided, verdict_of
 from diagnosis.answer.located import located
 from diagnosis.answer.missing_force import missing_force
@@ -22,7 +22,7 @@ from diagnosis.answer.whole_runs import with_runs_from_rest
 from diagnosis.data.measured import Measured
 from diagnosis.errors.model import calibrated
 from diagnosis.errors.summary import summary
-from diagnosis.fit.intervals import Estimate, estimates
+from diagnosis.fit.intervals import Estimate, settled
 from diagnosis.fit.setup import measure
 from diagnosis.forces.columns import Forces, forces
 from diagnosis.forces.constancy import Tested, flags, tests
@@ -32,7 +32,7 @@ from diagnosis.search.beginnings import beginnings
 from diagnosis.search.candidates import absent, candidates
 from diagnosis.search.found import Search, misfit_per_sample, rivals
 from diagnosis.search.law import Law, estimate
-from diagnosis.search.refit import Explanation
+from diagnosis.search.refit import Explanation, gain_by_window
 from diagnosis.search.select import search, take_best_single
 from diagnosis.search.weighing import evidence
 from grids.recordings.base import Recording
@@ -84,7 +84,7 @@ def _assemble(
 ) -> Diagnosis:
     stages = Stages(stopped=not finished)
     measured = found.measured
-    shown = [stages.needed(lambda: compare(found.base, found.chosen, measured))]
+    shown = [stages.needed(lambda: compare(found.base, found.chosen, measured, found.errors))]
     unexplained = not explains(shown[0])
     if unexplained:  # what a model says that explains nothing is no name
         found = replace(found, best=None, outside=None)
@@ -97,7 +97,7 @@ def _assemble(
         return found.about if found.about is not None and tested else forces(chosen.fitted)
 
     about = stages.needed(of_chosen)
-    tested = stages.needed(lambda: tests(about))
+    tested = stages.needed(lambda: tests(about, found.errors))
     flagged = () if unexplained else flags(about, tested, found.more)
     if found.outside is not None:
         flagged = (found.outside, *(f for f in flagged if f.parameter != found.outside.parameter))
@@ -118,18 +118,25 @@ def _assemble(
     if verdict == "not_in_library" and not unexplained:
         progress("the missing force as a model", 0.88)
         law = stages.optional("the missing force as a model", lambda: estimate(chosen), lambda: None)
+    if law and to_show and worsens(chosen, law.explanation, to_show, found.errors):
+        found.not_tried[law.mechanism.name] = "the tables that fit these recordings predict those held out worse"
+        law = None
     final = law.explanation if law else chosen
     if law:
-        shown = [stages.needed(lambda: compare(found.base, final, measured))]
-    effects, base = stages.optional(
+        shown = [stages.needed(lambda: compare(found.base, final, measured, found.errors))]
+    settled_at, effects, base = stages.optional(
         "the profile likelihood (the intervals are symmetric instead)",
         lambda: _estimates(found, final, gains, p_value, None if law else progress),
         lambda: _estimates(found, final, gains, p_value, None),
     )
 
+    if settled_at.fitted.loss < final.fitted.loss:
+        final = chosen = settled_at
+        shown = [stages.needed(lambda: compare(found.base, final, measured, found.errors))]
+
     def of_held(recordings: Measured) -> Shown:
         progress("before and after", 0.95)
-        return compare(found.base, final, recordings)
+        return compare(found.base, final, recordings, found.errors)
 
     held = stages.needed(lambda: of_held(to_show)) if to_show else None
     if held:
@@ -190,12 +197,16 @@ def _assemble(
 
 def _estimates(
     found: Search, chosen: Explanation, gains: Sequence[float], p_missing: float | None, progress: Progress | None
-) -> tuple[tuple[Effect, ...], dict[str, Estimate]]:
-    """Effects, strongest first, and base parameters; by profile likelihood with a ``progress`` to call."""
+) -> tuple[Explanation, tuple[Effect, ...], dict[str, Estimate]]:
+    """Effects, strongest first, and base parameters; by profile likelihood with a ``progress`` to call.
+
+    With the explanation that they are of: a profile may have found a better optimum.
+    """
     if progress:
         progress("intervals", 0.9)
     named = [x.name for c in chosen.candidates for x in c.unknowns[:1]]
-    values = estimates(chosen.fitted, named if progress else ())
+    fitted, values = settled(chosen.fitted, named if progress else ())
+    chosen = replace(chosen, fitted=fitted)
     chances = p_of_effects(found, gains)
     if len(chances) == 1 and p_missing is not None:  # of the one effect it may be the bootstrap's
         chances = [p_missing]
@@ -210,7 +221,7 @@ def _estimates(
         stages = stages_of(chosen, candidate)
         effects.append(Effect(candidate.name, candidate.effect_class, parameters, gain, chance, stages))
     tabulated = tuple(f"{name}." for name, m in chosen.measured.model.mechanisms.items() if m.tabulated)
-    return tuple(effects), {name: value for name, value in values.items() if not name.startswith(tabulated)}
+    return chosen, tuple(effects), {name: value for name, value in values.items() if not name.startswith(tabulated)}
 
 
 def _screened(found: Search) -> tuple[Screened, ...]:
@@ -248,6 +259,7 @@ def _horizons(shown: Sequence[Shown], before: Explanation, after: Explanation) -
 def _provenance(specimen: Specimen, found: Search, tested: Sequence[Tested], seed: int) -> Mapping[str, Any]:
     measured = found.measured
     units = {q.name: q.unit for q in measured.model.observables}
+    gains, recordings = gain_by_window(found.base, found.chosen), list(enumerate(measured.recordings))
     return {
         "specimen": specimen.title,
         "model": specimen.model,
@@ -260,6 +272,7 @@ def _provenance(specimen: Specimen, found: Search, tested: Sequence[Tested], see
             for k, c in enumerate(measured.channels)
         },
         "misfit_per_sample": misfit_per_sample(found.chosen),
+        "gain_by_recording": {r.name: float(gains[measured.recording_of == k].sum()) for k, r in recordings},
         "constancy_threshold": found.more,
         "largest_constancy": tested[0].statistic if tested else 0.0,
         "largest_constancy_of": f"{tested[0].kind} / {tested[0].depends_on}" if tested else "",

@@ -16,10 +16,10 @@ import numpy as np
 
 from diagnosis.answer.whole_runs import sensed_run
 from diagnosis.data.measured import arrange
+from diagnosis.errors.model import Errors
 from diagnosis.fit.intervals import covariances
 from diagnosis.fit.misfit import Misfit, reduce
 from diagnosis.fit.solver import fit
-from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.found import Search
 from diagnosis.search.refit import Explanation
@@ -43,7 +43,7 @@ def next_experiment(found: Search, near: Sequence[tuple[Explanation, Candidate, 
     for recording in measured.recordings:
         for scale in SCALES:
             made = _made(best, recording, scale, measured.channels)
-            gain = _expected(best, other, made) if made is not None else 0.0
+            gain = _expected(best, other, made, found.errors) if made is not None else 0.0
             bank[recording.name, scale] = gain
     (name, scale), expected = max(bank.items(), key=lambda item: item[1])
     mine = [c for c in best.candidates if c.name not in other.names]
@@ -52,19 +52,19 @@ def next_experiment(found: Search, near: Sequence[tuple[Explanation, Candidate, 
     return {
         "separates": [c.name for c in pair],
         "recording": {"base_motion": name, "scale": scale, "expected_evidence": expected},
-        "sensor": _sensor(best, other),
+        "sensor": _sensor(best, other, found.errors),
         "static_test": "; or ".join(dict.fromkeys(c.mechanism.static_test for c in pair if c.mechanism.static_test)),
     }
 
 
-def _sensor(best: Explanation, other: Explanation) -> Mapping[str, Any] | None:
+def _sensor(best: Explanation, other: Explanation, errors: Errors) -> Mapping[str, Any] | None:
     """The channel of the model that is not recorded yet and would add most evidence, on the same runs."""
     measured = best.measured
     free = [q.name for q in measured.model.observables if q.name not in measured.channels and q.unit != SHARE]
     gains = {}
     for name in free:
         made = [_made(best, r, 1.0, (*measured.channels, name)) for r in measured.recordings]
-        gains[name] = sum(_expected(best, other, m) for m in made if m is not None)
+        gains[name] = sum(_expected(best, other, m, errors) for m in made if m is not None)
     if not gains:
         return None
     name, expected = max(gains.items(), key=lambda item: item[1])
@@ -89,7 +89,7 @@ def _made(explanation: Explanation, recording: Recording, scale: float, channels
     return replace(recording, channels={**found, REQUIRED: base[REQUIRED]})
 
 
-def _expected(truth: Explanation, rival: Explanation, made: Recording) -> float:
+def _expected(truth: Explanation, rival: Explanation, made: Recording, errors: Errors) -> float:
     """Expected evidence for ``truth`` over ``rival`` from one more recording."""
     fitted = rival.fitted
     measured = fitted.measured
@@ -99,7 +99,7 @@ def _expected(truth: Explanation, rival: Explanation, made: Recording) -> float:
     except InputError:
         return 0.0
     predictor = replace(fitted.misfit.predictor, measured=windows)
-    misfit = Misfit(predictor, sensor_noise_only(predictor), fitted.misfit.unknowns, fitted.misfit.fixed)
+    misfit = Misfit(predictor, errors.of_sensors(windows), fitted.misfit.unknowns, fitted.misfit.fixed)
     true = truth.fitted
     own = Misfit(predictor, misfit.whitening, true.misfit.unknowns, true.misfit.fixed)
     states = fit(replace(own, unknowns=(), fixed={**own.fixed, **true.values}), np.zeros(0), windows.states).states

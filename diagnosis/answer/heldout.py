@@ -17,11 +17,11 @@ from diagnosis.answer.result import Fit, HeldStage, Trace, Windows
 from diagnosis.answer.when import as_stages, held_stages
 from diagnosis.data.measured import Measured
 from diagnosis.data.noise import RELATIVE_FLOOR
+from diagnosis.errors.model import Errors
 from diagnosis.fit.memory import counted
 from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.solver import fit_thoroughly
-from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.search.refit import Explanation
 from models.base import FloatArray
 
@@ -46,22 +46,25 @@ class Shown:
 
 
 def frozen(
-    explanation: Explanation, measured: Measured, held: Sequence[HeldStage] = ()
+    explanation: Explanation, measured: Measured, errors: Errors, held: Sequence[HeldStage] = ()
 ) -> tuple[Point, FloatArray]:  # fmt: skip
-    """The explanation's parameters on other windows: the point with fitted states, and channels (W, C, N)."""
+    """The explanation's parameters on other windows: the point with fitted states, and channels (W, C, N).
+
+    The states are weighed by the sensors' ``errors``.
+    """
     misfit = explanation.fitted.misfit
     fixed = {**misfit.fixed, **explanation.fitted.values}
     predictor = replace(with_held(misfit.predictor, held), measured=measured)
-    states = measured.states
+    states, whitening = measured.states, errors.of_sensors(measured)
     for _ in range(2):
-        alone = Misfit(predictor, sensor_noise_only(predictor), (), fixed)
+        alone = Misfit(predictor, whitening, (), fixed)
         states = fit_thoroughly(alone, np.zeros(0), states).states
         point = alone.point(np.zeros(0), states)
         predictor = replace(predictor, measured=counted(predictor, point))
     return point, predictor.predict([point])[0]
 
 
-def compare(before: Explanation, after: Explanation, measured: Measured) -> Shown:
+def compare(before: Explanation, after: Explanation, measured: Measured, errors: Errors) -> Shown:
     """Both explanations on some recordings, states estimated anew."""
     learned = {r.name for r in after.measured.recordings}
     held: tuple[HeldStage, ...] = ()
@@ -69,8 +72,8 @@ def compare(before: Explanation, after: Explanation, measured: Measured) -> Show
         misfit = after.fitted.misfit
         predictor = replace(misfit.predictor, measured=measured)
         fixed = {**misfit.fixed, **after.fitted.values}
-        held = held_stages(after, Misfit(predictor, sensor_noise_only(predictor), (), fixed), measured.states)
-    one, other = frozen(before, measured), frozen(after, measured, held)
+        held = held_stages(after, Misfit(predictor, errors.of_sensors(measured), (), fixed), measured.states)
+    one, other = frozen(before, measured, errors), frozen(after, measured, errors, held)
     return Shown(measured, one[1], other[1], one[0], other[0], held)
 
 
@@ -78,6 +81,12 @@ def with_held(predictor: Predictor, held: Sequence[HeldStage]) -> Predictor:
     """The predictor with the stages of recordings held out after those learned from."""
     stages = {name: (*predictor.stages.get(name, ()), *more) for name, more in as_stages(held).items()}
     return replace(predictor, stages={**predictor.stages, **stages})
+
+
+def worsens(before: Explanation, after: Explanation, held: Measured, errors: Errors) -> bool:
+    """Whether recordings that neither was fitted to are predicted worse by ``after``."""
+    shown = compare(before, after, held, errors)
+    return relative_misfit(held, shown.after) > relative_misfit(held, shown.before)
 
 
 def relative_misfit(measured: Measured, predicted: FloatArray | None) -> float:

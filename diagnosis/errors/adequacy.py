@@ -6,6 +6,7 @@ chi-squared with one degree of freedom, half zero (Self and Liang, J. Am. Stat. 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -22,8 +23,10 @@ LARGE = 1.0
 """Variance of the model's smooth error over that of the sensors below `BAND` beyond which the model is not adequate."""
 LEVEL = 3.841458820694124
 """Rise of the deviance at the ends of a 95 % interval."""
-FACTORS = (0.5, 0.7, 0.85, 1.2, 1.5, 2.0, 3.0)
-"""Of an estimate, at which its profile is computed."""
+SMALLER, LARGER = (0.85, 0.7, 0.5), (1.2, 1.5, 2.0, 3.0)
+"""Of an estimate, at which its profile is computed, outwards."""
+LEAST = 0.001
+"""Scatter about which the profile of an estimate of zero is computed."""
 
 
 @dataclass(frozen=True)
@@ -103,27 +106,21 @@ def repeatability(errors: Errors, events: str) -> Repeatability | None:
     sd = float(np.sqrt(errors.theta[index]))
     acting = np.arange(errors.theta.size) == index
     lost = _without(errors, acting) if sd > 0.0 else 0.0
-    if lost < LEVEL:
-        low, reach = 0.0, max(sd, 0.001)
-    else:
-        low, reach = 0.0, sd
-    at = reach * np.array(FACTORS)
-    rise = np.array([_without(errors, acting, float(x) ** 2) for x in at])
-    if lost >= LEVEL:
-        low = _crossing(np.concatenate([[0.0], at[at < sd], [sd]]), np.concatenate([[lost], rise[at < sd], [0.0]]))
-    high = _crossing(np.concatenate([[sd], at[at > sd]])[::-1], np.concatenate([[0.0], rise[at > sd]])[::-1])
+    low = 0.0 if lost < LEVEL else _end(errors, acting, sd, [sd * factor for factor in SMALLER] + [0.0])
+    reach = max(sd, LEAST)
+    high = _end(errors, acting, sd, [reach * factor for factor in LARGER])
     return Repeatability(events, sd, low, high, lost)
 
 
-def _crossing(at: FloatArray, rise: FloatArray) -> float:
-    """Where a profile that falls along ``at`` crosses LEVEL, linear in its root; the first point if it never does."""
-    root = np.sqrt(np.maximum(rise, 0.0))
-    below_it = np.flatnonzero(root <= np.sqrt(LEVEL))
-    if not below_it.size or below_it[0] == 0:
-        return float(at[0])
-    k = int(below_it[0])
-    share = (root[k - 1] - np.sqrt(LEVEL)) / max(root[k - 1] - root[k], 1e-12)
-    return float(at[k - 1] + share * (at[k] - at[k - 1]))
+def _end(errors: Errors, held: np.ndarray, estimate: float, at: Sequence[float]) -> float:
+    """Where a profile that rises along ``at`` crosses LEVEL, linear in its root; the last point if it never does."""
+    last, root = estimate, 0.0
+    for value in at:
+        ahead = float(np.sqrt(_without(errors, held, value**2)))
+        if ahead >= np.sqrt(LEVEL):
+            return last + float(np.sqrt(LEVEL) - root) / max(ahead - root, 1e-12) * (value - last)
+        last, root = value, ahead
+    return last
 
 
 def _without(errors: Errors, held: np.ndarray, value: float = 0.0) -> float:
@@ -145,5 +142,6 @@ def _without_most_influential(errors: Errors, held: np.ndarray) -> float:
 def _held(errors: Errors, held: np.ndarray, value: float) -> State:
     """The likelihood with the ``held`` variances at a value and the others estimated anew."""
     pieces = [piece.holding(held, value) for piece in errors.pieces]
-    theta, _ = climbed(pieces, errors.prior, errors.theta[~held], errors.weights, 0, 1)
-    return maximise(pieces, errors.prior, np.maximum(theta, 1e-6), errors.weights)[1]
+    prior = errors.prior.without(held)
+    theta, _ = climbed(pieces, prior, errors.theta[~held], errors.weights, 0, 1)
+    return maximise(pieces, prior, np.maximum(theta, 1e-6), errors.weights)[1]

@@ -5,7 +5,8 @@ A piece is a stretch of samples (a window of the motion, or one in which nothing
     C = B + sum_k theta_k V_k,      theta_k >= 0,
 
 B known (noise of the measured base motion). The V_k are stationary noise of a sensor with a kernel k(lag), noise that
-grows with the signal (a diagonal), and random kicks at events (low rank). Every kind knows its product with a vector,
+grows with the signal (a diagonal), and random kicks at events (low rank). Slow drifts go on from piece to piece and
+are no part of a piece's own covariance (`diagnosis.errors.drifts`). Every kind knows its product with a vector,
 its trace with a matrix and how to add itself, so that none of them is ever formed for all pieces at once.
 """
 
@@ -19,12 +20,16 @@ import numpy as np
 
 from models.base import FloatArray
 
-Kind = Literal["white", "low_pass", "drift", "hum", "growing", "scatter", "inadequacy"]
+Kind = Literal["white", "low_pass", "exponential", "slow_drift", "hum", "growing", "scatter", "inadequacy"]
 
 LOW_PASS = (0.006, 0.012)
 """s, deviation of Gaussian kernels: noise that a filter left, with spectra of 27 and 13 Hz standard deviation."""
-DECAYS = (0.015, 0.05, 0.15, 0.5, 3.0)
-"""s, of exponential kernels: autoregressive and 1/f noise, drift."""
+DECAYS = (0.015, 0.05, 0.15, 0.5)
+"""s, of exponential kernels: autoregressive and 1/f noise."""
+SLOW_DRIFTS = (3.0, np.inf)
+"""s, correlation times of drifts: a stationary one, and a random walk."""
+WALK = 10.0
+"""s after which a random walk has its variance."""
 SMOOTH = (0.05, 0.15)
 """s, deviation of the Gaussian kernels of a smooth inadequacy of the model."""
 
@@ -43,12 +48,17 @@ class Component:
         return self.kind in ("growing", "scatter", "inadequacy")
 
     @property
+    def shared(self) -> bool:
+        """Whether it goes on from piece to piece."""
+        return self.kind == "slow_drift"
+
+    @property
     def kernel(self) -> Callable[[FloatArray], FloatArray]:
         """Correlation as a function of the lag in s, for a stationary kind."""
         scale = self.scale
         if self.kind == "white":
             return lambda lag: (lag == 0.0).astype(np.float64)
-        if self.kind == "drift":
+        if self.kind == "exponential":
             return lambda lag: np.exp(-lag / scale)
         if self.kind == "hum":
             return lambda lag: np.cos(2.0 * np.pi * scale * lag)
@@ -58,7 +68,9 @@ class Component:
         """One-sided spectral density (1/Hz) of a stationary kind of variance one; ``step`` (s) of samples if white."""
         if self.kind == "white":
             return np.full_like(frequency, 2.0 * step)
-        if self.kind == "drift":
+        if np.isinf(self.scale):
+            return np.asarray(2.0 / WALK / (2.0 * np.pi * frequency) ** 2)
+        if self.kind in ("exponential", "slow_drift"):
             return np.asarray(4.0 * self.scale / (1.0 + (2.0 * np.pi * frequency * self.scale) ** 2))
         if self.kind in ("low_pass", "inadequacy"):
             wide = 2.0 * np.sqrt(2.0 * np.pi) * self.scale

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from diagnosis.data.measured import Measured
+from diagnosis.errors.drifts import columns, knots_of
 from diagnosis.errors.model import Errors
 from models.base import FloatArray
 
@@ -14,6 +15,10 @@ def draw(errors: Errors, measured: Measured, rng: np.random.Generator) -> FloatA
     found = np.einsum("wcnk,wk->wcn", errors.base, rng.normal(size=errors.base.shape[::3]))
     scatter = np.sqrt(sum(t for c, t in zip(errors.components, errors.theta, strict=True) if c.kind == "scatter"))
     found += scatter * np.einsum("wcnk,wk->wcn", errors.kicks, rng.normal(size=errors.kicks.shape[::3]))
+    knots = knots_of(measured, errors.components)
+    if knots is not None:
+        drift = errors.prior.root(errors.theta) @ rng.normal(size=(knots.time.size, 1))
+        found += columns(knots, drift, measured, errors.unit)[..., 0]
     samples = np.arange(measured.values.shape[2])
     peak = np.max(np.abs(measured.values) * measured.mask, axis=(0, 2))
     roots: dict[tuple[int, float], FloatArray] = {}
@@ -25,7 +30,7 @@ def draw(errors: Errors, measured: Measured, rng: np.random.Generator) -> FloatA
                 lag = np.abs(samples[:, None] - samples[None, :]) * step
                 covariance: FloatArray = 1e-9 * np.eye(samples.size)
                 for component, theta in own:
-                    if not component.moving:
+                    if not component.moving and not component.shared:
                         covariance = covariance + theta * component.kernel(lag)
                 roots[c, step] = np.asarray(np.linalg.cholesky(covariance), np.float64)
             growing = sum(t for k, t in own if k.kind == "growing")

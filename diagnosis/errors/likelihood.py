@@ -1,10 +1,13 @@
 """Restricted likelihood of variance components, and its maximum under theta >= 0.
 
-A piece's residual is r = J b + X x + e, e ~ N(0, C(theta)): x its own states without a prior, b the base parameters
-with theirs (precision Q about b0). With P = C^-1 - C^-1 X (X' C^-1 X)^-1 X' C^-1 and H = sum J'PJ + Q,
+A piece's residual is r = J b + X x + e, e ~ N(0, C(theta)): x its own states without a prior, b what pieces share.
+These are the base parameters, with their priors, and the values of slow drifts at knots, linear in between, with the
+covariance D(theta) = sum theta_k D_k. With Q the precision of b about b0,
+P = C^-1 - C^-1 X (X' C^-1 X)^-1 X' C^-1 and H = sum J'PJ + Q,
 
-    -2 log L = sum [log|C| + log|X'C^-1 X| + w r'P r] + log|H| - g' H^-1 g + const,     g = sum w J'P r + Q (b - b0),
+    -2 log L = sum [log|C| + log|X'C^-1 X| + w r'P r] + log|H| + log|D| - g' H^-1 g + const,
 
+g = sum w J'P r + Q (b - b0)
 (Patterson and Thompson, Biometrika 58, 1971). The slope along theta_k is tr(P V_k) - w a'V_k a with a = P (r - J d),
 the average information a'V_k P V_l a (Gilmour, Thompson and Cullis, Biometrics 51, 1995). Multiplicative steps
 theta_k <- theta_k sqrt(w a'V_k a/tr(P V_k)) never fail and end slowly; then Newton steps with the average information,
@@ -15,7 +18,7 @@ event does not pass for noise.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +34,8 @@ RIDGE = 1e-6
 """Added to the information of every variance, in its own unit: kernels are alike."""
 SLACK = 1e-10
 """Of the largest information, added to all: a shape whose effect is off changes nothing."""
+LARGEST_DRIFT = 1.0
+"""Variance of a drift over that of the noise; a sensor that is knocked goes further."""
 CLOSE = 0.1
 """Fall of -2 log L that ends the iteration."""
 
@@ -40,7 +45,7 @@ class Piece:
     """n samples: residual r (n,), states' derivatives X (n, S), base parameters' J (n, k), known covariance B (n, n).
 
     ``time`` (n,) in s and ``channel`` (n,) of the samples; ``parts``: what each component does here, None where it does
-    not act.
+    not act on this piece alone. ``at_knots`` (n, q): weights of the ``knots`` (q,) of drifts in the samples.
     """
 
     time: FloatArray
@@ -51,6 +56,13 @@ class Piece:
     by_unknown: FloatArray
     known: FloatArray
     parts: tuple[Part | None, ...]
+    knots: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, np.intp))
+    at_knots: FloatArray | None = None
+
+    @property
+    def common(self) -> FloatArray:
+        """Derivatives (n, k + q) by the base parameters and the drifts at this piece's knots."""
+        return self.by_unknown if self.at_knots is None else np.concatenate([self.by_unknown, self.at_knots], axis=1)
 
     def holding(self, held: NDArray[np.bool_], value: float) -> Piece:
         """The same with the ``held`` components (K,) no longer unknown: each has the variance ``value``."""
@@ -68,19 +80,47 @@ class Piece:
 
 @dataclass(frozen=True)
 class Prior:
-    """Precision Q (k, k) and slope Q (b - b0) (k,) of the base parameters at the point of the residuals."""
+    """Precision Q (k, k) and slope Q (b - b0) (k,) of the base parameters at the point of the residuals.
+
+    ``drifts``: by component, the covariance D_k (q, q) of a drift of variance one at all knots, None for others.
+    """
 
     precision: FloatArray
     slope: FloatArray
+    drifts: tuple[FloatArray | None, ...] = ()
+
+    @property
+    def count(self) -> int:
+        """Of the knots."""
+        return max((d.shape[0] for d in self.drifts if d is not None), default=0)
+
+    def most(self, count: int) -> FloatArray:
+        """Largest variances (count,): a drift beyond `LARGEST_DRIFT` is no error but something to be named."""
+        drifts = [drift is not None for drift in self.drifts] or [False] * count
+        return np.where(drifts, LARGEST_DRIFT, np.inf)
+
+    def root(self, theta: FloatArray) -> FloatArray:
+        """R (q, q) with R R' = D(theta)."""
+        found = np.zeros((self.count, self.count))
+        for drift, value in zip(self.drifts, theta, strict=False):
+            if drift is not None:
+                found += value * drift
+        values, vectors = np.linalg.eigh(found)
+        return np.asarray(vectors * np.sqrt(np.maximum(values, 0.0)))
+
+    def without(self, held: NDArray[np.bool_]) -> Prior:
+        """The same with some components gone."""
+        drifts = tuple(d for d, gone in zip(self.drifts, held, strict=False) if not gone)
+        return replace(self, drifts=drifts)
 
 
 @dataclass(frozen=True)
 class Solved:
-    """One piece at one theta: P (n, n), P r, P J, log determinants, r'P r."""
+    """One piece at one theta: P (n, n), P r, P times `Piece.common`, log determinants, r'P r."""
 
     projector: FloatArray
     on_residual: FloatArray
-    on_unknown: FloatArray
+    on_common: FloatArray
     determinants: float
     square: float
 
@@ -89,7 +129,8 @@ class Solved:
 class State:
     """The restricted likelihood at one theta: -2 log L, and its slope and average information (K,), (K, K).
 
-    ``chi2`` and log ``determinants`` by piece.
+    ``chi2`` of what base parameters and drifts leave and log ``determinants`` by piece; ``price`` of the drifts,
+    |D^-1/2 d|^2 + log|I + D A|; ``estimate`` (k + q,) of base parameters and drifts with its ``covariance``.
     """
 
     deviance: float
@@ -99,6 +140,9 @@ class State:
     trace: FloatArray
     chi2: FloatArray
     determinants: FloatArray
+    price: float
+    estimate: FloatArray
+    covariance: FloatArray
 
 
 def solve(piece: Piece, theta: FloatArray) -> Solved:
@@ -115,7 +159,7 @@ def solve(piece: Piece, theta: FloatArray) -> Solved:
     return Solved(
         projector,
         on_residual,
-        projector @ piece.by_unknown,
+        projector @ piece.common,
         2.0 * float(np.log(np.diagonal(factor[0])).sum()) + float(np.linalg.slogdet(gram)[1]),
         float(piece.residual @ on_residual),
     )
@@ -132,34 +176,58 @@ def evaluate(
 ) -> State:
     """The restricted likelihood at theta (K,) with weights (pieces,)."""
     solved = [solve(piece, theta) for piece in pieces]
-    hessian, gradient = prior.precision.copy(), prior.slope.copy()
-    for piece, one, w in zip(pieces, solved, weights, strict=True):
-        hessian += w * piece.by_unknown.T @ one.on_unknown
-        gradient += w * piece.by_unknown.T @ one.on_residual
-    k = gradient.size
-    hessian += SLACK * (np.max(np.diagonal(hessian), initial=0.0) + SLACK) * np.eye(k)
-    inverse = np.linalg.inv(hessian) if k else np.zeros((0, 0))
-    shift = inverse @ gradient
-    chi2 = np.array([one.square for one in solved])
+    k, q, n = prior.slope.size, prior.count, theta.size
+    where = [np.concatenate([np.arange(k), k + piece.knots]) for piece in pieces]
+    data, gradient = np.zeros((k + q, k + q)), np.zeros(k + q)
+    for piece, one, w, at in zip(pieces, solved, weights, where, strict=True):
+        data[np.ix_(at, at)] += w * piece.common.T @ one.on_common
+        gradient[at] += w * piece.common.T @ one.on_residual
+    gradient[:k] += prior.slope
+    turn = np.eye(k + q)  # to drifts of covariance one
+    turn[k:, k:] = prior.root(theta)
+    hessian = turn.T @ data @ turn
+    hessian[:k, :k] += prior.precision
+    hessian[range(k), range(k)] += SLACK * (np.max(np.diagonal(hessian)[:k], initial=0.0) + SLACK)
+    hessian[range(k, k + q), range(k, k + q)] += 1.0
+    spread = turn @ np.linalg.inv(hessian) @ turn.T
+    shift = spread @ gradient
+    a = [one.on_residual - one.on_common @ shift[at] for one, at in zip(solved, where, strict=True)]
+    chi2 = np.array(
+        [(p.residual - p.common @ shift[at]) @ x for p, x, at in zip(pieces, a, where, strict=True)], np.float64
+    )
+    squares = np.array([one.square for one in solved])
     determinants = np.array([one.determinants for one in solved])
-    deviance = float(determinants.sum()) + float(weights @ chi2) + float(-gradient @ shift)
-    deviance += float(np.linalg.slogdet(hessian)[1]) if k else 0.0
-    n = theta.size
+    logdet = float(np.linalg.slogdet(hessian)[1])
+    deviance = float(determinants.sum()) + float(weights @ squares) + float(-gradient @ shift) + logdet
+    scaled = np.linalg.solve(hessian, turn.T @ gradient)[k:]
+    price = float(scaled @ scaled) + logdet - float(np.linalg.slogdet(hessian[:k, :k])[1])
     quadratic, trace, information = np.zeros(n), np.zeros(n), np.zeros((n, n))
     if slopes:
-        for piece, one, w in zip(pieces, solved, weights, strict=True):
-            a = one.on_residual - one.on_unknown @ shift
+        drifts = {i: drift for i, drift in enumerate(prior.drifts) if drift is not None}
+        slope = gradient[k:] - (data @ shift)[k:]  # sum w Z'a
+        left = data[k:, k:] - data[k:] @ spread @ data[:, k:]
+        pulled = {i: drift @ slope for i, drift in drifts.items()}
+        for i, drift in drifts.items():
+            quadratic[i], trace[i] = slope @ pulled[i], float(np.sum(left * drift))
+        along = np.zeros((n, k + q))
+        for piece, one, w, at, own in zip(pieces, solved, weights, where, a, strict=True):
             acting = [i for i, part in enumerate(piece.parts) if part is not None]
-            turned = np.stack([piece.parts[i].times(a) for i in acting], axis=1)  # type: ignore[union-attr]
-            quadratic[acting] += w * (a @ turned)
-            information[np.ix_(acting, acting)] += w * (turned.T @ one.projector @ turned)
+            turned = np.zeros((own.size, n))
+            for i in acting:
+                turned[:, i] = piece.parts[i].times(own)  # type: ignore[union-attr]
+            quadratic += w * (own @ turned)
+            if piece.at_knots is not None:
+                for i in drifts:
+                    turned[:, i] = piece.at_knots @ pulled[i][piece.knots]
+            information += w * (turned.T @ one.projector @ turned)
+            along[:, at] += w * turned.T @ one.on_common
+            known = one.on_common @ spread[np.ix_(at, at)]
             for i in acting:
                 part = piece.parts[i]
                 assert part is not None
-                trace[i] += part.trace(one.projector)
-                if k:
-                    trace[i] -= w * float(np.sum((one.on_unknown @ inverse) * part.times(one.on_unknown)))
-    return State(deviance, trace - quadratic, information, quadratic, trace, chi2, determinants)
+                trace[i] += part.trace(one.projector) - w * float(np.sum(known * part.times(one.on_common)))
+        information -= along @ spread @ along.T
+    return State(deviance, trace - quadratic, information, quadratic, trace, chi2, determinants, price, shift, spread)
 
 
 def climbed(
@@ -171,7 +239,7 @@ def climbed(
     for _ in range(steps):
         state = evaluate(pieces, prior, theta, weights)
         ratio = np.sqrt(np.maximum(state.quadratic, 0.0) / np.maximum(state.trace, 1e-300))
-        theta = theta * np.clip(ratio, 0.05, 20.0)
+        theta = np.minimum(theta * np.clip(ratio, 0.05, 20.0), prior.most(theta.size))
         weights[:moving] = robust_weights(state.chi2[:moving], count)
     return theta, weights
 
@@ -183,7 +251,7 @@ def maximise(pieces: Sequence[Piece], prior: Prior, theta: FloatArray, weights: 
         step = _newton(theta, state)
         moved, ahead = theta, state
         for halving in range(HALVINGS):
-            moved = theta + 0.5**halving * step
+            moved = np.minimum(theta + 0.5**halving * step, prior.most(theta.size))
             ahead = evaluate(pieces, prior, moved, weights)
             if ahead.deviance < state.deviance:
                 break
@@ -210,7 +278,7 @@ def robust_deviance(state: State, pieces: Sequence[Piece], moving: int) -> float
     """-2 log L, base parameters at their estimate, with the t-distribution that the weights belong to."""
     count = np.array([piece.residual.size for piece in pieces[:moving]], np.float64)
     windows = (NU + 1.0) * count * np.log1p(state.chi2[:moving] / (NU * count))
-    return float(state.determinants.sum() + windows.sum() + state.chi2[moving:].sum())
+    return float(state.determinants.sum() + windows.sum() + state.chi2[moving:].sum() + state.price)
 
 
 def robust_weights(chi2: FloatArray, count: FloatArray) -> FloatArray:

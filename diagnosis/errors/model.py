@@ -8,11 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis.data.measured import Measured
-from diagnosis.errors.components import DECAYS, LOW_PASS, SMOOTH, Component
+from diagnosis.errors.components import DECAYS, LOW_PASS, SLOW_DRIFTS, SMOOTH, Component
+from diagnosis.errors.drifts import columns, knots_of
 from diagnosis.errors.kicks import kicks
 from diagnosis.errors.likelihood import Piece, Prior, climbed, maximise, robust_deviance
 from diagnosis.errors.lines import lines
 from diagnosis.errors.pieces import Scene, opened, prior_of, stills, windows
+from diagnosis.errors.sensors import of_sensors
 from diagnosis.fit.setup import base_fit
 from diagnosis.fit.solver import Fitted, fit_thoroughly
 from diagnosis.fit.whitening import Whitening, base_columns, responses
@@ -23,6 +25,8 @@ STEPS, AGAIN = 10, 3
 """Multiplicative steps from the first start, and from an estimate."""
 SCATTER = 0.01
 """Where the scatter of events starts, relative."""
+FAINT = 0.004
+"""Variance of an independent part of a drift, in units squared, under which no window could show it."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +51,11 @@ class Errors:
     whitening: Whitening
     base: FloatArray
     kicks: FloatArray
+
+    def of_sensors(self, measured: Measured) -> Whitening:
+        """The sensors' errors in windows of other recordings; those of channels not known are taken for white."""
+        channels = self.whitening.measured.channels
+        return of_sensors(self.components, self.theta, self.unit, channels, measured)
 
 
 def disturbance_about(fitted: Fitted) -> FloatArray:
@@ -81,7 +90,7 @@ def estimate(fitted: Fitted, base: FloatArray, start: Errors | None = None) -> E
         components = tuple(c for c in components if c.kind != "inadequacy")
     theta = _start(components) if start is None else np.maximum(start.theta, 1e-4 * _start(components))
     pieces = (*windows(scene, components), *stills(scene, components))
-    prior = prior_of(scene)
+    prior = prior_of(scene, components)
     moving = len(fitted.measured.windows)
     weights = np.ones(len(pieces))
     theta, weights = climbed(pieces, prior, theta, weights, moving, STEPS if start is None else AGAIN)
@@ -90,10 +99,11 @@ def estimate(fitted: Fitted, base: FloatArray, start: Errors | None = None) -> E
         if heard:
             components = (*components, *heard)
             pieces = (*windows(scene, components), *stills(scene, components))
+            prior = prior_of(scene, components)
             theta = np.concatenate([theta, np.full(len(heard), 0.1)])
             theta, weights = climbed(pieces, prior, theta, weights, moving, AGAIN)
     theta, state = maximise(pieces, prior, theta, weights)
-    whitening = _whitening(scene, components, theta, base, kicked)
+    whitening = _whitening(scene, components, theta, base, kicked, prior)
     step = fitted.measured.recordings[0].time_step
     loss = robust_deviance(state, pieces, moving) + fitted.misfit.prior(fitted.u)
     return Errors(
@@ -106,7 +116,8 @@ def _components(scene: Scene) -> tuple[Component, ...]:
     for c in range(len(scene.fitted.measured.channels)):
         found.append(Component("white", c))
         found += [Component("low_pass", c, s) for s in LOW_PASS]
-        found += [Component("drift", c, s) for s in DECAYS]
+        found += [Component("exponential", c, s) for s in DECAYS]
+        found += [Component("slow_drift", c, s) for s in SLOW_DRIFTS]
         found.append(Component("growing", c))
         found += [Component("inadequacy", c, s) for s in SMOOTH]
     if scene.kicks.shape[-1]:
@@ -119,23 +130,18 @@ def _start(components: Sequence[Component]) -> FloatArray:
 
 
 def _whitening(
-    scene: Scene, components: Sequence[Component], theta: FloatArray, base: FloatArray, kicked: FloatArray
+    scene: Scene,
+    components: Sequence[Component],
+    theta: FloatArray,
+    base: FloatArray,
+    kicked: FloatArray,
+    prior: Prior,
 ) -> Whitening:
-    """By the inverse Cholesky factor of the sensors' errors, then base noise and events as columns."""
+    """Of the sensors' errors, with base noise and events as columns and drifts as errors that windows share."""
     m = scene.fitted.measured
-    sensors = [k for k, c in enumerate(components) if c.kind not in ("scatter", "inadequacy")]
-    n = m.compared.shape[2]
-    alone = replace(scene, base=scene.base[..., :0], kicks=scene.kicks[..., :0])
-    of_sensors = windows(alone, [components[k] for k in sensors])
-    factor = np.zeros((*m.compared.shape, n))
-    for w, piece in enumerate(of_sensors):
-        covariance = piece.covariance(theta[sensors])
-        begin = 0
-        for c in range(len(m.channels)):
-            inside = np.flatnonzero(m.compared[w, c])
-            own = slice(begin, begin + inside.size)
-            begin += inside.size
-            lower = np.linalg.cholesky(covariance[own, own])
-            factor[w, c][np.ix_(inside, inside)] = np.linalg.inv(lower) / scene.unit[c]
-    scatter = float(np.sqrt(sum(theta[k] for k, c in enumerate(components) if c.kind == "scatter")))
-    return Whitening(m, factor).with_columns(np.concatenate([base, scatter * kicked], axis=-1))
+    scatter = float(np.sqrt(sum(t for c, t in zip(components, theta, strict=True) if c.kind == "scatter")))
+    found = of_sensors(components, theta, scene.unit, m.channels, m)
+    found = found.with_columns(np.concatenate([base, scatter * kicked], axis=-1))
+    knots, root = knots_of(m, components), prior.root(theta)
+    root = root[:, np.sum(root**2, axis=0) > FAINT]
+    return found.with_shared(columns(knots, root, m, scene.unit)) if knots and root.size else found

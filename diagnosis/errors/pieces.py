@@ -11,9 +11,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
+from diagnosis.data.measured import Measured
 from diagnosis.data.noise import still
 from diagnosis.errors.components import Component, Diagonal, LowRank, Part, Stationary
+from diagnosis.errors.drifts import Knots, knots_of
 from diagnosis.errors.likelihood import Piece, Prior
 from diagnosis.fit.misfit import Linear, Misfit
 from diagnosis.fit.solver import Fitted
@@ -54,16 +57,19 @@ def opened(fitted: Fitted, base: FloatArray, kicks: FloatArray) -> Scene:
     return Scene(fitted, unit, misfit.linearise(fitted.u, fitted.states), scaled(base), scaled(kicks))
 
 
-def prior_of(scene: Scene) -> Prior:
+def prior_of(scene: Scene, components: Sequence[Component]) -> Prior:
+    """Of the base parameters and of the drifts."""
     rows, slopes = scene.fitted.misfit.prior_rows(scene.fitted.u)
-    return Prior(slopes.T @ slopes, slopes.T @ rows)
+    knots = knots_of(scene.fitted.measured, components)
+    drifts = () if knots is None else tuple(knots.covariance(c) for c in components)
+    return Prior(slopes.T @ slopes, slopes.T @ rows, drifts)
 
 
 def windows(scene: Scene, components: Sequence[Component]) -> list[Piece]:
     """One piece a window."""
     m = scene.fitted.measured
     found = []
-    growth = _growth(scene)
+    grown, knots = growth(m), knots_of(m, components)
     for w, window in enumerate(m.windows):
         keep = m.compared[w].ravel()
         channel = np.repeat(np.arange(len(m.channels)), m.compared.shape[2])[keep]
@@ -71,7 +77,11 @@ def windows(scene: Scene, components: Sequence[Component]) -> list[Piece]:
         at = np.tile(np.arange(m.compared.shape[2]), len(m.channels))[keep]
         parts: list[Part | None] = []
         kicked = scene.kicks[w].reshape(keep.size, -1)[keep]
+        touched = _touched(knots, window.recording, channel, at * step + window.first * step / m.strides[w])
         for component in components:
+            if component.shared:
+                parts.append(None)
+                continue
             if component.kind == "scatter":
                 parts.append(LowRank(kicked) if kicked.shape[1] else None)
                 continue
@@ -79,7 +89,7 @@ def windows(scene: Scene, components: Sequence[Component]) -> list[Piece]:
             inside = slice(int(own[0]), int(own[-1]) + 1)
             if component.kind == "growing":
                 values = np.zeros(channel.size)
-                values[inside] = growth[w].ravel()[keep][inside] / m.strides[w]
+                values[inside] = grown[w].ravel()[keep][inside] / m.strides[w]
                 parts.append(Diagonal(values))
             else:
                 parts.append(_stationary(component, at[inside], step, inside, float(m.strides[w])))
@@ -89,7 +99,7 @@ def windows(scene: Scene, components: Sequence[Component]) -> list[Piece]:
         found.append(
             Piece(
                 at * step, channel, linear.residual[w][keep], linear.by_state[w][keep], linear.by_unknown[w][keep],
-                known, tuple(parts),
+                known, tuple(parts), *touched,
             )
         )  # fmt: skip
     return found
@@ -99,7 +109,7 @@ def stills(scene: Scene, components: Sequence[Component]) -> list[Piece]:
     """One piece a channel and recording, of all that is still there; its level is unknown."""
     m = scene.fitted.measured
     found = []
-    k = scene.linear.by_unknown.shape[-1]
+    k, knots = scene.linear.by_unknown.shape[-1], knots_of(m, components)
     for r, recording in enumerate(m.recordings):
         own = np.flatnonzero(m.recording_of == r)
         if not own.size:
@@ -116,11 +126,11 @@ def stills(scene: Scene, components: Sequence[Component]) -> list[Piece]:
             if at.size > LONGEST_STILL:
                 at = np.concatenate([at[: LONGEST_STILL // 2], at[-LONGEST_STILL // 2 :]])
             means = values[: values.size // size * size].reshape(-1, size).mean(axis=1)
-            level = np.asarray((means[at] - means[at].mean()) / scene.unit[c], np.float64)
+            level = np.asarray((means[at].mean() - means[at]) / scene.unit[c], np.float64)  # predicted minus measured
             inside = slice(0, at.size)
             parts = tuple(
                 _stationary(component, at, recording.time_step * size, inside, float(size))
-                if component.channel == c and not component.moving
+                if component.channel == c and not component.moving and not component.shared
                 else None
                 for component in components
             )
@@ -128,8 +138,16 @@ def stills(scene: Scene, components: Sequence[Component]) -> list[Piece]:
             time = np.asarray(at * recording.time_step * size, np.float64)
             channel = np.full(at.size, c)
             blank = np.zeros((at.size, k))
-            found.append(Piece(time, channel, level, np.ones((at.size, 1)), blank, known, parts))
+            touched = _touched(knots, r, channel, time)
+            found.append(Piece(time, channel, level, np.ones((at.size, 1)), blank, known, parts, *touched))
     return found
+
+
+def _touched(
+    knots: Knots | None, recording: int, channel: NDArray[np.int64], time: FloatArray
+) -> tuple[()] | tuple[NDArray[np.intp], FloatArray]:
+    """Knots of drifts and their weights in samples at ``time`` (s from the recording's start), for `Piece`."""
+    return () if knots is None else knots.near(recording, channel, time)
 
 
 def _stationary(component: Component, at: np.ndarray, step: float, inside: slice, stride: float) -> Stationary:
@@ -138,9 +156,8 @@ def _stationary(component: Component, at: np.ndarray, step: float, inside: slice
     return Stationary(inside, component.kernel(lag) / (stride if component.kind == "white" else 1.0))
 
 
-def _growth(scene: Scene) -> FloatArray:
+def growth(measured: Measured) -> FloatArray:
     """Squared size of the signal over its peak (W, C, n)."""
-    m = scene.fitted.measured
-    size = np.abs(m.averaged(m.values)) * m.compared
+    size = np.abs(measured.averaged(measured.values)) * measured.compared
     peak = np.maximum(size.max(axis=(0, 2)), 1e-300)
     return np.asarray((size / peak[None, :, None]) ** 2, np.float64)

@@ -9,6 +9,7 @@ import numpy as np
 from diagnosis.data.averaging import RATE
 from diagnosis.data.measured import Measured
 from diagnosis.errors.adequacy import Inadequacy, Repeatability, density, inadequacy, repeatability
+from diagnosis.errors.components import WALK
 from diagnosis.errors.likelihood import whitened
 from diagnosis.errors.model import Errors
 
@@ -49,9 +50,9 @@ class Spectrum:
 class ChannelErrors:
     """Errors of one channel in its ``unit``, standard deviations.
 
-    ``noise``: of what is faster than `SLOW`; ``drift``: of the rest; ``growing``: of noise in proportion to the
-    signal, at its peak; ``colour``: "white", "low" (denser below 10 Hz) or "filtered" (little above 20 Hz and no more
-    below).
+    ``noise``: of what is faster than `SLOW`; ``drift``: of the rest, at the end of the longest recording; ``growing``:
+    of noise in proportion to the signal, at its peak; ``colour``: "white", "low" (denser below 10 Hz) or "filtered"
+    (little above 20 Hz and no more below).
     """
 
     channel: str
@@ -81,8 +82,9 @@ def summary(errors: Errors, measured: Measured) -> ErrorModel:
     units = {q.name: q.unit for q in measured.model.observables}
     still = errors.pieces[len(measured.windows) :]
     seconds = sum(p.time.size * float(np.min(np.diff(p.time))) for p in still) / max(len(measured.channels), 1)
+    longest = max(float(r.time[-1]) for r in measured.recordings)
     return ErrorModel(
-        channels=tuple(_channel(errors, c, name, units[name]) for c, name in enumerate(measured.channels)),
+        channels=tuple(_channel(errors, c, name, units[name], longest) for c, name in enumerate(measured.channels)),
         scatter=repeatability(errors, declared.events) if declared else None,
         base_noise=measured.base_noise,
         inadequacy=inadequacy(errors),
@@ -90,11 +92,12 @@ def summary(errors: Errors, measured: Measured) -> ErrorModel:
     )
 
 
-def _channel(errors: Errors, channel: int, name: str, unit: str) -> ChannelErrors:
+def _channel(errors: Errors, channel: int, name: str, unit: str, seconds: float) -> ChannelErrors:
     own = [(c, float(t)) for c, t in zip(errors.components, errors.theta, strict=True) if c.channel == channel]
     scale = float(errors.unit[channel])
-    fast = sum(t for c, t in own if c.kind in ("white", "low_pass") or (c.kind == "drift" and c.scale < SLOW))
-    slow = sum(t for c, t in own if c.kind == "drift" and c.scale >= SLOW)
+    fast = sum(t for c, t in own if c.kind in ("white", "low_pass") or (c.kind == "exponential" and c.scale < SLOW))
+    slow = sum(t for c, t in own if c.kind == "exponential" and c.scale >= SLOW)
+    slow += sum(t * (seconds / WALK if np.isinf(c.scale) else 1.0) for c, t in own if c.shared)
     growing = sum(t for c, t in own if c.kind == "growing")
     hum = tuple(Line(c.scale, float(np.sqrt(2.0 * t)) * scale) for c, t in own if c.kind == "hum" and t > 0.0)
     return ChannelErrors(

@@ -6,7 +6,7 @@ With the Gauss-Newton Hessian H and the windows' scores s_w (states eliminated) 
 
 which stays right when residuals within a window are correlated or the noise level is off; the larger
 of V and H^-1 is taken. The profile raises the loss by 3.84 V/H^-1 on either side, so a curved loss
-gives a lopsided interval.
+gives a lopsided interval. Where a profile falls under the optimum the fit goes on from there (`settled`).
 """
 
 from __future__ import annotations
@@ -26,6 +26,9 @@ QUANTILE = 1.959963984540054
 LEVEL = QUANTILE**2
 PROFILE_ITERATIONS = 4
 PROFILE_TRIES = 3
+BETTER = 1.0
+"""Fall of the loss along a profile that makes its point a better start of the fit."""
+RETURNS = 3
 UNINFORMED = 1e-9
 """Standard deviation of a coordinate that the pseudo-inverse gives when nothing depends on it."""
 
@@ -48,12 +51,12 @@ def covariances(fitted: Fitted) -> tuple[FloatArray, FloatArray]:
     reduced = reduce(linear)
     weights = misfit.weights(linear.residual)
     hessian, _ = normal(misfit, reduced, weights, fitted.u)
-    _, slopes = misfit.prior_rows(fitted.u)
+    precision, _ = misfit.prior_normal(fitted.u)
     each = np.einsum("w,wmi,wm->wi", weights, reduced.by_unknown, reduced.residual, optimize=True)
-    windows, k = each.shape
+    windows, k = each.shape[0], fitted.u.size
     spread = each.T @ each * windows / max(windows - k, 1)
     inverse = np.asarray(np.linalg.pinv(hessian, hermitian=True), np.float64)
-    return np.asarray(inverse @ (spread + slopes.T @ slopes) @ inverse), inverse
+    return np.asarray(inverse @ (spread + precision) @ inverse)[:k, :k], inverse[:k, :k]
 
 
 def correlation(fitted: Fitted) -> FloatArray:
@@ -85,6 +88,23 @@ def estimates(fitted: Fitted, profiled: Sequence[str] = ()) -> dict[str, Estimat
     return found
 
 
+class _Better(Exception):
+    """A profile has found a lower loss than that of the optimum it started from."""
+
+    def __init__(self, fitted: Fitted) -> None:
+        self.fitted = fitted
+
+
+def settled(fitted: Fitted, profiled: Sequence[str]) -> tuple[Fitted, dict[str, Estimate]]:
+    """The fit and its `estimates`; where a profile finds a better optimum the fit goes on from there."""
+    for _ in range(RETURNS):
+        try:
+            return fitted, estimates(fitted, profiled)
+        except _Better as found:
+            fitted = found.fitted
+    return fitted, estimates(fitted)
+
+
 def _estimate(unknown: Unknown, u: float, ends: tuple[float, float], at_bound: str) -> Estimate:
     low, high = unknown.bounds
     values = sorted(unknown.value(float(np.clip(end, low, high))) for end in ends)
@@ -104,12 +124,12 @@ def _profile(fitted: Fitted, index: int, sd: float, inflation: float) -> tuple[f
             at = fitted.u[index] + sign * step
             if sign * (at - bound) >= 0.0:
                 best = abs(bound - fitted.u[index])
-                if profile_rise(fitted, index, bound) > wanted**2:
+                if _rise(fitted, index, bound) > wanted**2:
                     best *= 0.999
                     step = 0.5 * best
                     continue
                 break
-            rise = float(np.sqrt(max(profile_rise(fitted, index, at), 1e-12)))
+            rise = float(np.sqrt(max(_rise(fitted, index, at), 1e-12)))
             best = step * wanted / rise
             if abs(rise - wanted) < 0.05 * wanted:
                 break
@@ -120,6 +140,21 @@ def _profile(fitted: Fitted, index: int, sd: float, inflation: float) -> tuple[f
 
 def profile_rise(fitted: Fitted, index: int, at: float) -> float:
     """How much the loss rises when one coordinate is held at ``at`` and all others are refitted."""
+    return _held(fitted, index, at)[0]
+
+
+def _rise(fitted: Fitted, index: int, at: float) -> float:
+    """The same; raises `_Better` where the profile leads to a better optimum."""
+    rise, held = _held(fitted, index, at)
+    if rise < -BETTER:
+        misfit = fitted.misfit.at_level(held.misfit.level)
+        again = fit(misfit, np.insert(held.u, index, at), held.states)
+        if again.loss < fitted.loss - BETTER:
+            raise _Better(again)
+    return rise
+
+
+def _held(fitted: Fitted, index: int, at: float) -> tuple[float, Fitted]:
     misfit = fitted.misfit
     unknown = misfit.unknowns[index]
     keep = [i for i in range(fitted.u.size) if i != index]
@@ -132,4 +167,5 @@ def profile_rise(fitted: Fitted, index: int, at: float) -> float:
     if unknown.prior is not None:
         mean, sd = unknown.prior
         own = ((unknown.value(at) - mean) / sd) ** 2
-    return fit(held, fitted.u[keep], fitted.states, PROFILE_ITERATIONS).loss + own - fitted.loss
+    found = fit(held, fitted.u[keep], fitted.states, PROFILE_ITERATIONS)
+    return found.loss + own - fitted.loss, found

@@ -1,17 +1,17 @@
 """The loss of a parameter point, and its derivatives with the windows' states eliminated.
 
-    loss = sum_w nu n_w log(1 + chi2_w/(nu n_w)) + sum_i ((x_i - mean_i)/sd_i)^2,   nu = 10
+    loss = sum_w nu n_w log(1 + chi2_w/(nu n_w)) + sum_i ((x_i - mean_i)/sd_i)^2 + |z|^2,   nu = 10
 
-chi2_w is the squared whitened residual of window w, n_w its number of samples, the second sum runs
-over the priors. One wrong event must not decide: a window far off counts with its logarithm. The
-states of a window appear in its own residuals only; projecting these off the states' derivatives
-(Schur complement) leaves a least-squares problem in the shared parameters alone.
+chi2_w is the squared whitened residual of window w, n_w its number of samples, the second sum runs over the priors, z
+is the level of the errors that windows share (`diagnosis.fit.whitening`). One wrong event must not decide: a window far
+off counts with its logarithm. The states of a window appear in its own residuals only; projecting these off the states'
+derivatives (Schur complement) leaves a least-squares problem in the shared parameters alone.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +31,10 @@ STATE_STEP = 2e-3
 
 @dataclass(frozen=True)
 class Linear:
-    """A point's residuals (W, M) and derivatives (W, M, k), (W, M, S), both by central differences."""
+    """A point's residuals (W, M) and derivatives (W, M, k), (W, M, S) by central differences.
+
+    The errors that windows share come after the unknowns among the k.
+    """
 
     residual: FloatArray
     by_unknown: FloatArray
@@ -68,10 +71,23 @@ class Misfit:
         return Point({**self.fixed, **values_of(self.unknowns, u)}, states, self.predictor.coordinates)
 
     def residuals(self, points: Sequence[Point], only: NDArray[np.bool_] | None = None) -> FloatArray:
-        """Whitened residuals (P, W, M), predicted minus measured; meaningless but in windows ``only``."""
+        """Whitened residuals (P, W, M), predicted minus measured, at the level of the shared errors.
+
+        Meaningless but in windows ``only``.
+        """
         predicted = self.predictor.predict(points, only=only)
         difference = predicted - self.measured.values
-        return self.whitening(np.where(np.isfinite(difference), difference, 1e3))
+        found = self.whitening(np.where(np.isfinite(difference), difference, 1e3))
+        shared = self.whitening.shared
+        return found if shared is None else found + shared @ self.level
+
+    @property
+    def level(self) -> FloatArray:
+        """Of the errors that windows share (S,), in their standard deviations."""
+        return np.zeros(0) if self.whitening.level is None else self.whitening.level
+
+    def at_level(self, level: FloatArray) -> Misfit:
+        return replace(self, whitening=replace(self.whitening, level=level)) if level.size else self
 
     def losses(self, residuals: FloatArray) -> FloatArray:
         """Loss of every window (..., W), without the priors."""
@@ -80,10 +96,19 @@ class Misfit:
 
     def prior(self, u: FloatArray) -> float:
         r, _ = self.prior_rows(u)
-        return float(r @ r)
+        return float(r @ r + self.level @ self.level)
+
+    def prior_normal(self, u: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Precision (k, k) and gradient (k,) of half the priors, those of the shared errors last."""
+        rows, slopes = self.prior_rows(u)
+        own = len(self.unknowns)
+        k = own + self.level.size
+        precision, gradient = np.eye(k), np.concatenate([slopes.T @ rows, self.level])
+        precision[:own, :own] = slopes.T @ slopes
+        return precision, gradient
 
     def prior_rows(self, u: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Residual (p,) and derivative (p, k) of the priors."""
+        """Residual (p,) and derivative (p, k) of the unknowns' priors."""
         rows, slopes = [], []
         for i, unknown in enumerate(self.unknowns):
             if unknown.prior is not None:
@@ -119,7 +144,10 @@ class Misfit:
         r = self.residuals(points)
         columns = np.stack([(r[2 + 2 * i] - r[1 + 2 * i]) / width for i, width in enumerate(widths)], axis=-1)
         k = len(self.unknowns)
-        return Linear(r[0], columns[..., :k], columns[..., k:])
+        by_unknown = columns[..., :k]
+        if self.whitening.shared is not None:
+            by_unknown = np.concatenate([by_unknown, self.whitening.shared], axis=-1)
+        return Linear(r[0], by_unknown, columns[..., k:])
 
     def weights(self, residual: FloatArray) -> FloatArray:
         """Weight of each window (W,) in the least squares that has the loss's gradient."""

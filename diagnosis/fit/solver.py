@@ -2,7 +2,8 @@
 
 Each iteration runs all windows for all differences in one batch, then for some dampings and state
 steps in another. Given the parameters the windows are independent, so every window keeps the state
-step that suits it best: one stuck window does not hold up the others.
+step that suits it best: one stuck window does not hold up the others. The level of the errors that
+windows share moves with the parameters; it is linear and costs no runs.
 """
 
 from __future__ import annotations
@@ -30,7 +31,10 @@ SCATTERINGS = 3
 
 @dataclass(frozen=True)
 class Fitted:
-    """A minimum: coordinates (k,), states (W, S), loss of each window (W,) and in all (with priors)."""
+    """A minimum: coordinates (k,), states (W, S), loss of each window (W,) and in all (with priors).
+
+    ``misfit`` stands at the level of the shared errors there.
+    """
 
     misfit: Misfit
     u: FloatArray
@@ -99,19 +103,24 @@ def fit(misfit: Misfit, u: FloatArray, states: FloatArray, iterations: int = ITE
         reduced = reduce(linear)
         weights = misfit.weights(linear.residual)
         hessian, gradient = normal(misfit, reduced, weights, u)
-        steps = [clip(misfit.unknowns, u + _step(misfit, hessian, gradient, u, damping * d)) for d in DAMPINGS]
+        changes = [_step(misfit, hessian, gradient, u, damping * d) for d in DAMPINGS]
+        steps = [clip(misfit.unknowns, u + change[: u.size]) for change in changes]
+        levels = [misfit.level + change[u.size :] for change in changes]
         points, moved = [], []
-        for candidate in steps:
-            ahead = linear.residual + linear.by_unknown @ (candidate - u)
+        for candidate, change in zip(steps, changes, strict=True):
+            ahead = linear.residual + linear.by_unknown @ np.concatenate([candidate - u, change[u.size :]])
             shift = -np.einsum("wsm,wm->ws", reduced.solve_states, ahead)
             largest = np.maximum(np.abs(states), misfit.measured.state_size)
             shift = np.clip(shift, -largest, largest)
             moved.append([states + share * shift for share in STATE_STEPS])
             points += [misfit.point(candidate, x) for x in moved[-1]]
-        losses = misfit.losses(misfit.residuals(points)).reshape(len(steps), len(STATE_STEPS), -1)
+        residuals = misfit.residuals(points).reshape(len(steps), len(STATE_STEPS), *linear.residual.shape)
+        if misfit.level.size:
+            residuals += np.stack([linear.by_unknown[..., u.size :] @ c[u.size :] for c in changes])[:, None]
+        losses = misfit.losses(residuals)
         pick = np.argmin(losses, axis=1)
         each = np.take_along_axis(losses, pick[:, None, :], axis=1)[:, 0]
-        totals = each.sum(axis=1) + np.array([misfit.prior(c) for c in steps])
+        totals = each.sum(axis=1) + [misfit.at_level(z).prior(c) for c, z in zip(steps, levels, strict=True)]
         best = int(np.argmin(totals))
         gain = loss - float(totals[best])
         if gain <= 0.0:
@@ -120,7 +129,7 @@ def fit(misfit: Misfit, u: FloatArray, states: FloatArray, iterations: int = ITE
             if small >= 2:
                 break
             continue
-        u, loss, window = steps[best], float(totals[best]), each[best]
+        u, loss, window, misfit = steps[best], float(totals[best]), each[best], misfit.at_level(levels[best])
         states = np.stack(moved[best])[pick[best], np.arange(states.shape[0])]
         damping = max(damping * (0.3 if best == 0 else 1.0 if best == 1 else 3.0), 1e-6)
         small = small + 1 if gain < TOLERANCE else 0
@@ -130,19 +139,21 @@ def fit(misfit: Misfit, u: FloatArray, states: FloatArray, iterations: int = ITE
 
 
 def normal(misfit: Misfit, reduced: Reduced, weights: FloatArray, u: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Gauss-Newton Hessian (k, k) and gradient (k,) of half the loss, priors included."""
+    """Gauss-Newton Hessian (k, k) and gradient (k,) of half the loss, priors included; shared errors last."""
     j = reduced.by_unknown
     hessian = np.einsum("w,wmi,wmj->ij", weights, j, j, optimize=True)
     gradient = np.einsum("w,wmi,wm->i", weights, j, reduced.residual, optimize=True)
-    rows, slopes = misfit.prior_rows(u)
-    return hessian + slopes.T @ slopes, gradient + slopes.T @ rows
+    precision, slope = misfit.prior_normal(u)
+    return hessian + precision, gradient + slope
 
 
 def _step(misfit: Misfit, hessian: FloatArray, gradient: FloatArray, u: FloatArray, damping: float) -> FloatArray:
     """The damped step, with coordinates that push against a bound held."""
-    step = np.zeros(u.size)
+    step = np.zeros(gradient.size)
     bounds = np.array([x.bounds for x in misfit.unknowns]).reshape(-1, 2)
-    held = ((u <= bounds[:, 0]) & (gradient > 0.0)) | ((u >= bounds[:, 1]) & (gradient < 0.0))
+    own = gradient[: u.size]
+    held = np.zeros(gradient.size, bool)
+    held[: u.size] = ((u <= bounds[:, 0]) & (own > 0.0)) | ((u >= bounds[:, 1]) & (own < 0.0))
     free = np.flatnonzero(~held)
     if free.size:
         part = hessian[np.ix_(free, free)]

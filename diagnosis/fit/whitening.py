@@ -35,13 +35,16 @@ class Whitening:
 
     ``sensor``: one over the deviation (W, C, n) of independent errors, 0 where nothing is compared, or (W, C, n, n),
     the inverse of the lower Cholesky factor of their covariance; ``basis`` (W, M, K) and ``shrink`` (W, K) as above, M
-    = C n.
+    = C n. Errors that windows share, such as a drift, are ``shared`` (W, M, S), whitened columns of independent normal
+    numbers; a fit finds these as its ``level`` (S,).
     """
 
     measured: Measured
     sensor: FloatArray
     basis: FloatArray | None = None
     shrink: FloatArray | None = None
+    shared: FloatArray | None = None
+    level: FloatArray | None = None
 
     def __call__(self, difference: FloatArray) -> FloatArray:
         """Whitened residuals (..., W, M) of differences (..., W, C, N)."""
@@ -55,8 +58,9 @@ class Whitening:
 
     def of_windows(self, windows: NDArray[np.int64]) -> Whitening:
         """The whitening of some of the windows."""
-        basis, shrink = (None if each is None else each[windows] for each in (self.basis, self.shrink))
-        return Whitening(self.measured.of_windows(windows), self.sensor[windows], basis, shrink)
+        parts = (self.basis, self.shrink, self.shared)
+        basis, shrink, shared = (None if each is None else each[windows] for each in parts)
+        return Whitening(self.measured.of_windows(windows), self.sensor[windows], basis, shrink, shared, self.level)
 
     def of_sensors(self, averages: FloatArray) -> FloatArray:
         """Averages (..., W, C, n) in units of the sensors' errors, flat (..., W, M)."""
@@ -72,6 +76,11 @@ class Whitening:
         each = self.of_sensors(self.measured.averaged(np.moveaxis(columns, -1, 0)))
         u, s, _ = np.linalg.svd(np.moveaxis(each, 0, -1), full_matrices=False)
         return replace(self, basis=u, shrink=1.0 - 1.0 / np.sqrt(1.0 + s**2))
+
+    def with_shared(self, columns: FloatArray) -> Whitening:
+        """The same with errors that windows share: independent normal numbers times columns (W, C, N, S)."""
+        each = np.moveaxis(self(np.moveaxis(columns, -1, 0)), 0, -1)
+        return replace(self, shared=each, level=np.zeros(each.shape[-1]))
 
 
 def sensor_noise_only(predictor: Predictor) -> Whitening:

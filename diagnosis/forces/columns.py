@@ -44,6 +44,10 @@ class Forces:
 
     def column(self, kind: Force, factor: FloatArray | None = None) -> FloatArray:
         """Whitened residual (W, M), off the states, that a force of this kind times ``factor`` (W, N) leaves."""
+        return self.screen.reduced(self.fitted.misfit.whitening(self.predicted(kind, factor)))[0]
+
+    def predicted(self, kind: Force, factor: FloatArray | None = None) -> FloatArray:
+        """Change (W, C, N) of the channels by a force of this kind times ``factor`` (W, N)."""
         modulation = np.ones_like(self.time) if factor is None else factor
         if kind.along is None:
             pulses = np.zeros(self.weight.shape[:2])
@@ -53,8 +57,7 @@ class Forces:
                 pulses[w] += rate * modulation[w, k] * share / max(share.sum(), 1e-12) / HALF_WIDTH
         else:
             pulses = np.einsum("wkn,wn->wk", self.weight, kind.along(self.motion) * modulation, optimize=True)
-        predicted = np.einsum("wcnk,wk->wcn", self.response.values, pulses, optimize=True)
-        return self.screen.reduced(self.fitted.misfit.whitening(predicted))[0]
+        return np.asarray(np.einsum("wcnk,wk->wcn", self.response.values, pulses, optimize=True))
 
 
 def motion_of(fitted: Fitted) -> Motion:

@@ -3,19 +3,22 @@
 For each kind of force and each thing z it may depend on (side, time, amplitude, recording, direction) the
 column G (f z) is tested with the constant column G f, the base parameters, the states and every active
 mechanism projected out: a score test with one degree of freedom. What acts for a while only is
-scanned over time. Statistics are divided by the misfit that the model leaves anyway.
+scanned over time. Errors estimated without a law hold part of what it does, so the strongest are tested once more with
+the variances estimated beside the column (`diagnosis.errors.evidence`): a scatter with a pattern is a law.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from diagnosis.errors.evidence import Without
+from diagnosis.errors.model import Errors
 from diagnosis.forces.columns import Forces
 from models.base import FloatArray
-from models.identification import Identification
+from models.identification import Force, Identification
 
 FLAG = 15.0
 SCAN_FLAG = 25.0
@@ -23,6 +26,8 @@ SCAN_FLAG = 25.0
 FOR_A_WHILE = "a limited time"
 AMPLITUDE = "amplitude of the motion"
 TIME = "time"
+STRONGEST = 6
+"""Dependences that are tested with the errors estimated anew."""
 SHORTEST_INTERVAL = 2
 """Windows."""
 STRONGER = {AMPLITUDE: ("in weak motion", "in strong motion"), TIME: ("early", "late")}
@@ -72,16 +77,32 @@ def _centred(values: FloatArray) -> FloatArray:
     return np.asarray(values - np.mean(values))
 
 
-def inflation(forces: Forces) -> float:
-    """Misfit per sample that the model leaves, at least 1."""
-    m = forces.fitted.measured
-    chi2 = np.sum(forces.screen.residual**2, axis=1)
-    return max(1.0, float(np.median(chi2 / m.count)))
+def tests(forces: Forces, errors: Errors) -> list[Tested]:
+    """All tests, strongest first; ``errors``: estimated about the fit of the forces."""
+    found = _scores(forces)
+    dependent = [t for t in found if t.depends_on not in ("", FOR_A_WHILE)][:STRONGEST]
+    again = []
+    for kind in forces.kinds:
+        own = [test for test in dependent if test.kind == kind.name]
+        again += _with_own_errors(forces, errors, kind, own) if own else []
+    return sorted([*(t for t in found if t not in dependent), *again], key=lambda t: -t.statistic)
 
 
-def tests(forces: Forces) -> list[Tested]:
-    """All tests, strongest first."""
-    screen, excess = forces.screen, inflation(forces)
+def _with_own_errors(forces: Forces, errors: Errors, kind: Force, tested: list[Tested]) -> list[Tested]:
+    """Tests of a kind with the variances estimated beside each column, where that shows more."""
+    without = Without.estimated(errors, forces.fitted.measured, forces.predicted(kind)[..., None])
+    factors = dict(modulations(forces))
+    found = []
+    for test in tested:
+        shown = without.evidence(forces.predicted(kind, factors[test.depends_on]))
+        more = replace(test, statistic=shown.without_largest, extra=float(np.sign(shown.coefficient)))
+        found.append(max(test, more, key=lambda t: t.statistic))
+    return found
+
+
+def _scores(forces: Forces) -> list[Tested]:
+    """All tests under the errors as they are, strongest first."""
+    screen = forces.screen
     found = []
     for kind in forces.kinds:
         plain = forces.column(kind)
@@ -89,7 +110,7 @@ def tests(forces: Forces) -> list[Tested]:
         if norm < 1e-9:
             continue
         along = screen.scores_with_residual(plain)
-        found.append(Tested(kind.name, "", along**2 / norm / excess))
+        found.append(Tested(kind.name, "", along**2 / norm))
         for depends_on, factor in modulations(forces):
             column = forces.column(kind, factor)
             cross = screen.product(column, plain) / norm
@@ -99,8 +120,8 @@ def tests(forces: Forces) -> list[Tested]:
             score = screen.scores_with_residual(column) - cross * along
             sign = float(np.sign(score) * np.sign(along))
             statistic = without_largest(*screen.by_window(column - cross * plain))
-            found.append(Tested(kind.name, depends_on, statistic / excess, sign, -float(np.sign(score))))
-        interval = _in_an_interval(forces, plain) / excess
+            found.append(Tested(kind.name, depends_on, statistic, sign, -float(np.sign(score))))
+        interval = _in_an_interval(forces, plain)
         found.append(Tested(kind.name, FOR_A_WHILE, interval * FLAG / SCAN_FLAG))
     return sorted(found, key=lambda t: -t.statistic)
 

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnosis.forces.columns import Forces
-from diagnosis.forces.constancy import FLAG, SHORTEST_INTERVAL, inflation
+from diagnosis.forces.constancy import FLAG, SHORTEST_INTERVAL
 from models.base import FloatArray
 
 DRAWS = 200
@@ -57,7 +57,6 @@ class _Column:
 
 def missing(forces: Forces, seed: int = 0) -> Missing | None:
     """The strongest kind, phase and run of windows, or None where nothing is beyond chance."""
-    excess = inflation(forces)
     runs = _runs(forces)
     columns = [_reduced(forces, *named) for named in _columns(forces)]
     columns = [c for c in columns if c.information.sum() > 1e-9]
@@ -68,7 +67,7 @@ def missing(forces: Forces, seed: int = 0) -> Missing | None:
     for column in columns:
         for low, high in runs:
             windows = None if (low, high) == runs[0] else (low, high)
-            statistic = _statistic(forces, column, low, high, alone=windows is None) / excess
+            statistic = _statistic(forces, column, low, high, alone=windows is None)
             weighed = statistic
             for _ in range((column.word != "") + (windows is not None)):
                 weighed = PART * weighed - FLAG

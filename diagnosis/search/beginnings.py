@@ -50,7 +50,8 @@ def beginnings(found: Search, progress: Progress) -> Iterator[Search]:
 
     Alone if it can, else beside the one effect that was found.
     """
-    if found.null is None or len(found.measured.windows) < FEWEST_WINDOWS or _settled(found):
+    few = len(found.measured.windows) < FEWEST_WINDOWS
+    if found.null is None or few or not found.affordable() or _settled(found):
         return
     progress("looking for effects that begin or end", 0.82)
     starts = [found.base]
@@ -100,7 +101,7 @@ def _settled(found: Search) -> bool:
     if not explains_all(found.best):
         return False
     found.about = forces(found.best.fitted)
-    return not flags(found.about, tests(found.about), found.more)
+    return not flags(found.about, tests(found.about, found.errors), found.more)
 
 
 def _quick(

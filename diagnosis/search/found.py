@@ -15,6 +15,7 @@ from diagnosis.data.measured import Measured
 from diagnosis.errors.model import Errors
 from diagnosis.forces.columns import Forces
 from diagnosis.forces.constancy import Constancy
+from diagnosis.search.budget import ENDED, Budget
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.null import Null
 from diagnosis.search.refit import Explanation, from_other, gain_by_window
@@ -48,10 +49,15 @@ class Search:
     singles: list[Explanation] = field(default_factory=list)
     tried: list[Explanation] = field(default_factory=list)
     best: Explanation | None = None
+    weighed: tuple[Candidate, ...] = ()
+    """The mechanisms with which the errors were estimated."""
     at_null: Search | None = None
     """This search as it stood under the errors of the base model, once they were estimated anew."""
+    marginal: float = 0.0
+    """Evidence of a single that hid in the errors, the variances estimated with it (`diagnosis.search.hidden`)."""
     not_tried: dict[str, str] = field(default_factory=dict)
-    """By mechanism: why the model refused it."""
+    """By mechanism: why the model refused it, or that the budget ended."""
+    budget: Budget = field(default_factory=Budget)
     outside: Constancy | None = None
     """A force outside the library that explains what the best single leaves."""
     about: Forces | None = None
@@ -69,6 +75,13 @@ class Search:
     def more(self) -> float:
         """What a further effect, or a departure from constancy, must bring."""
         return MISSING + min(DETAIL * max(self.gain(self.chosen), 0.0), MISSING)
+
+    def affordable(self, *names: str) -> bool:
+        """Whether the budget lasts; if not, that the mechanisms of these names were not tried (further) is noted."""
+        if self.budget.spent:
+            for name in names:
+                self.not_tried.setdefault(name, ENDED)
+        return not self.budget.spent
 
     def gain(self, explanation: Explanation) -> float:
         """Gain over the base, less what shape parameters cost."""

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.misfit import Misfit, reduce
-from diagnosis.fit.solver import Fitted, fit
+from diagnosis.fit.solver import Fitted, fit, normal
 from diagnosis.fit.unknowns import Unknown, without_instruments
 from diagnosis.forces.columns import motion_of
 from diagnosis.search.refit import Explanation
@@ -41,6 +41,8 @@ RIDGE = 0.02
 UNIT, WIDEST = 0.02, 100.0
 """One unit of a table's value over the typical acceleration of the motion, and the most units a fit may reach."""
 NORMAL = 1.959964
+ITERATIONS = 6
+"""Of the fit with tables, which is nearly linear and costs two runs a row each."""
 
 
 @dataclass(frozen=True)
@@ -135,14 +137,13 @@ def _choose(base: Misfit, fitted: Fitted, unknowns: dict[str, tuple[Unknown, ...
     u = np.concatenate([fitted.u, np.zeros(len(whole.unknowns) - count)])
     linear = whole.linearise(u, fitted.states)
     reduced, weights = reduce(linear), whole.weights(linear.residual)
-    j = reduced.by_unknown
-    hessian = np.einsum("w,wmi,wmj->ij", weights, j, j, optimize=True)
-    gradient = np.einsum("w,wmi,wm->i", weights, j, reduced.residual, optimize=True)
-    rows, slopes = base.prior_rows(fitted.u)
-    known = hessian[:count, :count] + slopes.T @ slopes + 1e-9 * np.eye(count)
-    along = np.linalg.solve(known, hessian[:count, count:])
-    h = hessian[count:, count:] - hessian[count:, :count] @ along
-    g = gradient[count:] - along.T @ (gradient[:count] + slopes.T @ rows)
+    hessian, gradient = normal(whole, reduced, weights, u)
+    tables = np.arange(count, u.size)
+    known = np.setdiff1d(np.arange(gradient.size), tables)
+    within = hessian[np.ix_(known, known)] + 1e-9 * np.eye(known.size)
+    along = np.linalg.solve(within, hessian[np.ix_(known, tables)])
+    h = hessian[np.ix_(tables, tables)] - hessian[np.ix_(tables, known)] @ along
+    g = gradient[tables] - along.T @ gradient[known]
     place = {term: 2 * KNOTS * k + np.arange(2 * KNOTS) for k, term in enumerate(unknowns)}
     chosen: list[tuple[str, float, float]] = []
     reached = 0.0
@@ -188,7 +189,7 @@ def _fitted(
         rows[:, count + 2 * KNOTS * k : count + 2 * KNOTS * (k + 1)] = bends
         prior.append(rows)
     misfit = replace(base, unknowns=(*base.unknowns, *extra), smooth=np.concatenate(prior))
-    return fit(misfit, np.concatenate([fitted.u, np.zeros(len(extra))]), fitted.states)
+    return fit(misfit, np.concatenate([fitted.u, np.zeros(len(extra))]), fitted.states, ITERATIONS)
 
 
 def _tables(

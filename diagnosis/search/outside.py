@@ -10,8 +10,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from diagnosis.errors.model import Errors
 from diagnosis.forces.columns import forces
-from diagnosis.forces.constancy import Constancy, flag, inflation, tests
+from diagnosis.forces.constancy import Constancy, flag, tests
 from diagnosis.search.refit import Explanation
 from diagnosis.search.screen import Score
 
@@ -20,13 +21,12 @@ MARGIN = 25.0
 """What an outside force must have over the library: this factor and this much more."""
 
 
-def outside(single: Explanation, seconds: Sequence[Score]) -> Constancy | None:
+def outside(single: Explanation, seconds: Sequence[Score], errors: Errors) -> Constancy | None:
     """The force outside the library that gains more than any second mechanism, and by how much; None if none does."""
     about = forces(single.fitted)
-    excess = inflation(about)
-    found = tests(about)
+    found = tests(about, errors)
     plain = {t.kind: t.statistic for t in found if not t.depends_on}
-    dependent = [(excess * (plain[t.kind] + t.statistic), t) for t in found if t.depends_on]
+    dependent = [(plain[t.kind] + t.statistic, t) for t in found if t.depends_on]
     if not dependent:
         return None
     largest, test = max(dependent, key=lambda pair: pair[0])

@@ -24,6 +24,7 @@ from diagnosis.search.candidates import Candidate
 from diagnosis.search.spells import in_spell
 from models.base import FloatArray
 from models.errors import InputError
+from models.runs import DONE
 
 
 @dataclass(frozen=True)
@@ -32,7 +33,7 @@ class Score:
 
     ``column`` (W, M): the direction in which the effect moves the residuals, off the states: the derivative at the null
     if it is a ``slope``, else the change by the first start; ``side``: the sign that an amplitude along it may have, 0
-    for either.
+    for either; ``work``: lane-steps of one trial.
     """
 
     candidate: Candidate
@@ -41,6 +42,7 @@ class Score:
     column: FloatArray
     slope: bool = True
     side: int = 0
+    work: float = 0.0
 
 
 def score(
@@ -62,6 +64,7 @@ def _score_one(screen: Linearisation, base: Point, candidate: Candidate) -> Scor
     misfit = in_spell(screen.fitted.misfit, candidate.name, candidate.spell)
     null = candidate.null
     low, high = candidate.unknowns[0].bounds
+    begin = DONE.steps
     near = [null.copy(), null.copy()]
     near[0][0], near[1][0] = min(max(null[0] - STEP, low), null[0]), min(max(null[0] + STEP, low), high)
     off, _ = screen.reduced(misfit.residuals([at(base, candidate, u) for u in near]))
@@ -82,10 +85,11 @@ def _score_one(screen: Linearisation, base: Point, candidate: Candidate) -> Scor
     if best > 0.0:
         starts.insert(0 if not gains.size or best * 0.8 > gains[order[0]] else 1, start)
     statistic = max(best if np.isfinite(best) else 0.0, float(gains.max(initial=0.0)))
+    work = (DONE.steps - begin) / (2 + len(trials))
     if information > 1e-12 or not order.size:
         side = 0 if not candidate.one_sided else 1 if null[0] < high else -1
-        return Score(candidate, statistic, tuple(starts[:2]), derivative, True, side)
-    return Score(candidate, statistic, tuple(starts[:2]), off[int(order[0])] - screen.residual, False, 1)
+        return Score(candidate, statistic, tuple(starts[:2]), derivative, True, side, work)
+    return Score(candidate, statistic, tuple(starts[:2]), off[int(order[0])] - screen.residual, False, 1, work)
 
 
 def _gain(screen: Linearisation, off: FloatArray) -> float:

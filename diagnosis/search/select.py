@@ -8,9 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+import numpy as np
+
+from diagnosis.errors.model import estimate
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.progress import Progress
 from diagnosis.search.found import MISSING, Search, adequate, adjusted, explains_all, survives
+from diagnosis.search.hidden import take_hidden
 from diagnosis.search.null import null_distribution
 from diagnosis.search.outside import outside
 from diagnosis.search.refit import (
@@ -26,12 +30,13 @@ from diagnosis.search.refit import (
 )
 from diagnosis.search.screen import Score, score
 from diagnosis.search.weighing import by_white_noise, weigh_again
+from models.base import FloatArray
 
 FAINT = 8.0
 """Gain of the strongest single that is not taken further where the base model is adequate."""
 WORTH = 4.0
 """Linearisation statistic under which a refit is not tried (the strongest FEWEST are tried all the same)."""
-FEWEST, MOST = 5, 16
+FEWEST, FEWEST_ADEQUATE, MOST = 5, 2, 16
 SHARE_OF_FIRST, SHARE_OF_SECOND = 0.05, 0.25
 """Of the strongest statistic: what a first or a further mechanism must reach to be refitted."""
 HOPELESS = 8.0
@@ -42,7 +47,9 @@ THOROUGH = 2
 NEAR, NEAR_ADEQUATE = 0.2, 0.6
 """Share of the leader's gain from which a single is refitted from the leader's optimum too."""
 FIRST_POOL = 3
-SECOND_TRIES = 6
+FEWEST_SECOND, SECOND_TRIES = 2, 6
+HEAVY = 5.0
+"""Lane-steps of a trial, over those of most mechanisms, from which a mechanism counts as one of many short steps."""
 MOST_EFFECTS = 3
 POOL_SHARE = 0.25
 """Singles whose gain is this share of the best one's are tried as parts of a pair."""
@@ -58,10 +65,14 @@ def search(found: Search, progress: Progress) -> Iterator[Search]:
         return
     take_best_single(found)
     if found.best is None:
-        return
-    yield found
-    progress("estimating the errors with what was found", 0.46)
-    weigh_again(found)
+        progress("looking for what the errors hide", 0.46)
+        take_hidden(found)
+        if found.best is None:
+            return
+    else:
+        yield found
+        progress("estimating the errors with what was found", 0.46)
+        weigh_again(found)
     yield found
     _pairs(found, progress)
     yield found
@@ -71,7 +82,10 @@ def search(found: Search, progress: Progress) -> Iterator[Search]:
     if found.outside is None:
         _backward(found)
     settle_ties(found)
-    found.best = None if found.best is None else with_memory(again(found.best))
+    if found.best is not None:
+        found.best = with_memory(again(found.best))
+        if found.best.candidates != found.weighed:
+            found.errors = estimate(found.best.fitted, found.errors.base, found.errors)
     yield found
 
 
@@ -92,10 +106,19 @@ def worth_a_refit(scores: Sequence[Score], fewest: int, share: float) -> list[Sc
     return [s for k, s in enumerate(scores) if s.starts and (k < fewest or s.statistic >= least)]
 
 
-def _refits(explanation: Explanation, scores: Sequence[Score], fewest: int, most: int) -> list[Explanation]:
+def starts_of(entry: Score, scores: Sequence[Score]) -> tuple[FloatArray, ...]:
+    """Where its refits start; from the better one alone where the kernel needs many short steps."""
+    usual = float(np.median([s.work for s in scores]))
+    return entry.starts[:1] if entry.work > HEAVY * usual else entry.starts
+
+
+def _refits(found: Search, explanation: Explanation, scores: Sequence[Score]) -> list[Explanation]:
     """The strongest of a screen, each from its starts."""
-    wanted = worth_a_refit(scores, fewest, SHARE_OF_SECOND)[:most]
-    fits = [best_of([extend(explanation, s.candidate, start, QUICK) for start in s.starts]) for s in wanted]
+    fits = []
+    for entry in worth_a_refit(scores, FEWEST_SECOND, SHARE_OF_SECOND)[:SECOND_TRIES]:
+        if found.affordable(entry.candidate.name):
+            tried = [extend(explanation, entry.candidate, at, QUICK) for at in starts_of(entry, scores)]
+            fits.append(best_of(tried))
     fits.sort(key=adjusted)
     return [again(e) if k < THOROUGH else e for k, e in enumerate(fits)]
 
@@ -104,13 +127,14 @@ def _singles(found: Search, progress: Progress) -> None:
     opened = linearise_about(found.base.fitted)
     found.scores = score(opened, found.candidates, found.not_tried)
     found.null = null_distribution(opened, found.scores)
-    wanted = worth_a_refit(found.scores, FEWEST, SHARE_OF_FIRST)[:MOST]
     sound = adequate(found.base)
+    wanted = worth_a_refit(found.scores, FEWEST_ADEQUATE if sound else FEWEST, SHARE_OF_FIRST)[:MOST]
     for k, entry in enumerate(wanted):
+        if not found.affordable(entry.candidate.name):
+            continue
         progress(f"refitting {entry.candidate.name}", 0.15 + 0.3 * k / len(wanted))
-        fits = [extend(found.base, entry.candidate, start, QUICK) for start in entry.starts]
-        single = best_of(fits)
-        found.singles.append(single if sound else by_white_noise(single, found.errors))
+        fits = [extend(found.base, entry.candidate, start, QUICK) for start in starts_of(entry, found.scores)]
+        found.singles.append(by_white_noise(best_of(fits), found.errors))
     found.singles.sort(key=adjusted)
     if not found.singles:
         return
@@ -124,7 +148,7 @@ def _singles(found: Search, progress: Progress) -> None:
         found.base = restarted
     near = NEAR_ADEQUATE if adequate(leader) else NEAR
     for k, single in enumerate(found.singles[1:], start=1):
-        if found.gain(single) > near * found.gain(leader):
+        if found.gain(single) > near * found.gain(leader) and found.affordable(single.names[0]):
             found.singles[k] = from_other(again(single) if k < THOROUGH else single, leader)
     found.singles.sort(key=adjusted)
     found.singles[0] = with_memory(found.singles[0])
@@ -151,12 +175,14 @@ def _pairs(found: Search, progress: Progress) -> None:
     progress("comparing with laws outside the library", 0.48)
     others = seconds(found, found.best)
     if not adequate(found.best):
-        found.outside = outside(found.best, others)
+        found.outside = outside(found.best, others, found.errors)
     singles = pool(found)
     pairs: list[Explanation] = []
     for k, single in enumerate(singles):
         progress(f"looking for a second effect beside {single.names[0]}", 0.5 + 0.25 * k / len(singles))
-        pairs += _extended(single, others if single is found.best else seconds(found, single))
+        if not found.affordable():
+            break
+        pairs += _extended(found, single, others if single is found.best else seconds(found, single))
         if any(adequate(e) for e in pairs):  # the backward check still tries the others in its place
             break
     if not pairs:
@@ -179,23 +205,23 @@ def seconds(found: Search, explanation: Explanation) -> list[Score]:
     return score(linearise_about(explanation.fitted), others, found.not_tried)
 
 
-def _extended(explanation: Explanation, scores: Sequence[Score]) -> list[Explanation]:
+def _extended(found: Search, explanation: Explanation, scores: Sequence[Score]) -> list[Explanation]:
     """Refits with one more mechanism, the strongest of a screen beside the explanation."""
     if explains_all(explanation) and max((s.statistic for s in scores), default=0.0) < HOPELESS:
         return []
-    return _refits(explanation, scores, 2, SECOND_TRIES)
+    return _refits(found, explanation, scores)
 
 
 def _more(found: Search, progress: Progress) -> None:
     """A third effect, by the same rule, unless a law outside the library explains more."""
-    while found.best is not None and 2 <= len(found.best.candidates) < MOST_EFFECTS:
+    while found.best is not None and 2 <= len(found.best.candidates) < MOST_EFFECTS and found.affordable():
         progress("looking for a further effect", 0.8)
         others = seconds(found, found.best)
         if not adequate(found.best):
-            found.outside = outside(found.best, others)
+            found.outside = outside(found.best, others, found.errors)
             if found.outside is not None:
                 return
-        further = _extended(found.best, others)
+        further = _extended(found, found.best, others)
         if not further:
             return
         found.tried += further
@@ -221,8 +247,9 @@ def _backward(found: Search) -> None:
     if len(found.best.candidates) < 2:
         return
     for candidate in found.best.candidates:
-        rest = without(found.best, candidate)
-        found.tried += _extended(rest, seconds(found, rest))
+        if found.affordable():
+            rest = without(found.best, candidate)
+            found.tried += _extended(found, rest, seconds(found, rest))
     same = [e for e in found.tried if len(e.candidates) == len(found.best.candidates)]
     better = min(same, key=adjusted)
     if adjusted(better) < adjusted(found.best):

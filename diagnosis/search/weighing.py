@@ -15,9 +15,9 @@ from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.search.found import Search, adjusted
 from diagnosis.search.refit import Explanation, without
 
-NEAR, OWN = 0.3, 0.6
+NEAR, OWN = 0.3, 0.4
 """Share of the leader's gain from which an explanation is taken along, and from which its own errors are estimated."""
-MOST = 6
+MOST, MOST_OWN = 6, 4
 
 
 def reweighed(explanation: Explanation, errors: Errors) -> Explanation:
@@ -52,13 +52,14 @@ def weigh_again(found: Search) -> None:
     near = [e for e in sorted(found.tried, key=adjusted) if len(e.candidates) == size and found.gain(e) > least][:MOST]
     if found.best.candidates not in [e.candidates for e in near]:
         near.append(found.best)
-    judged = []
+    judged: list[tuple[float, Explanation, Errors]] = []
     for explanation in near:
-        if found.gain(explanation) > OWN * found.gain(found.best):
+        if len(judged) < MOST_OWN and found.gain(explanation) > OWN * found.gain(found.best):
             fitted, errors = refitted(explanation.fitted, found.errors.base, found.errors)
             price = adjusted(explanation) - explanation.loss
             judged.append((errors.loss + price, replace(explanation, fitted=fitted), errors))
     _, found.best, found.errors = min(judged, key=lambda entry: entry[0])
+    found.weighed = found.best.candidates
     found.base = reweighed(found.base, found.errors)
     others = [reweighed(e, found.errors) for e in near if e.candidates != found.best.candidates]
     found.tried = [found.best, *others]
@@ -74,7 +75,7 @@ def evidence(found: Search) -> list[float]:
         start = found if found.at_null is None else found.at_null
         same = [e for e in start.tried if e.candidates == best.candidates]
         if same:
-            return [start.base.loss - min(e.loss for e in same)]
+            return [max(found.marginal, start.base.loss - min(e.loss for e in same))]
     return [_evidence(best, without(best, c), found.errors) for c in best.candidates]
 
 

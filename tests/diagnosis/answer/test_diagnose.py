@@ -99,7 +99,7 @@ def test_priors_hold_what_the_recordings_do_not_tell() -> None:
 def test_the_profile_rises_from_the_estimate_and_the_bar_moves_on() -> None:
     shares: list[float] = []
     found = calibrate(SPECIMEN, [recording("train_1", 1)], progress=lambda text, share: shares.append(share))
-    assert shares == sorted(shares) and len(set(shares)) == len(shares) >= 5 and shares[0] >= 0.0 and shares[-1] < 1.0
+    assert shares == sorted(shares) and len(set(shares)) == len(shares) >= 4 and shares[0] >= 0.0 and shares[-1] < 1.0
     for name, (at, rise) in found.profiles.items():
         value = found.parameters[name]
         assert at[0] <= value.low95 and at[-1] >= value.high95

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 
@@ -11,15 +12,18 @@ from scipy.signal import lfilter
 
 from diagnosis.errors.adequacy import inadequacy, repeatability
 from diagnosis.errors.likelihood import climbed, maximise, whitened
-from diagnosis.errors.model import Errors, disturbance_about, refitted
+from diagnosis.errors.model import Errors, calibrated, disturbance_about, refitted
 from diagnosis.errors.summary import summary
 from diagnosis.errors.words import error_lines
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.setup import base_fit, measure
 from diagnosis.search.candidates import candidates
+from diagnosis.search.found import Search
 from diagnosis.search.null import null_distribution
 from diagnosis.search.refit import Explanation
 from diagnosis.search.screen import score
+from diagnosis.search.select import search
+from diagnosis.search.weighing import evidence
 from tests.diagnosis.made import SPECIMEN, scattered
 
 
@@ -124,3 +128,34 @@ def test_errors_of_a_laboratory_raise_no_alarm(case: str) -> None:
         chance[name] = null_distribution(opened, scores).p_value(scores[0].statistic)
     assert chance["white"] < 1e-4
     assert chance["estimated"] > 0.01
+
+
+def constant(rng: np.random.Generator, n: int) -> np.ndarray:
+    """White noise about a zero that is off by three deviations."""
+    return rng.normal(size=n) + 3.0
+
+
+def searched(errors: Callable[[np.random.Generator, int], np.ndarray], names: tuple[str, ...]) -> Search:
+    measured = measure(SPECIMEN, [scattered(f"train_{k}", k, errors=errors) for k in (1, 6)])
+    fitted, found = calibrated(SPECIMEN, measured)
+    tried = tuple(c for c in candidates(measured, SPECIMEN) if c.name in names)
+    *_, last = search(Search(Explanation((), fitted), tried, found), lambda text, share: None)
+    return last
+
+
+LEANING = ("offset", "tilt", "accelerometer_offset", "drift", "gain")
+
+
+def test_a_drift_is_no_offset() -> None:
+    """Twice the drift of a poor sensor, the same way in both recordings."""
+    found = searched(lambda rng, n: rng.normal(size=n) + np.linspace(0.0, 1.0, n), LEANING)
+    assert found.best is None or found.best.names == ("drift",)
+    assert not {"offset", "tilt", "accelerometer_offset"} & {r.names[0] for r in found.singles if found.gain(r) > 15.0}
+
+
+def test_an_offset_without_drift_keeps_its_name() -> None:
+    found = searched(constant, LEANING)
+    assert found.best is not None and found.best.names == ("offset",)
+    estimate = found.best.fitted.values["offset.offset_over_peak"]
+    assert estimate == pytest.approx(0.03, abs=0.012)
+    assert evidence(found)[0] > 15.0

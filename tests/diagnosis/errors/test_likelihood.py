@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 
 from diagnosis.errors.components import Component, Diagonal, LowRank, Stationary
+from diagnosis.errors.drifts import Knots
 from diagnosis.errors.likelihood import Piece, Prior, climbed, evaluate, maximise
 
 N, PIECES = 80, 40
 TIME = np.arange(N) * 0.01
 LAG = np.abs(TIME[:, None] - TIME[None, :])
-KERNELS = [Component("white", 0).kernel(LAG), Component("drift", 0, 0.05).kernel(LAG)]
+KERNELS = [Component("white", 0).kernel(LAG), Component("exponential", 0, 0.05).kernel(LAG)]
 NO_PRIOR = Prior(np.zeros((1, 1)), np.zeros(1))
 NAMES = ("white", "drift", "growing", "scatter")
 
@@ -92,3 +93,56 @@ def test_an_unknown_that_changes_nothing_is_no_obstacle() -> None:
     idle = evaluate(made, prior, theta, np.ones(PIECES))
     plain = evaluate(pieces([1, 1, 1, 1], 2), NO_PRIOR, theta, np.ones(PIECES))
     np.testing.assert_allclose(idle.slope, plain.slope, rtol=1e-6)
+
+
+def shared_drift(seed: int) -> tuple[list[Piece], Prior]:
+    """The windows of one recording of 30 s with a random walk of variance .3 after 10 s, white noise beside."""
+    knots = Knots(np.arange(31.0), np.zeros(31, int), np.zeros(31, int), np.ones(31))
+    components = (Component("white", 0), Component("slow_drift", 0, np.inf))
+    prior = Prior(np.zeros((1, 1)), np.zeros(1), tuple(knots.covariance(c) for c in components))
+    rng = np.random.default_rng(seed + 500)
+    walk = prior.root(np.array([0.0, 0.3])) @ rng.normal(size=31)
+    found = []
+    for k, piece in enumerate(pieces([1.0, 0.0, 0.0, 0.0], seed)):
+        near, weights = knots.near(0, piece.channel, 0.7 * k + TIME)
+        residual = rng.normal(size=N) + 2.0 * TIME * rng.normal() + weights @ walk[near]
+        alone = replace(piece, residual=residual, by_state=TIME[:, None], parts=(piece.parts[0], None))
+        found.append(replace(alone, knots=near, at_knots=weights))
+    return found, prior
+
+
+def test_a_drift_over_the_recording_is_estimated() -> None:
+    found = []
+    for seed in range(10):
+        made, prior = shared_drift(seed)
+        weights = np.ones(len(made))
+        start, _ = climbed(made, prior, np.array([1.0, 0.1]), weights, 0, 8)
+        found.append(maximise(made, prior, start, weights)[0])
+    assert np.mean(found, axis=0) == pytest.approx([1.0, 0.3], rel=0.35)
+
+
+def test_slope_information_and_likelihood_of_a_drift_are_those_of_the_whole_covariance() -> None:
+    """Against one dense matrix of all pieces, as if nobody knew that they are pieces."""
+    made, prior = shared_drift(3)
+    made = made[:8]
+    theta, weights = np.array([0.8, 0.4]), np.ones(8)
+    state = evaluate(made, prior, theta, weights)
+    size = N * len(made)
+    covariance, knots = np.zeros((size, size)), np.zeros((size, 31))
+    states, unknown = np.zeros((size, len(made))), np.zeros((size, 1))
+    residual = np.concatenate([p.residual for p in made])
+    for k, piece in enumerate(made):
+        own = slice(N * k, N * (k + 1))
+        covariance[own, own] = piece.covariance(theta)
+        knots[own, piece.knots] = piece.at_knots
+        states[own, k : k + 1], unknown[own] = piece.by_state, piece.by_unknown
+    walk = knots @ prior.drifts[1] @ knots.T
+    inverse = np.linalg.inv(covariance + theta[1] * walk)
+    fixed = np.concatenate([states, unknown], axis=1)
+    gram = fixed.T @ inverse @ fixed
+    projector = inverse - inverse @ fixed @ np.linalg.solve(gram, fixed.T @ inverse)
+    a = projector @ residual
+    deviance = np.linalg.slogdet(covariance + theta[1] * walk)[1] + np.linalg.slogdet(gram)[1] + residual @ a
+    assert state.deviance == pytest.approx(deviance, abs=1e-5 * abs(deviance))
+    assert state.slope[1] == pytest.approx(np.sum(projector * walk) - a @ walk @ a, rel=1e-5)
+    assert state.information[1, 1] == pytest.approx(a @ walk @ projector @ walk @ a, rel=1e-5)

@@ -7,7 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.fit.setup import base_fit, measure
+from diagnosis.errors.evidence import Without
+from diagnosis.errors.likelihood import climbed, maximise
+from diagnosis.errors.model import Errors, calibrated
+from diagnosis.fit.setup import measure
 from diagnosis.forces import constancy
 from diagnosis.forces.columns import Forces, forces
 from models.housner.identification import IDENTIFICATION
@@ -17,9 +20,15 @@ KINDS = {kind.name: kind for kind in IDENTIFICATION.forces}
 
 
 @pytest.fixture(scope="module")
-def about() -> Forces:
-    """The base model about two recordings in which nothing is missing."""
-    return forces(base_fit(SPECIMEN, measure(SPECIMEN, [recording(f"train_{k}", k) for k in (1, 2)])))
+def errors() -> tuple[Forces, Errors]:
+    """The base model about two recordings in which nothing is missing, and their errors."""
+    fitted, found = calibrated(SPECIMEN, measure(SPECIMEN, [recording(f"train_{k}", k) for k in (1, 2)]))
+    return forces(fitted), found
+
+
+@pytest.fixture(scope="module")
+def about(errors: tuple[Forces, Errors]) -> Forces:
+    return errors[0]
 
 
 def left_over(about: Forces, kind: str, factor: np.ndarray) -> Forces:
@@ -30,10 +39,11 @@ def left_over(about: Forces, kind: str, factor: np.ndarray) -> Forces:
 
 @pytest.mark.parametrize("kind", ["viscous_damping", "coulomb_damping", "restitution"])
 @pytest.mark.parametrize("side", [-1.0, 1.0])
-def test_a_loss_on_one_side_is_found_on_that_side(about: Forces, kind: str, side: float) -> None:
+def test_a_loss_on_one_side_is_found_on_that_side(errors: tuple[Forces, Errors], kind: str, side: float) -> None:
     """A loss that acts on one side only, its plain part and its dependent part alike."""
+    about, estimated = errors
     one_sided = (np.sign(about.motion.coordinate) == side).astype(float)
-    found = constancy.tests(left_over(about, kind, one_sided))
+    found = constancy.tests(left_over(about, kind, one_sided), estimated)
     own = next(t for t in found if (t.kind, t.depends_on) == (kind, "side"))
     assert own.statistic > 15.0
     assert constancy.flag(IDENTIFICATION, own, own.statistic).stronger == (
@@ -59,3 +69,42 @@ def test_the_two_names_are_one_force(about: Forces) -> None:
     outward = about.column(KINDS["lean"], np.sign(about.motion.coordinate * about.motion.rate))
     sided = about.column(KINDS["coulomb_damping"], np.sign(about.motion.coordinate))
     np.testing.assert_allclose(outward, sided, atol=1e-9 * np.abs(sided).max())
+
+
+def with_impacts(errors: tuple[Forces, Errors], changes: np.ndarray) -> Errors:
+    """The errors estimated from the same residuals with every impact's rate changed by a share, ``changes`` (W, K)."""
+    about, found = errors
+    m = about.fitted.measured
+    moved = m.averaged(np.einsum("wcnk,wk->wcn", found.kicks, changes)) / found.unit[:, None]
+    pieces = list(found.pieces)
+    for w in range(len(m.windows)):
+        pieces[w] = replace(pieces[w], residual=pieces[w].residual - moved[w].ravel()[m.compared[w].ravel()])
+    theta, weights = climbed(pieces, found.prior, np.maximum(found.theta, 1e-4), found.weights, 0, 6)
+    theta, state = maximise(pieces, found.prior, theta, weights)
+    return replace(found, pieces=tuple(pieces), theta=theta, deviance=state.deviance)
+
+
+def scatter_of(errors: Errors) -> float:
+    return float(np.sqrt(sum(t for c, t in zip(errors.components, errors.theta, strict=True) if c.kind == "scatter")))
+
+
+def test_a_scatter_with_a_pattern_is_a_law(errors: tuple[Forces, Errors]) -> None:
+    """Impacts that lose 3 % more on one side than on average pass for scatter; impacts that scatter are no law."""
+    about, _ = errors
+    m, kind = about.fitted.measured, KINDS["restitution"]
+    shape = errors[1].kicks.shape[::3]
+    side = np.zeros(shape)
+    count = np.zeros(shape[0], int)
+    for w, sample, _ in about.jumps:
+        if count[w] < shape[1]:
+            side[w, count[w]] = np.sign(about.motion.coordinate[w, int(sample)])
+            count[w] += 1
+    column, plain = about.predicted(kind, np.sign(about.motion.coordinate)), about.predicted(kind)[..., None]
+    patterned = with_impacts(errors, 0.03 * side)
+    assert scatter_of(patterned) > 0.015
+    assert Without.estimated(patterned, m, plain).evidence(column).without_largest > constancy.FLAG
+    chance = []
+    for k in range(6):
+        random = with_impacts(errors, 0.03 * np.random.default_rng(k).normal(size=shape))
+        chance.append(Without.estimated(random, m, plain).evidence(column).gain)
+    assert max(chance) < 12.0 and np.mean(chance) < 4.0

@@ -1,0 +1,90 @@
+"""What a column of the residuals adds to the likelihood when the variances are estimated anew beside it.
+
+Errors estimated without a law hold part of what it does, so that its score under them is bounded. With the coefficient
+beta of the column,
+
+    gain = min_theta D(theta, beta = 0) - min_theta D(theta),
+
+D = -2 log restricted likelihood, the same columns projected in both, the same weights of pieces. Without the law
+the gain is chi-squared with one degree of freedom. The smooth error of the model is left out: it would pass for a law.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diagnosis.data.measured import Measured
+from diagnosis.errors.likelihood import Piece, Prior, State, evaluate, maximise
+from diagnosis.errors.model import Errors
+from models.base import FloatArray
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """Gain in 2 log likelihood of a column and its coefficient; ``by_window`` (W,): the windows' own parts."""
+
+    gain: float
+    coefficient: float
+    by_window: FloatArray
+
+    @property
+    def without_largest(self) -> float:
+        """The gain without the window that adds most."""
+        return self.gain - max(float(self.by_window.max(initial=0.0)), 0.0)
+
+
+@dataclass(frozen=True)
+class Without:
+    """The likelihood with the columns ``beside`` (W, C, N, B) in it and without any that is to be tested."""
+
+    measured: Measured
+    unit: FloatArray
+    pieces: tuple[Piece, ...]
+    prior: Prior
+    theta: FloatArray
+    weights: FloatArray
+    state: State
+
+    @classmethod
+    def estimated(cls, errors: Errors, measured: Measured, beside: FloatArray) -> Without:
+        """The variances estimated anew, the smooth error of the model left out."""
+        smooth = np.array([c.kind == "inadequacy" for c in errors.components])
+        alone = [piece.holding(smooth, 0.0) for piece in errors.pieces]
+        pieces = _with(alone, measured, errors.unit, beside)
+        prior = _wider(errors.prior.without(smooth), beside.shape[-1])
+        theta, state = maximise(pieces, prior, errors.theta[~smooth], errors.weights)
+        return cls(measured, errors.unit, tuple(pieces), prior, theta, errors.weights, state)
+
+    def evidence(self, column: FloatArray) -> Evidence:
+        """Of a column (W, C, N) of predictions."""
+        whole, prior = _with(self.pieces, self.measured, self.unit, column[..., None]), _wider(self.prior, 1)
+        start = evaluate(whole, prior, self.theta, self.weights, slopes=False)
+        last = prior.slope.size - 1
+        variance = max(float(start.covariance[last, last]), 1e-300)
+        _, found = maximise(whole, prior, self.theta, self.weights)
+        determinants = self.state.determinants - found.determinants
+        each = determinants + self.weights * (self.state.chi2 - found.chi2)
+        gain = start.deviance - found.deviance + float(start.estimate[last]) ** 2 / variance
+        return Evidence(gain, -float(found.estimate[last]), each[: len(self.measured.windows)])
+
+
+def _with(pieces: Sequence[Piece], measured: Measured, unit: FloatArray, columns: FloatArray) -> list[Piece]:
+    """The pieces with more columns (W, C, N, B) beside the base parameters; none of them acts in a still stretch."""
+    each = np.moveaxis(measured.averaged(np.moveaxis(columns, -1, 0)), 0, -1) / unit[:, None, None]
+    found = []
+    for k, piece in enumerate(pieces):
+        more = np.zeros((piece.residual.size, columns.shape[-1]))
+        if k < len(measured.windows):
+            keep = measured.compared[k].ravel()
+            more = each[k].reshape(keep.size, columns.shape[-1])[keep]
+        found.append(replace(piece, by_unknown=np.concatenate([piece.by_unknown, more], axis=1)))
+    return found
+
+
+def _wider(prior: Prior, more: int) -> Prior:
+    """The same with further coefficients of which nothing is known."""
+    precision = np.pad(prior.precision, (0, more))
+    return replace(prior, precision=precision, slope=np.pad(prior.slope, (0, more)))
