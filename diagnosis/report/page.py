@@ -63,7 +63,7 @@ def report_page(
         quantity.name: quantity.meaning for quantity in model.observables
     }
     return (
-        _environment()
+        environment()
         .get_template("report.html.j2")
         .render(
             d=diagnosis,
@@ -98,7 +98,7 @@ def report_page(
 
 
 @functools.cache
-def _environment() -> Environment:
+def environment() -> Environment:
     from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
     environment = Environment(

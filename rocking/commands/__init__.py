@@ -12,6 +12,7 @@ from rocking.commands import (
     map,
     motions,
     plan,
+    predict_outcomes,
     prove,
     run,
     simulate,
@@ -32,6 +33,7 @@ COMMANDS = (
     simulate.simulate,
     calibrate.calibrate,
     diagnose.diagnose,
+    predict_outcomes.predict_outcomes,
     prove.prove,
 )
 

@@ -3,24 +3,34 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from models.errors import InputError
 from rocking.commands.base import STRICT, warn
 from rocking.commands.recordings import read_recordings, stages
+
+if TYPE_CHECKING:
+    from grids.specimen import Specimen
 
 
 def diagnose(
     specimen: Annotated[Path, typer.Argument(help="Specimen file (TOML).")],
-    recordings: Annotated[list[Path], typer.Argument(help="Recordings to learn from (.nc, or .csv with .toml).")],
     out: Annotated[Path, typer.Option(help="Folder of the answer.")],
+    recordings: Annotated[
+        list[Path] | None, typer.Argument(help="Recordings to learn from (.nc, or .csv with .toml).")
+    ] = None,
     holdout: Annotated[
         list[Path] | None, typer.Option(help="Recording that only tests the answer (may be repeated).")
     ] = None,
     bootstrap: Annotated[
         int, typer.Option(help="Draws of a parametric bootstrap for the p-value, 99 for instance.", min=0)
     ] = 0,
+    outcomes: Annotated[
+        Path | None,
+        typer.Option(help="Runs of which is known only whether they overturned the specimen (TOML), no recordings."),
+    ] = None,
     strict: Annotated[bool, typer.Option("--strict", help=STRICT)] = False,
 ) -> None:
     """Say what the model leaves out of recordings, model it, and show the fit improve.
@@ -34,6 +44,13 @@ def diagnose(
 
     wall = read_specimen(specimen)
     warn(suspicions_of_specimen(wall), strict)
+    if outcomes is not None:
+        if recordings or holdout or bootstrap:
+            raise InputError("--outcomes takes no recordings, --holdout or --bootstrap: leave them out")
+        of_outcomes(wall, outcomes, out)
+        return
+    if not recordings:
+        raise InputError("no recording is named: give one or more, or --outcomes TABLE")
     read = read_recordings(recordings, holdout or [])
     train, test = read[: len(recordings)], read[len(recordings) :]
     make_folder(out)
@@ -49,10 +66,23 @@ def diagnose(
     typer.echo("written: " + ", ".join(str(path) for path in paths), err=True)
 
 
+def of_outcomes(wall: Specimen, table: Path, out: Path) -> None:
+    """The diagnosis of runs of which only the outcomes are known."""
+    from diagnosis.outcomes import diagnose_outcomes
+    from diagnosis.outcomes.files import write_answer
+    from grids.recordings.outcomes import read_outcomes
+
+    runs = read_outcomes(table, vertical=bool(wall.vertical))
+    make_folder(out)
+    with stages("stopped; nothing was written") as progress:
+        found = diagnose_outcomes(wall, runs, progress=progress)
+        paths = write_answer(found, wall, out)
+    typer.echo(found.statement)
+    typer.echo("written: " + ", ".join(str(path) for path in paths), err=True)
+
+
 def make_folder(out: Path) -> None:
     """The folder of the answer, before the work; InputError where it cannot be made."""
-    from models.errors import InputError
-
     try:
         out.mkdir(parents=True, exist_ok=True)
     except (FileExistsError, NotADirectoryError):

@@ -1,0 +1,66 @@
+"""``report.html`` of outcomes: one page that opens anywhere, without a network."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import models
+from diagnosis.fit.unknowns import library
+from diagnosis.outcomes.answer import OutcomeDiagnosis, Wrong
+from diagnosis.report import words
+from diagnosis.report.page import environment
+from diagnosis.report.svg import Picture
+from grids.specimen import Specimen
+
+HEADLINES = {
+    "missing": "Something is missing from the model: {names}",
+    "cannot_tell_apart": "Something is missing from the model: {names}, or a rival",
+    "not_in_library": "Something is missing that is not in the library",
+    "nothing_missing": "Nothing is missing that the outcomes could show",
+}
+MEANINGS = {
+    "PGA": "largest acceleration of the table",
+    "PGV": "largest velocity of the table",
+    "PGD": "largest displacement of the table",
+    "PGV/PGA": "length of the strongest pulse",
+    "duration": "time between 5 and 95 % of the Arias intensity",
+}
+
+
+def report_page(answer: OutcomeDiagnosis, specimen: Specimen, drawn: Mapping[str, Picture]) -> str:
+    """The page as text, with the pictures ``drawn``; nothing in it is computed anew."""
+    known = library(models.get(specimen.model))
+    names = words.listed(words.plain(effect.name) for effect in answer.effects)
+    return (
+        environment()
+        .get_template("outcomes.html.j2")
+        .render(
+            d=answer,
+            specimen=specimen,
+            headline=HEADLINES[answer.verdict].format(names=names),
+            effects=[
+                (one, known[one.name].says({name: value.estimate for name, value in one.parameters.items()}))
+                for one in answer.effects
+            ],
+            fell=int(answer.overturned.sum()),
+            crossed=[one for one in answer.compared if one.cross_validated],
+            before=[_row(one) for one in answer.wrong],
+            after=[_row(one) for one in answer.left],
+            group_count=len(set(answer.groups)),
+            pictures={name: picture.page() for name, picture in drawn.items()},
+        )
+    )
+
+
+def _row(one: Wrong) -> dict[str, str]:
+    ends = "" if one.low is None or one.high is None else (
+        f"{words.quantity(one.low, one.unit)} to {words.quantity(one.high, one.unit)}"
+    )  # fmt: skip
+    return {
+        "over": one.over,
+        "meaning": MEANINGS.get(one.over, ""),
+        "ends": ends,
+        "did": f"{one.wrong} of {one.runs} {'overturned' if one.predicted == 'stands' else 'stood'}",
+        "predicted": one.predicted,
+        "score": f"{one.standard_score:+.1f}".replace("-", "−"),
+    }

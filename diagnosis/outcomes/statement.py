@@ -1,0 +1,75 @@
+"""One paragraph in plain words about outcomes."""
+
+from __future__ import annotations
+
+from diagnosis.outcomes.answer import Compared, OutcomeDiagnosis, Wrong
+from diagnosis.outcomes.search import Search
+from grids.units import with_unit
+
+
+def statement(answer: OutcomeDiagnosis, found: Search) -> str:
+    """The paragraph; every number in it is in another field of the answer too."""
+    parts = [_opening(answer)]
+    if answer.wrong[0].wrong:
+        parts.append(f"{_wrong(answer.wrong[0])}.")
+        parts += [f"{_wrong(one)}." for one in answer.wrong[1:2]]
+    if answer.effects:
+        known = {repair.name: repair.mechanism for repair in found.chosen.effects}
+        said = [
+            known[e.name].says({name: one.estimate for name, one in e.parameters.items()})
+            + f" (evidence {e.evidence:.0f}, p {_at_most(e.p_value)})"
+            for e in answer.effects
+        ]
+        lead = "What the library can say" if answer.verdict == "not_in_library" else "Best explanation"
+        parts.append(f"{lead}: {'; and '.join(said)}.")
+    if answer.at_bound:
+        parts.append(f"The fit runs into the end of the range of {', '.join(answer.at_bound)}: more of it is wanted.")
+    if answer.rivals:
+        names = ", ".join(f"{r.name.replace('_', ' ')} ({r.evidence_gap:.1f} less)" for r in answer.rivals)
+        parts.append(f"Outcomes alone cannot tell it apart from: {names}.")
+    if answer.verdict == "not_in_library":
+        parts.append(
+            "That does not settle it: what is left hangs together within groups of runs "
+            f"(p {_at_most(answer.misfit_p_value)}), so something that depends on the motion is not in the library."
+        )
+    parts.append(
+        f"From run to run the motion's scale at which it overturns scatters by {answer.scatter.estimate:.0%} "
+        f"({answer.scatter.low95:.0%} to {answer.scatter.high95:.0%})."
+    )
+    parts.append(_scores(answer))
+    if not answer.finished:
+        parts.append("The search was stopped; this is what was found until then.")
+    return " ".join(parts)
+
+
+def _opening(answer: OutcomeDiagnosis) -> str:
+    if answer.effects:
+        return f"The model leaves something out (p {_at_most(answer.p_value)})."
+    if answer.verdict == "nothing_missing":
+        return f"Nothing of the library is missing that these outcomes could show (p {answer.p_value:.2g})."
+    return "No mechanism of the library improves the predictions, and the model does not explain the outcomes."
+
+
+def _at_most(p: float) -> str:
+    return f"at most {p:.2g}" if p <= 0.0011 else f"{p:.2g}"
+
+
+def _wrong(one: Wrong) -> str:
+    did = "overturned" if one.predicted == "stands" else "stood"
+    where = "Of all runs" if one.low is None or one.high is None else (
+        f"It shows along {one.over} (standard score {one.standard_score:+.1f}): between "
+        f"{with_unit(one.low, one.unit)} and {with_unit(one.high, one.unit)}"
+    )  # fmt: skip
+    return f"{where}, {one.wrong} of {one.runs} {did} where the base model {one.predicted}"
+
+
+def _scores(answer: OutcomeDiagnosis) -> str:
+    crossed = [one for one in answer.compared if one.cross_validated]
+    figures = "; ".join(_score(one) for one in crossed)
+    return f"Accuracy with each group of runs predicted from the others: {figures}."
+
+
+def _score(one: Compared) -> str:
+    a, loss = one.scores.accuracy, one.scores.log_loss
+    name = one.by if "model" in one.by else f"threshold of {one.by}"
+    return f"{name} {a.value:.3f} ({a.low95:.2f} to {a.high95:.2f}), log-loss {loss.value:.3f}"

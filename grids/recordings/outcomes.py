@@ -1,0 +1,142 @@
+"""Outcomes of shake-table runs: a table that says which motion overturned the specimen.
+
+``outcomes.toml``:
+
+    table = "tests.csv"                                 # beside this file or in the data folder; a line a run
+    run = "test"                                        # column that names a run
+    motion = "table_acceleration.npz:test_{test:0>3}"   # a source of motion, columns in braces
+    overturned = "rock_1_overturned"                    # column of 0 and 1, yes and no; absent: to be predicted
+    group = "ground_motion"                             # column; left out together in cross-validation
+    [statement]                                         # what the motion's file does not say itself
+    time_step = "0.005 s"
+    unit = "1e-4 g"
+
+Without ``group`` every run is a group of its own.
+"""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from string import Formatter
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from grids.data_folder import data_folder
+from grids.files import Schema, check, parse_toml, read_text
+from grids.motions import Motion, read_motion
+from models.errors import InputError, nearest
+
+YES, NO = ("1", "yes", "y", "true", "overturned"), ("0", "no", "n", "false", "standing")
+LAYOUT = re.compile(r"(?:[^{}]?[<>^])?[0-9]{0,2}")
+"""Fill, alignment and width of a cell in the name of a motion."""
+
+
+class OutcomeFile(Schema):
+    table: str
+    run: str
+    motion: str
+    overturned: str | None = None
+    group: str | None = None
+    component: str | None = None
+    statement: dict[str, str | float] = Field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Outcomes:
+    """Runs (n,) by name: the motion of each, its group, and whether it overturned (None: not known)."""
+
+    name: str
+    runs: tuple[str, ...]
+    motions: tuple[Motion, ...]
+    groups: tuple[str, ...]
+    overturned: NDArray[np.bool_] | None
+
+    @property
+    def size(self) -> int:
+        return len(self.runs)
+
+
+def read_outcomes(path: str | Path, *, vertical: bool = False) -> Outcomes:
+    """The runs that a TOML describes, with their motions; ``vertical``: with their vertical component.
+
+    Raises InputError with file, line, value and cure.
+    """
+    path = Path(path)
+    try:
+        file = check(OutcomeFile, parse_toml(read_text(path, "description of outcomes")))
+    except InputError as error:
+        raise InputError(f"{path.name}: {error}") from None
+    folder = path.resolve().parent
+    lines = _lines(_beside(folder, file.table))
+    for column in (file.run, file.overturned, file.group):
+        if column is not None and column not in lines[0]:
+            raise InputError(f"{path.name}: {file.table} has no column {column!r}; {nearest(column, lines[0])}")
+    runs = tuple(line[file.run].strip() for line in lines)
+    if twice := [run for run, count in Counter(runs).items() if count > 1]:
+        raise InputError(f"{file.table}: run {twice[0]!r} stands there twice in column {file.run!r}; rename one")
+    flags = None if file.overturned is None else np.array([_flag(line, file) for line in lines])
+    groups = runs if file.group is None else tuple(line[file.group].strip() for line in lines)
+    motions = tuple(_motion(file, line, folder, run, vertical) for line, run in zip(lines, runs, strict=True))
+    return Outcomes(path.stem, runs, motions, groups, flags)
+
+
+def _beside(folder: Path, table: str) -> Path:
+    """Beside the description, else in the data folder."""
+    data = data_folder()
+    if not (folder / table).is_file() and data is not None and (data / table).is_file():
+        return data / table
+    return folder / table
+
+
+def _lines(path: Path) -> Sequence[Mapping[str, str]]:
+    text = read_text(path, "table of outcomes")
+    try:
+        lines = list(csv.DictReader(text.splitlines(), restkey="", strict=True))
+    except csv.Error as error:
+        raise InputError(f"{path.name}: is no table ({error}); save it as CSV with one line of names") from None
+    if not lines:
+        raise InputError(f"{path.name}: has no line below its header; give a line a run")
+    for number, line in enumerate(lines, 2):
+        if "" in line or None in line.values():
+            raise InputError(f"{path.name}: line {number} has not as many cells as the header; complete it")
+    return lines
+
+
+def _flag(line: Mapping[str, str], file: OutcomeFile) -> bool:
+    word = line[file.overturned or ""].strip().lower()
+    if word not in (*YES, *NO):
+        raise InputError(f"{file.table}: run {line[file.run]!r} has {word!r} in {file.overturned}; write 1 or 0")
+    return word in YES
+
+
+def _completed(template: str, line: Mapping[str, str]) -> Iterator[str]:
+    """The parts of a template with the cells of ``line`` in the place of ``{column}`` or ``{column:0>3}``."""
+    try:
+        parts = list(Formatter().parse(template))
+    except ValueError as error:
+        raise InputError(f"motion = {template!r} is no template ({error}); write columns as {{name}}") from None
+    for text, column, layout, conversion in parts:
+        yield text
+        if column is None:
+            continue
+        if column not in line:
+            raise InputError(f"motion = {template!r} names {{{column}}}, which is no column; {nearest(column, line)}")
+        if conversion or not LAYOUT.fullmatch(layout or ""):
+            raise InputError(f"motion = {template!r}: {layout or conversion!r} is no layout; write {{{column}:0>3}}")
+        yield format(line[column].strip(), layout or "")
+
+
+def _motion(file: OutcomeFile, line: Mapping[str, str], folder: Path, run: str, vertical: bool) -> Motion:
+    source = "".join(_completed(file.motion, line))
+    given = {"file": source, **file.statement} if file.statement else source
+    try:
+        return read_motion(given, component=file.component, vertical=vertical, near=folder)
+    except InputError as error:
+        raise InputError(f"run {run!r}: {error}") from None

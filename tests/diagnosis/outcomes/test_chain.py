@@ -1,0 +1,107 @@
+"""Outcomes of simulated blocks, from runs to the answer in files and to further runs."""
+
+from __future__ import annotations
+
+import csv
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import models
+from diagnosis.outcomes import OutcomeDiagnosis, diagnose_outcomes, predict_outcomes
+from diagnosis.outcomes.files import EXTENDED, JSON, PAGE, RUNS, prediction_text, read_answer, write_answer
+from grids.motions import Motion
+from grids.recordings.outcomes import Outcomes
+from grids.specimen import Specimen, read_specimen
+from models.errors import InputError
+
+BLOCK = Specimen(
+    "block", "housner", {"height": 1.0, "aspect_ratio": 0.25, "mass": 100.0}, {"aspect_ratio": 0.01, "height": 0.01}
+)
+SCATTER = 0.12
+STEP = 0.01
+
+
+def runs_of(seed: int, hidden: dict[str, float], groups: int = 8, each: int = 8) -> Outcomes:
+    """Motions of a few sines in an envelope, each at several scales, and what becomes of the block."""
+    rng = np.random.default_rng(seed)
+    model = models.get(BLOCK.model)
+    time = STEP * np.arange(400)
+    motions, names, fell = [], [], []
+    for group in range(groups):
+        sines = [rng.normal() * np.sin(2 * np.pi * f * time + rng.uniform(0, 6)) for f in rng.uniform(0.8, 4.0, 5)]
+        shape = np.sum(sines, axis=0) * np.exp(-(((time - 1.8) / 0.8) ** 2))
+        for scale in np.geomspace(2.0, 14.0, each):
+            motion = Motion(f"{group}-{len(motions)}", STEP, shape / np.abs(shape).max() * scale)
+            motions.append(motion)
+            names.append(f"group {group}")
+            values = {k: np.array([v]) for k, v in {**BLOCK.parameters, **hidden}.items()}
+            placed = np.exp(SCATTER * rng.normal(size=1))
+            out = model.evaluate(values, motion.shaking(), placed, outputs=("overturned",), tail=5.0)["overturned"]
+            fell.append(bool(out[0]))
+    return Outcomes("runs", tuple(m.name for m in motions), tuple(motions), tuple(names), np.array(fell))
+
+
+@pytest.fixture(scope="module")
+def with_inset() -> OutcomeDiagnosis:
+    return diagnose_outcomes(BLOCK, runs_of(3, {"pivot_inset.inset_over_half_width": 0.25}))
+
+
+@pytest.mark.slow
+def test_a_base_that_is_narrower_is_said_and_improves_the_predictions(with_inset: OutcomeDiagnosis) -> None:
+    found = with_inset
+    assert found.verdict in ("missing", "cannot_tell_apart")
+    said = {found.effects[0].effect_class, *(rival.effect_class for rival in found.rivals)}
+    assert "contact_geometry" in said
+    assert found.p_value <= 0.01
+    base, extended = found.predictor("base model").scores, found.predictor("extended model").scores
+    assert extended.log_loss.value < base.log_loss.value - 0.1
+    assert extended.accuracy.value > base.accuracy.value
+    assert base.false_stands > base.false_falls
+    assert found.wrong[0].predicted == "stands" and found.wrong[0].standard_score > 3.0
+    assert "overturned where the base model stands" in found.statement
+
+
+@pytest.mark.slow
+def test_nothing_is_said_to_be_missing_when_nothing_is() -> None:
+    found = diagnose_outcomes(BLOCK, runs_of(4, {}))
+    assert found.verdict == "nothing_missing"
+    assert not found.effects
+    assert found.p_value > 0.01
+
+
+@pytest.mark.slow
+def test_the_answer_predicts_further_runs_from_its_folder(with_inset: OutcomeDiagnosis, tmp_path: Path) -> None:
+    write_answer(with_inset, BLOCK, tmp_path)
+    answer = json.loads((tmp_path / JSON).read_text())
+    assert answer["verdict"] == with_inset.verdict
+    assert answer["effects"][0]["parameters"]
+    assert set(answer["scores"]) == {"base model", "extended model", "PGA", "PGV"}
+    page = (tmp_path / PAGE).read_text()
+    assert "<svg" in page and "http" not in page.replace("http://www.w3.org", "")
+    assert len(list(csv.reader((tmp_path / RUNS).open()))) == 1 + len(with_inset.runs)
+    assert read_specimen(tmp_path / EXTENDED).mechanisms.keys() == {e.name for e in with_inset.effects}
+    specimen, posterior = read_answer(tmp_path)
+    further = runs_of(11, {"pivot_inset.inset_over_half_width": 0.25})
+    assert further.overturned is not None
+    prediction = predict_outcomes(specimen, posterior, replace(further, overturned=None))
+    right = np.mean((prediction.chance > 0.5) == further.overturned)
+    assert right > 0.8
+    assert np.all((prediction.low95 <= prediction.chance) & (prediction.chance <= prediction.high95 + 1e-12))
+    assert prediction_text(prediction).count("\n") == 1 + further.size
+
+
+def test_too_few_runs_are_refused() -> None:
+    few = runs_of(1, {}, groups=1, each=4)
+    with pytest.raises(InputError, match="at least 10 runs are needed"):
+        diagnose_outcomes(BLOCK, few)
+    with pytest.raises(InputError, match="of no run whether it overturned"):
+        diagnose_outcomes(BLOCK, replace(few, overturned=None))
+
+
+def test_a_folder_without_an_answer_is_named(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"holds no extended\.toml"):
+        read_answer(tmp_path)

@@ -1,0 +1,82 @@
+"""Tables of outcomes: what is read, and one sentence for whatever is wrong."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from grids.recordings.outcomes import read_outcomes
+from models.errors import InputError
+
+TABLE = "test,motion,fell\n1,a,0\n12,a,yes\n3,b,No\n"
+DESCRIPTION = """table = "tests.csv"
+run = "test"
+motion = "shaking.npz:run_{test:0>3}"
+overturned = "fell"
+group = "motion"
+[statement]
+time_step = "0.01 s"
+unit = "cm/s2"
+"""
+
+
+def written(folder: Path, table: str = TABLE, description: str = DESCRIPTION) -> Path:
+    (folder / "tests.csv").write_text(table)
+    (folder / "runs.toml").write_text(description)
+    arrays = {f"run_{k:03d}": np.full(20, float(k)) for k in (1, 3, 12)}
+    np.savez(folder / "shaking.npz", **arrays)  # type: ignore[arg-type]
+    return folder / "runs.toml"
+
+
+def test_runs_motions_groups_and_outcomes_belong_together(tmp_path: Path) -> None:
+    found = read_outcomes(written(tmp_path))
+    assert found.runs == ("1", "12", "3")
+    assert found.groups == ("a", "a", "b")
+    assert found.overturned is not None and found.overturned.tolist() == [False, True, False]
+    np.testing.assert_allclose([motion.pga for motion in found.motions], [0.01, 0.12, 0.03])
+    assert found.motions[0].time_step == 0.01
+
+
+def test_outcomes_may_be_unknown_and_every_run_its_own_group(tmp_path: Path) -> None:
+    plain = DESCRIPTION.replace('overturned = "fell"\n', "").replace('group = "motion"\n', "")
+    found = read_outcomes(written(tmp_path, description=plain))
+    assert found.overturned is None
+    assert found.groups == found.runs
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ('"fell"', '"fall"', "did you mean 'fell'"),
+        ('"motion"\n', '"motions"\n', "did you mean 'motion'"),
+        ("{test:0>3}", "{tst}", "which is no column"),
+        ("{test:0>3}", "{test.__class__}", "which is no column"),
+        ("{test:0>3}", "{test:0>999999999}", "is no layout"),
+        ("{test:0>3}", "{test", "is no template"),
+        ("{test:0>3}", "{test}", "run '1'"),
+        ("tests.csv", "test.csv", "does not exist"),
+        ("[statement]", "[statements]", "statements"),
+    ],
+)
+def test_a_slip_in_the_description_is_named(tmp_path: Path, old: str, new: str, said: str) -> None:
+    with pytest.raises(InputError, match=said.replace(".", r"\.")):
+        read_outcomes(written(tmp_path, description=DESCRIPTION.replace(old, new)))
+
+
+@pytest.mark.parametrize(
+    ("table", "said"),
+    [
+        ("test,motion,fell\n1,a,0\n1,b,1\n", "stands there twice"),
+        ("test,motion,fell\n1,a,maybe\n", "'maybe'"),
+        ("test,motion,fell\n1,a\n", "line 2 has not as many cells"),
+        ("test,motion,fell\n1,a,0,7\n", "line 2 has not as many cells"),
+        ("test,motion,fell\n", "no line below its header"),
+        ("", "no line below its header"),
+        ('test,motion,fell\n1,"a,0\n', "is no table"),
+    ],
+)
+def test_a_slip_in_the_table_is_named(tmp_path: Path, table: str, said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        read_outcomes(written(tmp_path, table=table))
