@@ -157,6 +157,11 @@ def _values(
         index = column.column - 1
         if index < 0:
             raise InputError(f"{path.name}: column {column.column} of {name}: columns are numbered from 1")
+    elif header.count(column.column) > 1:
+        raise InputError(
+            f"{path.name}: has {header.count(column.column)} columns {column.column!r}, {name} wants one; "
+            "name it by its number, from 1"
+        )
     elif column.column in header:
         index = header.index(column.column)
     else:

@@ -52,6 +52,13 @@ def suspicions_of_plan(plan: Plan) -> tuple[str, ...]:
             f"pga goes to {pga.max():.3g} m s-2 ({pga.max() / GRAVITY:.2g} g) and has no unit: was g meant? "
             "Say unit = 'g' or unit = 'm/s^2'."
         )
+    most = USUAL["pga"][1]
+    found += [
+        f"motion {motion.name} peaks at {motion.pga / GRAVITY:.3g} g (usual: up to {most / GRAVITY:g} g); "
+        "is the unit of its file right?"
+        for motion in plan.motions
+        if motion.pga > most
+    ]
     return tuple(found)
 
 

@@ -14,14 +14,16 @@ FloatArray = NDArray[np.float64]
 
 SHORTEST = 10
 """Fewest samples of a series: fewer are a damaged file, not a record."""
+FINEST = 1e-6
+"""Shortest time step, s."""
 JITTER = 0.01
 """Largest departure of one interval from the mean step, as a share of the step."""
 
 
 def check_step(time_step: float, where: str) -> float:
-    """A finite positive time step below one second, s."""
-    if not (math.isfinite(time_step) and 0.0 < time_step <= 1.0):
-        raise InputError(f"{where}: time step is {time_step:.9g} s: give one above 0 and up to 1 s")
+    """A time step that a recorder can have, `FINEST` to one second, s."""
+    if not (math.isfinite(time_step) and FINEST <= time_step <= 1.0):
+        raise InputError(f"{where}: time step is {time_step:.9g} s: give one from {FINEST:g} to 1 s")
     return time_step
 
 

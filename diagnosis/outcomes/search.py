@@ -22,11 +22,11 @@ SURE = 0.01
 """An effect counts when chance brings its gain, in the search for it, more rarely than this."""
 EXCLUDED = 0.05
 """A rival stays while its own truth would bring the winner's lead more often than this."""
-MOST = 3
+MOST = 2
 """Effects, at most."""
 REFINED = 4
 """Mechanisms that are looked at closely, for each effect."""
-FIRST, SCREENED, CLOSER = 32, 16, 24
+FIRST, SCREENED, CLOSER = 32, 8, 24
 """Points of the base's first round, of each mechanism's screen, and of each closer round."""
 CLOSER_ROUNDS = 3
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,8 +15,14 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
+def group_name(recording: str) -> str:
+    """The group of a recording: its name with ``_`` for what a netCDF name may not hold, begun by a letter or digit."""
+    plain = re.sub(r"[^\w.+-]", "_", recording)
+    return plain if plain[0].isalnum() else f"r{plain}"
+
+
 def fit_datasets(diagnosis: Diagnosis) -> dict[str, xr.Dataset]:
-    """The groups of the file: "/" holds parameters and suspects; one group a recording its curves.
+    """The groups of the file: "/" holds parameters and suspects; one group a recording its curves (`group_name`).
 
     A recording's group has ``<channel>_measured``, ``_before``, ``_after`` (and ``_from_rest_before``,
     ``_from_rest_after``) over ``time``, and the residuals of its windows over ``window_<channel>``.
@@ -25,7 +32,13 @@ def fit_datasets(diagnosis: Diagnosis) -> dict[str, xr.Dataset]:
         groups.setdefault(trace.recording, []).append(_curves(trace))
     for strip in diagnosis.windows:
         groups.setdefault(strip.recording, []).append(_residuals(strip))
-    return {"/": _root(diagnosis), **{name: _joined(name, parts, diagnosis) for name, parts in groups.items()}}
+    found = {"/": _root(diagnosis)}
+    for name, parts in groups.items():
+        own = group_name(name)
+        while own in found:
+            own += "_"
+        found[own] = _joined(name, parts, diagnosis)
+    return found
 
 
 def write_fit(diagnosis: Diagnosis, path: Path) -> Path:
@@ -136,6 +149,7 @@ def _joined(name: str, parts: list[xr.Dataset], diagnosis: Diagnosis) -> xr.Data
         group.attrs |= {"prediction_horizon_before_s": horizon[0], "prediction_horizon_after_s": horizon[1]}
     held = {t.recording for t in diagnosis.traces if t.held_out}
     held |= {w.recording for w in diagnosis.windows if w.held_out}
+    group.attrs["recording"] = name
     group.attrs["held_out"] = "true" if name in held else "false"
     return group
 

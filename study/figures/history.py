@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from study.figures.style import COLOURS, label, new_axes
+from study.figures.style import COLOURS, label, literal, new_axes
 
 EVENTS = (
     ("impact", "|", COLOURS[1]),
@@ -41,7 +41,7 @@ def plot_history(history: xr.Dataset, channel: str | None = None, *, ax: Axes | 
     ax.set_xlim(time[0], time[-1])
     ax.set_xlabel("time [s]")
     ax.set_ylabel(label(values))
-    ax.set_title(str(history.attrs.get("title", "")), fontsize="medium", loc="left")
+    ax.set_title(literal(str(history.attrs.get("title", ""))), fontsize="medium", loc="left")
     if ax.get_legend_handles_labels()[0]:
         ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize="small", ncols=4, frameon=False)
     return ax

@@ -10,7 +10,7 @@ from grids.motions import Motion
 from grids.motions.artificial import TOLERANCE, target_of
 from grids.motions.matching import MATCHED
 from grids.motions.spectrum import default_periods, response_spectrum
-from study.figures.style import COLOURS
+from study.figures.style import COLOURS, literal
 from study.wording import GRAVITY
 
 DAMPING = 0.05
@@ -43,13 +43,13 @@ def plot_motion(motion: Motion) -> tuple[Axes, ...]:
         ax.plot(motion.time, values / GRAVITY, color=colour, linewidth=0.7)
         peak = int(np.argmax(np.abs(values)))
         ax.plot(motion.time[peak], values[peak] / GRAVITY, "o", color=COLOURS[6], markersize=4)
-        ax.set_title(f"{name}: peak {abs(values[peak]) / GRAVITY:.3f} g", fontsize="medium", loc="left")
+        ax.set_title(f"{literal(name)}: peak {abs(values[peak]) / GRAVITY:.3f} g", fontsize="medium", loc="left")
         ax.set_ylim(-1.1 * largest, 1.1 * largest)
         ax.set_xlim(0.0, motion.duration)
         ax.set_ylabel("acceleration [g]")
         ax.grid(alpha=0.3)
         spectrum = response_spectrum(values, motion.time_step, periods, damping)
-        axes[n].loglog(periods, spectrum.pseudo_acceleration / GRAVITY, color=colour, label=name)
+        axes[n].loglog(periods, spectrum.pseudo_acceleration / GRAVITY, color=colour, label=literal(name))
     axes[n - 1].set_xlabel("time [s]")
     axes[n].set_xlabel("period [s]")
     axes[n].set_ylabel("pseudo-acceleration [g]")

@@ -43,17 +43,22 @@ def label(values: xr.DataArray) -> str:
     return words if unit == "1" else f"{words} [{unit}]"
 
 
+def literal(text: str) -> str:
+    """A name from a file as matplotlib prints it: a dollar sign in it begins no formula."""
+    return text.replace("$", r"\$")
+
+
 def set_title(ax: Axes, text: str) -> None:
     """Write a title in as many lines as it needs, broken at commas only."""
     parts = text.replace(" ", "\u00a0").replace(",\u00a0", ", ")
-    ax.set_title("\n".join(textwrap.wrap(parts, TITLE_WIDTH)), fontsize="medium", pad=8)
+    ax.set_title(literal("\n".join(textwrap.wrap(parts, TITLE_WIDTH))), fontsize="medium", pad=8)
 
 
 def positions(values: xr.DataArray) -> tuple[NDArray[np.float64], list[str] | None]:
     """Where the points of an axis lie, and the words to print there when it holds no numbers."""
     if values.dtype.kind in "iuf":
         return np.asarray(shown(values)[0], dtype=float), None
-    return np.arange(values.size, dtype=float), [str(v) for v in values.values]
+    return np.arange(values.size, dtype=float), [literal(str(v)) for v in values.values]
 
 
 def geometric(points: NDArray[np.float64]) -> bool:

@@ -76,3 +76,14 @@ def test_a_stated_unit_is_no_slip() -> None:
 @pytest.mark.parametrize("path", STUDIES, ids=lambda path: path.name)
 def test_nothing_is_suspected_of_the_studies_at_hand(path: Path) -> None:
     assert suspicions_of_plan(read_plan(path)) == ()
+
+
+def test_a_motion_that_peaks_beyond_any_earthquake(tmp_path: Path) -> None:
+    """A file in m/s2 that says g."""
+    samples = " ".join(["9.0", "-20.0"] * 10)
+    (tmp_path / "m.AT2").write_text(
+        f"PEER\nX, 1/1/2000, Y, 90\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS=  20, DT= .0100 SEC\n{samples}\n"
+    )
+    named = PLAN.replace('files = ["ridgecrest_2019_clc"]', 'files = ["m.AT2"]')
+    (said,) = suspicions_of_plan(parse_plan(named, tmp_path))
+    assert "peaks at 20 g" in said and "is the unit of its file right?" in said

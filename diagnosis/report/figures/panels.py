@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from diagnosis.report.figures.palette import Palette
+from study.figures.style import literal
 
 WIDE, NARROW = 12.0, 5.2
 """Inches; at 72 units an inch this is the column of a page on a desk and on a telephone."""
@@ -70,7 +71,7 @@ def dress(ax: Axes, palette: Palette) -> None:
 
 def name_panel(ax: Axes, text: str, palette: Palette) -> None:
     """What a panel shows, above its left end."""
-    ax.set_title(text, loc="left", fontsize=FONT, color=palette.ink, pad=6)
+    ax.set_title(literal(text), loc="left", fontsize=FONT, color=palette.ink, pad=6)
 
 
 def legend(ax: Axes, palette: Palette) -> None:

@@ -1,5 +1,7 @@
 """Damaged and misdescribed motions: one sentence with what, where, value and cure."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -376,3 +378,20 @@ def test_a_glob_that_matches_nothing_says_so():
 
 def test_there_are_enough_kinds():
     assert len(CASES) >= 40
+
+
+def test_two_columns_of_one_name_are_told_apart_by_number(tmp_path: Path) -> None:
+    lines = "".join(f"{0.01 * k:.2f},{k % 3},{k % 5}\n" for k in range(30))
+    (tmp_path / "a.csv").write_text(f"t,acc,acc\n{lines}")
+    described = 'time = { column = "t", unit = "s" }\n[columns]\nbase_acceleration_x = { column = %s, unit = "m/s2" }\n'
+    (tmp_path / "a.toml").write_text(described % '"acc"')
+    with pytest.raises(InputError, match="has 2 columns 'acc'"):
+        read_motion(tmp_path / "a.csv")
+    (tmp_path / "a.toml").write_text(described % "3")
+    assert read_motion(tmp_path / "a.csv").pga == 4.0
+
+
+def test_a_step_that_no_recorder_has_is_refused(tmp_path: Path) -> None:
+    np.savez(tmp_path / "a.npz", x=np.ones(50))
+    with pytest.raises(InputError, match="time step is 1e-07 s: give one from 1e-06 to 1 s"):
+        read_motion({"file": str(tmp_path / "a.npz:x"), "time_step": "1e-7 s", "unit": "g"})

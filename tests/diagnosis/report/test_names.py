@@ -1,0 +1,38 @@
+"""Recordings may have any name that a file can have."""
+
+from __future__ import annotations
+
+import html
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import xarray as xr
+
+from diagnosis.report import write_answer
+from tests.diagnosis.report.example import diagnosis, recordings, specimen
+
+
+@pytest.mark.parametrize("name", ["(1) shake", "6\"'<b>", "shake ", r"r$\frac{$x", "été 5 % \\x"])
+def test_an_answer_is_written_whatever_a_recording_is_called(name: str, tmp_path: Path) -> None:
+    found, read = diagnosis(), list(recordings())
+    old = read[0].name
+    assert old in {trace.recording for trace in found.traces}
+
+    def named(parts: tuple[object, ...]) -> tuple[object, ...]:
+        return tuple(replace(p, recording=name) if p.recording == old else p for p in parts)  # type: ignore
+
+    found = replace(
+        found,
+        traces=named(found.traces),
+        windows=named(found.windows),
+        located=named(found.located),
+        shows=named(found.shows),
+        prediction_horizon={name if k == old else k: v for k, v in found.prediction_horizon.items()},
+    )
+    read[0] = replace(read[0], name=name)
+    write_answer(found, specimen(), read[:1], read[1:], tmp_path)
+    page = (tmp_path / "report.html").read_text("utf-8")
+    assert html.escape(name).replace("&#x27;", "&#39;").replace("&quot;", "&#34;") in page and "<b>" not in page
+    with xr.open_datatree(tmp_path / "fit.nc", engine="netcdf4") as tree:
+        assert name in {group.attrs["recording"] for group in tree.children.values()}
