@@ -43,7 +43,7 @@ def test_no_file_is_too_long(path: Path) -> None:
     assert len(path.read_text().splitlines()) <= LONGEST
 
 
-FOLDERS = ("data", "fit", "errors", "forces", "search", "answer", "report", "prove")
+FOLDERS = ("data", "fit", "errors", "forces", "search", "answer", "report", "outcomes", "prove")
 """Of the diagnosis, the way of a recording: each imports those before it. ``progress`` serves all of them."""
 STEPS = sorted(path for folder in FOLDERS for path in (ROOT / "diagnosis" / folder).rglob("*.py"))
 
