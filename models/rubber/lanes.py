@@ -1,8 +1,9 @@
 """The laws of the family in compiled kernels: one fibre's response, composed from the laws' own updates.
 
-There is a variant for each law alone and one for all together, where a law at its null costs its arithmetic; a
-kernel is compiled with the one that it is asked for. A flat table holds the hidden states, in rows of one number for
-each fibre and lane, and the laws' numbers, in rows of one for each lane.
+There is a variant for each law alone, all of it in registers, and one for any combination, where each law goes over
+all fibres and lanes by itself behind a flag of the call, so that a law that does not act costs nothing; a kernel is
+compiled with the one that it is asked for. A flat table holds the hidden states, in rows of one number for each fibre
+and lane, and the laws' numbers, in rows of one for each lane.
 """
 
 from __future__ import annotations
@@ -32,11 +33,15 @@ NUMBER_ROWS = {law.name: range(_ENDS[k], _ENDS[k + 1]) for k, law in enumerate(O
 N_NUMBERS = _ENDS[-1]
 
 
-def variant_for(laws: Given) -> Any:
-    """A tuple as long as the number of the smallest variant that holds ``laws``: the compiler knows its length."""
+def variant_for(laws: Given) -> tuple[int, ...]:
+    """A tuple as long as the number of the smallest variant that holds ``laws``: the compiler knows its length.
+
+    Its items are a sum of bits, 2^k for the k-th law of the variant, that says which of them act.
+    """
     wanted = {law.name for law, _ in laws}
     fitting = [k for k, held in enumerate(VARIANTS) if wanted <= {law.name for law in held}]
-    return (None,) * min(fitting, key=lambda k: len(VARIANTS[k]))
+    number = min(fitting, key=lambda k: len(VARIANTS[k]))
+    return (sum(1 << k for k, law in enumerate(VARIANTS[number]) if law.name in wanted),) * number
 
 
 def number_table(laws: Given, step: FloatArray) -> FloatArray:
@@ -87,11 +92,10 @@ def responding(laws: Sequence[RubberLaw], places: Places) -> tuple[Step, Step]:
     ``u`` is the compression at the end of a step over which it has grown by ``change`` (m), k the spring. The
     hidden states in the table ``t`` go on by the step.
     """
-    joins = {"shifts": _shifting, "adds": _adding, "softens": _softening}
     numbers, found = _none, _untouched
     for place, law in enumerate(laws):
         numbers = _with(numbers, _numbers_at(list(NUMBER_ROWS[law.name]), places))
-        found = joins[law.role](found, _updating(law, places), place == 0)
+        found = _JOINS[law.role](found, _updating(law, places), place == 0)
 
     @inlined
     def respond(t: Table, j: int, u: float, change: float, k: float, n: Any) -> tuple[float, float]:
@@ -99,6 +103,50 @@ def responding(laws: Sequence[RubberLaw], places: Places) -> tuple[Step, Step]:
         return more, slope
 
     return numbers, respond
+
+
+def passing(law: RubberLaw, places: Places, first: int) -> tuple[Step, Step]:
+    """Compiled ``numbers(t, i)``, as of `responding`, and ``go_on(t, j, u, k, numbers)``: one law's pass over fibre j.
+
+    It reads and writes `Going` in four rows of the table ``t`` from ``first`` on, each as long as one of hidden states.
+    """
+
+    second, third, fourth = (first + row * places.columns for row in (1, 2, 3))
+
+    @inlined
+    def held(t: Table, j: int, u: float, change: float, k: float, n: Any) -> Going:
+        return t[first + j], t[second + j], t[third + j], t[fourth + j]
+
+    found = _JOINS[law.role](held, _updating(law, places), False)
+
+    @inlined
+    def go_on(t: Table, j: int, u: float, k: float, n: Any) -> None:
+        t[first + j], t[second + j], t[third + j], t[fourth + j] = found(t, j, u, 0.0, k, n)
+
+    return _with(_none, _numbers_at(list(NUMBER_ROWS[law.name]), places)), go_on
+
+
+def guarded(passes: Sequence[Step]) -> Step:
+    """Compiled ``(t, acting)``: those of the ``passes``, compiled ``(t)``, whose bits of ``acting`` are set."""
+
+    @inlined
+    def nothing(t: Table, acting: int) -> None:
+        return
+
+    found: Step = nothing
+    for k, own in enumerate(passes):
+        found = _then(found, own, 1 << k)
+    return found
+
+
+def _then(before: Step, own: Step, bit: int) -> Step:
+    @inlined
+    def both(t: Table, acting: int) -> None:
+        before(t, acting)
+        if acting & bit:
+            own(t)
+
+    return both
 
 
 @inlined
@@ -152,6 +200,9 @@ def _softening(before: Step, update: Step, first: bool) -> Step:
     return softened
 
 
+_JOINS = {"shifts": _shifting, "adds": _adding, "softens": _softening}
+
+
 def _updating(law: RubberLaw, places: Places) -> Step:
     """Compiled ``(t, j, u, change, numbers)``: one law's step, its hidden state in the table ``t``.
 
@@ -201,13 +252,13 @@ def looks_back(laws: Sequence[RubberLaw]) -> bool:
 
 
 def chosen(variants: Sequence[Callable[..., None]]) -> Callable[..., None]:
-    """A function ``(t, which)`` for kernels: the variant whose number is the length of the tuple ``which``."""
+    """A function ``(t, which)`` for kernels: of ``variants``, compiled ``(t, which)``, the one `variant_for` names."""
 
     def run(t: Table, which: Any) -> None:
         raise NotImplementedError("only compiled code calls this")
 
     def variant(t: Any, which: Any) -> Callable[..., None]:
         one = variants[len(which)]
-        return lambda t, which: one(t)
+        return lambda t, which: one(t, which)
 
     return in_kernels(run, variant)

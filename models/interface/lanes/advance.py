@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 
 from models.interface.declaration import CALM
-from models.interface.lanes.fibres import N_WORK_LAWS, fibres_all
+from models.interface.lanes.along import N_WORK_LAWS
+from models.interface.lanes.fibres import fibres_all
 from models.interface.lanes.rows import (
     CLOCK,
     FLAG,

@@ -1,34 +1,23 @@
 """Rubber laws along both strips: 16 Gauss fibres of the difference to the linear law, for all lanes.
 
 At the predictor of the coming step every fibre's compression goes on linearly in time over the step. What the laws
-add to the force, and its slope, is summed into the rows that the step rule reads. For four fibres at a time, the loop
-over the W lanes has no branches; joint and fibres are constants of each loop, so that it becomes vector code.
+add to the force, and its slope, is summed into the rows that the step rule reads; see `models.interface.lanes.along`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
-from models.interface.fibres import COUNT, NODES, WEIGHTS
+from models.interface.fibres import COUNT, NODES
 from models.interface.lanes import rows as r
+from models.interface.lanes.along import APART, LAST, N_WORK_LAWS, P_LAWS, base_fibres, top_fibres
 from models.interface.lanes.rows import W
 from models.lanes.arrays import Table
 from models.lanes.compiler import called, inlined
 from models.lanes.elementary import sine_cosine
 from models.rubber import lanes as rubber
-from models.rubber.base import RubberLaw
 
-FIRST, SECOND = WEIGHTS * NODES, WEIGHTS * NODES**2
 UNBOUNDED = 1e300
-
-# --- work beyond the rows of `rows`, base and top: u of every fibre at the last step, hidden states, numbers
-P_LAWS = tuple((r.N_WORK + joint * rubber.N_NUMBERS) * W for joint in range(2))
-APART = COUNT + 1
-"""Rows between those of a fibre: not a power of two, at which a store would hold up the load of the next one."""
-LAST = tuple((r.N_WORK + 2 * rubber.N_NUMBERS + joint * (1 + rubber.N_HIDDEN) * APART) * W for joint in range(2))
-N_WORK_LAWS = r.N_WORK + 2 * rubber.N_NUMBERS + 2 * (1 + rubber.N_HIDDEN) * APART
-PLACES = [rubber.Places(LAST[joint] + APART * W, APART * W, P_LAWS[joint], W) for joint in range(2)]
 
 
 class Rubber(NamedTuple):
@@ -66,73 +55,6 @@ def predicted_strips(w: Table, i: int) -> None:
     w[r.FLOOR * W + i] = 0.0 if w[r.CLIP * W + i] > 0.0 else -UNBOUNDED
     for row in range(10):
         w[(r.FN_B + row) * W + i] = 0.0
-
-
-def _four(laws: Sequence[RubberLaw], joint: int) -> Callable[..., None]:
-    """Compiled ``(w, i)``: four fibres of a joint of one lane; what they add to its force, moment and slopes."""
-    numbers, respond = rubber.responding(laws, PLACES[joint])
-    looks_back, last = rubber.looks_back(laws), LAST[joint]
-
-    @inlined
-    def fibre(w: Table, f: int, i: int, strip: Any, n: Any) -> tuple[float, float]:
-        """Stress of one fibre of one lane beyond the linear one, both clipped under law B, and its slope."""
-        turn, z, turn_drag, drag, k, floor = strip
-        down = NODES[f] * turn - z
-        u, change, j = max(down, 0.0), 0.0, f * W + i
-        if looks_back:
-            change = u - w[last + j]
-            w[last + j] = u
-        more, slope = respond(w, j, u, change, k, n)
-        linear = k * u + (NODES[f] * turn_drag - drag)
-        total = linear + more
-        touching = down > 0.0
-        stress = max(total, floor) - max(linear, floor) if touching else 0.0
-        return stress, slope if touching & (total > floor) else 0.0
-
-    @inlined
-    def four(w: Table, f0: int, i: int) -> None:
-        f1, f2, f3 = f0 + 1, f0 + 2, f0 + 3
-        strip = (
-            w[(r.FS_B + joint) * W + i], w[(r.FZ_B + joint) * W + i], w[(r.FR_B + joint) * W + i],
-            w[(r.FY_B + joint) * W + i], w[(r.KB + joint) * W + i], w[r.FLOOR * W + i],
-        )  # fmt: skip
-        n = numbers(w, i)
-        s0, d0 = fibre(w, f0, i, strip, n)
-        s1, d1 = fibre(w, f1, i, strip, n)
-        s2, d2 = fibre(w, f2, i, strip, n)
-        s3, d3 = fibre(w, f3, i, strip, n)
-        w[(r.FN_B + joint) * W + i] += WEIGHTS[f0] * s0 + WEIGHTS[f1] * s1 + WEIGHTS[f2] * s2 + WEIGHTS[f3] * s3
-        w[(r.FM_B + joint) * W + i] += FIRST[f0] * s0 + FIRST[f1] * s1 + FIRST[f2] * s2 + FIRST[f3] * s3
-        w[(r.F1_B + joint) * W + i] += WEIGHTS[f0] * d0 + WEIGHTS[f1] * d1 + WEIGHTS[f2] * d2 + WEIGHTS[f3] * d3
-        w[(r.F2_B + joint) * W + i] += FIRST[f0] * d0 + FIRST[f1] * d1 + FIRST[f2] * d2 + FIRST[f3] * d3
-        w[(r.F3_B + joint) * W + i] += SECOND[f0] * d0 + SECOND[f1] * d1 + SECOND[f2] * d2 + SECOND[f3] * d3
-
-    return four
-
-
-def _joint(laws: Sequence[RubberLaw], joint: int) -> Callable[..., None]:
-    """Compiled ``(w)``: the fibres of one joint of all lanes."""
-    if not laws:
-
-        @inlined
-        def nothing(w: Table) -> None:
-            return
-
-        return nothing
-    four = _four(laws, joint)
-
-    @inlined
-    def all_fibres(w: Table) -> None:
-        # a length read at run time: else the compiler unrolls the loops instead of making vector code
-        lanes = w.size // N_WORK_LAWS
-        for f in range(0, COUNT, 4):
-            for i in range(lanes):
-                four(w, f, i)
-
-    return all_fibres
-
-
-base_fibres, top_fibres = (rubber.chosen([_joint(laws, joint) for laws in rubber.VARIANTS]) for joint in range(2))
 
 
 @inlined

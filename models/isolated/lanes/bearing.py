@@ -23,7 +23,9 @@ from models.rubber.base import RubberLaw
 # the laws' hidden states and numbers
 U, WHOLE, LAST, K, HIDDEN = (row * W for row in range(5))
 P_LAWS = HIDDEN + rubber.N_HIDDEN * W
-N_SPRING = P_LAWS + rubber.N_NUMBERS * W
+GOING = P_LAWS + rubber.N_NUMBERS * W
+"""What passes from law to law in a combination: u, its change, force beyond k u, slope."""
+N_SPRING = GOING + 4 * W
 PLACES = rubber.Places(HIDDEN, W, P_LAWS, W)
 
 
@@ -66,11 +68,13 @@ def close(s: Table, x: Table, p: Table, spring: Table, i: int) -> None:
 
 
 def _springs(laws: Sequence[RubberLaw]) -> Callable[..., None]:
-    """Compiled ``(spring)``: the springs' force of all lanes; the laws go on from one look to the next."""
+    """Compiled ``(spring, which)``: the springs' force of all lanes; the laws go on from one look to the next."""
+    if len(laws) > 1:
+        return _combined(laws)
     numbers, respond = rubber.responding(laws, PLACES)
 
     @inlined
-    def springs_all(spring: Table) -> None:
+    def springs_all(spring: Table, which: Any) -> None:
         for i in range(W):
             u = spring[U + i]
             k = spring[K + i]
@@ -78,6 +82,36 @@ def _springs(laws: Sequence[RubberLaw]) -> Callable[..., None]:
             spring[LAST + i] = u
 
     return springs_all
+
+
+def _combined(laws: Sequence[RubberLaw]) -> Callable[..., None]:
+    """As `_springs`, each law in a pass of its own."""
+    passes = rubber.guarded([_pass(law) for law in laws])
+
+    @inlined
+    def springs_all(spring: Table, which: Any) -> None:
+        for i in range(W):
+            u = spring[U + i]
+            spring[GOING + i], spring[GOING + W + i] = u, u - spring[LAST + i]
+            spring[GOING + 2 * W + i], spring[GOING + 3 * W + i] = 0.0, 0.0
+            spring[LAST + i] = u
+        passes(spring, which[0])
+        for i in range(W):
+            spring[WHOLE + i] = spring[K + i] * spring[U + i] + spring[GOING + 2 * W + i]
+
+    return springs_all
+
+
+def _pass(law: RubberLaw) -> Callable[..., None]:
+    """Compiled ``(spring)``: one law of a combination in all lanes."""
+    numbers, go_on = rubber.passing(law, PLACES, GOING)
+
+    @inlined
+    def all_lanes(spring: Table) -> None:
+        for i in range(W):
+            go_on(spring, i, spring[U + i], spring[K + i], numbers(spring, i))
+
+    return all_lanes
 
 
 springs = rubber.chosen([_springs(laws) for laws in rubber.VARIANTS])

@@ -1,0 +1,193 @@
+"""What rubber laws add along one joint: four of its 16 Gauss fibres at a time, for all lanes.
+
+The loop over the W lanes has no branches; joint and fibres are constants of each loop, so that it becomes vector code.
+A law alone goes through in registers; in a combination each law takes all fibres on by itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from models.interface.fibres import COUNT, NODES, WEIGHTS
+from models.interface.lanes import rows as r
+from models.interface.lanes.rows import W
+from models.lanes.arrays import Table
+from models.lanes.compiler import inlined
+from models.rubber import lanes as rubber
+from models.rubber.base import RubberLaw
+
+FIRST, SECOND = WEIGHTS * NODES, WEIGHTS * NODES**2
+
+# --- work beyond the rows of `rows`, base and top: u of every fibre at the last step, hidden states, numbers
+P_LAWS = tuple((r.N_WORK + joint * rubber.N_NUMBERS) * W for joint in range(2))
+APART = COUNT + 1
+"""Rows between those of a fibre: not a power of two, at which a store would hold up the load of the next one."""
+LAST = tuple((r.N_WORK + 2 * rubber.N_NUMBERS + joint * (1 + rubber.N_HIDDEN) * APART) * W for joint in range(2))
+_GOING = r.N_WORK + 2 * rubber.N_NUMBERS + 2 * (1 + rubber.N_HIDDEN) * APART
+GOING = _GOING * W
+"""What passes from law to law in a combination, four rows of every fibre: u, its change, stress beyond k u, slope."""
+N_WORK_LAWS = _GOING + 4 * APART
+PLACES = [rubber.Places(LAST[joint] + APART * W, APART * W, P_LAWS[joint], W) for joint in range(2)]
+
+
+@inlined
+def _strip(w: Table, joint: int, i: int) -> Any:
+    """Of a joint of one lane: b S, z, c b S', c z', k, the least stress."""
+    return (
+        w[(r.FS_B + joint) * W + i], w[(r.FZ_B + joint) * W + i], w[(r.FR_B + joint) * W + i],
+        w[(r.FY_B + joint) * W + i], w[(r.KB + joint) * W + i], w[r.FLOOR * W + i],
+    )  # fmt: skip
+
+
+@inlined
+def _beyond(f: int, strip: Any, u: float, more: float, slope: float) -> tuple[float, float]:
+    """Stress of one fibre beyond the linear one, both clipped under law B, and its slope."""
+    turn, z, turn_drag, drag, k, floor = strip
+    linear = k * u + (NODES[f] * turn_drag - drag)
+    total = linear + more
+    touching = NODES[f] * turn - z > 0.0
+    return max(total, floor) - max(linear, floor) if touching else 0.0, slope if touching & (total > floor) else 0.0
+
+
+@inlined
+def _add(w: Table, joint: int, f0: int, i: int, four: Any) -> None:
+    """Add stresses and slopes of the four fibres from f0 on to the sums of a joint of one lane."""
+    (s0, d0), (s1, d1), (s2, d2), (s3, d3) = four
+    f1, f2, f3 = f0 + 1, f0 + 2, f0 + 3
+    w[(r.FN_B + joint) * W + i] += WEIGHTS[f0] * s0 + WEIGHTS[f1] * s1 + WEIGHTS[f2] * s2 + WEIGHTS[f3] * s3
+    w[(r.FM_B + joint) * W + i] += FIRST[f0] * s0 + FIRST[f1] * s1 + FIRST[f2] * s2 + FIRST[f3] * s3
+    w[(r.F1_B + joint) * W + i] += WEIGHTS[f0] * d0 + WEIGHTS[f1] * d1 + WEIGHTS[f2] * d2 + WEIGHTS[f3] * d3
+    w[(r.F2_B + joint) * W + i] += FIRST[f0] * d0 + FIRST[f1] * d1 + FIRST[f2] * d2 + FIRST[f3] * d3
+    w[(r.F3_B + joint) * W + i] += SECOND[f0] * d0 + SECOND[f1] * d1 + SECOND[f2] * d2 + SECOND[f3] * d3
+
+
+def _alone(law: RubberLaw, joint: int) -> Callable[..., None]:
+    """Compiled ``(w, f0, i)``: four fibres of a joint of one lane under one law beside the linear one."""
+    numbers, respond = rubber.responding((law,), PLACES[joint])
+    looks_back, last = rubber.looks_back((law,)), LAST[joint]
+
+    @inlined
+    def fibre(w: Table, f: int, i: int, strip: Any, n: Any) -> tuple[float, float]:
+        u, change, j = max(NODES[f] * strip[0] - strip[1], 0.0), 0.0, f * W + i
+        if looks_back:
+            change = u - w[last + j]
+            w[last + j] = u
+        more, slope = respond(w, j, u, change, strip[4], n)
+        return _beyond(f, strip, u, more, slope)
+
+    @inlined
+    def four(w: Table, f0: int, i: int) -> None:
+        strip, n = _strip(w, joint, i), numbers(w, i)
+        _add(
+            w, joint, f0, i,
+            (fibre(w, f0, i, strip, n), fibre(w, f0 + 1, i, strip, n), fibre(w, f0 + 2, i, strip, n),
+             fibre(w, f0 + 3, i, strip, n)),
+        )  # fmt: skip
+
+    return four
+
+
+def _begin(joint: int) -> Callable[..., None]:
+    """Compiled ``(w, f0, i)``: u and its change of four fibres, for the laws of a combination."""
+    last = LAST[joint]
+
+    @inlined
+    def fibre(w: Table, f: int, i: int, turn: float, z: float) -> None:
+        u, j = max(NODES[f] * turn - z, 0.0), f * W + i
+        w[GOING + j], w[GOING + APART * W + j] = u, u - w[last + j]
+        w[GOING + 2 * APART * W + j], w[GOING + 3 * APART * W + j] = 0.0, 0.0
+        w[last + j] = u
+
+    @inlined
+    def four(w: Table, f0: int, i: int) -> None:
+        turn, z = w[(r.FS_B + joint) * W + i], w[(r.FZ_B + joint) * W + i]
+        fibre(w, f0, i, turn, z)
+        fibre(w, f0 + 1, i, turn, z)
+        fibre(w, f0 + 2, i, turn, z)
+        fibre(w, f0 + 3, i, turn, z)
+
+    return four
+
+
+def _pass(law: RubberLaw, joint: int) -> Callable[..., None]:
+    """Compiled ``(w, f0, i)``: one law of a combination takes four fibres on."""
+    numbers, go_on = rubber.passing(law, PLACES[joint], GOING)
+    last = LAST[joint]
+
+    @inlined
+    def four(w: Table, f0: int, i: int) -> None:
+        k, n, j = w[(r.KB + joint) * W + i], numbers(w, i), f0 * W + i
+        go_on(w, j, w[last + j], k, n)
+        go_on(w, j + W, w[last + j + W], k, n)
+        go_on(w, j + 2 * W, w[last + j + 2 * W], k, n)
+        go_on(w, j + 3 * W, w[last + j + 3 * W], k, n)
+
+    return four
+
+
+def _end(joint: int) -> Callable[..., None]:
+    """Compiled ``(w, f0, i)``: what a combination adds to the sums by four fibres."""
+
+    @inlined
+    def fibre(w: Table, f: int, i: int, strip: Any) -> tuple[float, float]:
+        j = f * W + i
+        u = max(NODES[f] * strip[0] - strip[1], 0.0)
+        return _beyond(f, strip, u, w[GOING + 2 * APART * W + j], w[GOING + 3 * APART * W + j])
+
+    @inlined
+    def four(w: Table, f0: int, i: int) -> None:
+        strip = _strip(w, joint, i)
+        _add(
+            w, joint, f0, i,
+            (fibre(w, f0, i, strip), fibre(w, f0 + 1, i, strip), fibre(w, f0 + 2, i, strip),
+             fibre(w, f0 + 3, i, strip)),
+        )  # fmt: skip
+
+    return four
+
+
+def _over_all(four: Callable[..., None]) -> Callable[..., None]:
+    """Compiled ``(w)``: ``four`` over all fibres of all lanes."""
+
+    @inlined
+    def all_fibres(w: Table) -> None:
+        # a length read at run time: else the compiler unrolls the loops instead of making vector code
+        lanes = w.size // N_WORK_LAWS
+        for f in range(0, COUNT, 4):
+            for i in range(lanes):
+                four(w, f, i)
+
+    return all_fibres
+
+
+def _joint(laws: Sequence[RubberLaw], joint: int) -> Callable[..., None]:
+    """Compiled ``(w, which)``: the fibres of one joint of all lanes."""
+    if not laws:
+
+        @inlined
+        def nothing(w: Table, which: Any) -> None:
+            return
+
+        return nothing
+    if len(laws) == 1:
+        alone = _over_all(_alone(laws[0], joint))
+
+        @inlined
+        def one(w: Table, which: Any) -> None:
+            alone(w)
+
+        return one
+    begin, end = _over_all(_begin(joint)), _over_all(_end(joint))
+    passes = rubber.guarded([_over_all(_pass(law, joint)) for law in laws])
+
+    @inlined
+    def combined(w: Table, which: Any) -> None:
+        begin(w)
+        passes(w, which[0])
+        end(w)
+
+    return combined
+
+
+base_fibres, top_fibres = (rubber.chosen([_joint(laws, joint) for laws in rubber.VARIANTS]) for joint in range(2))
