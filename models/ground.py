@@ -10,6 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from models.base import FloatArray
+from models.pitch import pitch
 from models.shaking import Shaking
 
 
@@ -55,6 +56,42 @@ def pieces(wall: BaseMotion, shaking: Shaking, scale: float, until: float) -> It
         yield Piece(start, min(end, until), _two(samples[:, low]), _two(slope))
     if until > shaking.duration:
         yield Piece(shaking.duration, until, (offset, gravity), (0.0, 0.0))
+
+
+@dataclass(frozen=True)
+class PitchedPiece:
+    """``start`` <= t <= ``end`` (s), on which a, G, psi and psi'' are linear in time."""
+
+    start: float
+    end: float
+    first: tuple[float, ...]
+    slope: tuple[float, ...]
+
+    def at(self, time: float) -> tuple[float, float, float]:
+        """a - G psi, G (m s-2) and psi'' (rad s-2)."""
+        past = time - self.start
+        a, gravity, psi, second = (v + past * d for v, d in zip(self.first, self.slope, strict=True))
+        return a - gravity * psi, gravity, second
+
+
+def pitched_pieces(
+    wall: BaseMotion, shaking: Shaking, scale: float, until: float, per_acceleration: float, low_pass: float
+) -> Iterator[PitchedPiece]:
+    """As `pieces`, of a base that pitches by ``per_acceleration`` (rad s2 m-1) below ``low_pass`` (Hz)."""
+    offset, gravity, factor = wall.offset.item(), wall.gravity.item(), wall.vertical_factor.item()
+    horizontal, psi = scale * shaking.horizontal, np.zeros((2, shaking.horizontal.size))
+    vertical = np.zeros_like(horizontal) if shaking.vertical is None else shaking.vertical
+    if per_acceleration != 0.0:
+        psi = per_acceleration * np.stack(pitch(horizontal, shaking.time_step, low_pass))
+    samples = np.stack([offset + horizontal, gravity + factor * scale * vertical, *psi])
+    for low, high in straight(samples):
+        start, end = low * shaking.time_step, high * shaking.time_step
+        if start >= until:
+            return
+        slope = (samples[:, high] - samples[:, low]) / (end - start)
+        yield PitchedPiece(start, min(end, until), tuple(samples[:, low].tolist()), tuple(slope.tolist()))
+    if until > shaking.duration:
+        yield PitchedPiece(shaking.duration, until, (offset, gravity, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0))
 
 
 def straight(samples: FloatArray) -> Iterator[tuple[int, int]]:

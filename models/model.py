@@ -115,11 +115,11 @@ class Model(ABC, Generic[C]):
         if not np.any(unable):
             return self._integrated(integrator, coefficients, request)
         outputs = [quantity for quantity in self.outputs if not quantity.peak_of]
-        whole = unanswered(outputs, unable.size, request.samples, len(self.states))
         able = np.flatnonzero(~unable)
         if not able.size:
-            return whole
-        return among(whole, able, self._integrated(integrator, coefficients.take(able), request.take(able)))
+            return unanswered(outputs, unable.size, request.samples, len(self.states))
+        found = self._integrated(integrator, coefficients.take(able), request.take(able))
+        return among(unanswered(outputs, unable.size, request.samples, found.samples.shape[2]), able, found)
 
     def _integrated(self, integrator: str, coefficients: C, request: Request) -> Run:
         if integrator == "lanes":

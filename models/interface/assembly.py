@@ -114,6 +114,11 @@ def build(
         if word != "linear" and not any(key.startswith(f"{word}.") for key in wall.laws):
             raise InputError(f"the rubber law of the {joint} layer is {word}; give {word}.{LAWS[word].parameters[0]}")
         wall = wall.only_law(joint, word)
+    if wall.effects is not None and np.any(np.isfinite(wall.effects.friction) & np.isfinite(wall.effects.shear_base)):
+        raise InputError(
+            "sliding and interface_shear both give way along the base and do not act together: leave one out, or give "
+            "interface_shear.shear_over_normal_top alone"
+        )
     for joint in wall.rubber_joints:
         for law, p in wall.laws_at(joint):
             if refused := law.refusal(p):

@@ -39,37 +39,41 @@ class Fibres:
         self.b = (wall.base_half_width if base else wall.top_half_width)[:, None]
         self.c = (wall.base_damping if base else wall.top_damping)[:, None]
         self.clip = wall.clip
+        self.x = self.b * NODES
+        sides = None if wall.effects is None or not base else (wall.effects.left, wall.effects.right)
+        self.factor = 1.0 if sides is None else np.where(NODES < 0.0, sides[0][:, None], sides[1][:, None])
         layer = wall.layer(joint)
         self.laws = [(law, {name: values[:, None] for name, values in p.items()}) for law, p in layer.laws]
         self.layer = Layer(layer.stiffness[:, None], self.laws)
-        self.x = self.b * NODES
 
     def compression(self, z: FloatArray, angle: FloatArray) -> FloatArray:
         """u (n, 16) in m; 0 where open."""
         return np.maximum(self.x * np.sin(angle)[:, None] - z[:, None], 0.0)
 
-    def relaxed(self, compression: FloatArray) -> list[FloatArray]:
-        """The hidden states after a long rest at ``compression`` (n,) everywhere."""
-        return self.layer.relaxed(compression[:, None] + 0.0 * self.x)
+    def relaxed(self, z: FloatArray, angle: FloatArray) -> list[FloatArray]:
+        """The hidden states after a long rest at z, angle."""
+        return self.layer.relaxed(self.compression(z, angle))
 
-    def energy(self, z: FloatArray, angle: FloatArray, hidden: Hidden) -> FloatArray:
-        """Stored (J) beyond the springs of the linear strip, (n,)."""
+    def energy(self, z: FloatArray, angle: FloatArray, hidden: Hidden, wear: FloatArray | float = 1.0) -> FloatArray:
+        """Stored (J) beyond the springs of the linear strip, (n,); ``wear``: factor on the layer's springs."""
         u = self.compression(z, angle)
         more = self.layer.energy(u, hidden) - 0.5 * self.layer.stiffness * u**2
         if self.clip:
             more -= np.minimum(self.layer.stress(u, hidden), 0.0) ** 2 / (2.0 * self.layer.slope(u, hidden))
         # fibre by fibre: a product of matrices adds in an order that depends on how many walls there are
-        return np.asarray(self.b[:, 0] * sum(more[:, f] * WEIGHTS[f] for f in range(COUNT)))
+        more = self.factor * more
+        return np.asarray(wear * self.b[:, 0] * sum(more[:, f] * WEIGHTS[f] for f in range(COUNT)))
 
-    def difference(self, motion: Sequence[Any], hidden: Hidden) -> Difference:
-        """In a state of motion: z, angle, z', angle' of the joint, each (n,)."""
+    def difference(self, motion: Sequence[Any], hidden: Hidden, wear: FloatArray | float = 1.0) -> Difference:
+        """In a state of motion: z, angle, z', angle' of the joint, each (n,); ``wear``: factor on the springs."""
         z, angle, z_rate, angle_rate = (np.atleast_1d(value) for value in motion)
         turning = self.x * (np.cos(angle) * angle_rate)[:, None]
         u = self.compression(z, angle)
         pressed = u > 0.0
         u_rate = np.where(pressed, turning - z_rate[:, None], 0.0)
-        linear = self.layer.stiffness * u + self.c * u_rate
-        total = self.layer.stress(u, hidden) + self.c * u_rate
+        factor = self.factor * np.asarray(wear).reshape(-1, 1)
+        linear = factor * self.layer.stiffness * u + self.c * u_rate
+        total = factor * self.layer.stress(u, hidden) + self.c * u_rate
         if self.clip:
             total, linear = np.maximum(total, 0.0), np.maximum(linear, 0.0)
         stress = np.where(pressed, total - linear, 0.0)

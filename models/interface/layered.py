@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from models.base import FloatArray, Values
+from models.interface.effects import Effects
 from models.rubber import LAWS
 from models.rubber.base import Numbers, RubberLaw
 from models.rubber.layer import Layer
@@ -36,7 +37,7 @@ class LayeredWall:
 
     ``laws``: parameters of rubber laws beside the linear one, by ``law.parameter_joint``.
     ``joints`` (both, base, top): where the rubber is. ``toe_held``: the toe, not the midpoint of an
-    uplifted underside is held laterally. ``clip``: dashpot law B.
+    uplifted underside is held laterally. ``clip``: dashpot law B. ``effects``: what mechanisms add, if any does.
     """
 
     mass_1: FloatArray
@@ -62,6 +63,7 @@ class LayeredWall:
     joints: str = "both"
     toe_held: bool = True
     clip: bool = True
+    effects: Effects | None = None
 
     @property
     def size(self) -> int:
@@ -72,13 +74,21 @@ class LayeredWall:
         arrays = {k: np.broadcast_to(np.asarray(v, float), self.mass_1.shape) for k, v in changes.items()}
         return self._with(arrays)
 
+    def with_effect(self, part: str, **changes: Any) -> LayeredWall:
+        """With the mechanism ``part``, which acts through fields of `Effects`."""
+        return self._with({"effects": (self.effects or Effects.none(self.size)).given(part, **changes)})
+
+    def with_effects(self, effects: Effects) -> LayeredWall:
+        return self._with({"effects": effects})
+
     def _with(self, changes: dict[str, Any]) -> LayeredWall:
         return replace(self, **changes)
 
     def _map(self, function: Any) -> LayeredWall:
         chosen = {f.name: getattr(self, f.name) for f in fields(self)}
         changes: dict[str, Any] = {k: function(v) for k, v in chosen.items() if isinstance(v, np.ndarray)}
-        return self._with({**changes, "laws": {k: function(v) for k, v in self.laws.items()}})
+        effects = None if self.effects is None else self.effects.map(function)
+        return self._with({**changes, "laws": {k: function(v) for k, v in self.laws.items()}, "effects": effects})
 
     def take(self, index: Any) -> LayeredWall:
         """The walls selected by an index array or mask."""
@@ -87,6 +97,11 @@ class LayeredWall:
     def one(self, lane: int = 0) -> Any:
         """One wall with plain floats in its fields, for code that runs a wall at a time."""
         return self._map(lambda values: float(values[lane]))
+
+    @property
+    def coordinates(self) -> int:
+        """Numbers in q: theta1, theta2, z1, z2, and those of `Effects.coordinates`."""
+        return 4 if self.effects is None else self.effects.coordinates
 
     @property
     def rubber_joints(self) -> tuple[str, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,7 @@ from models.base import FloatArray, Values
 from models.errors import InputError
 from models.interface import declaration, modes, standing
 from models.interface.assembly import assemble, build
+from models.interface.effects import STATES as OTHER_STATES
 from models.interface.identification import IDENTIFICATION
 from models.interface.layered import LayeredWall
 from models.interface.observe import observe
@@ -25,7 +27,7 @@ class Interface(Model[LayeredWall]):
 
     M(q) q'' + n(q, q', a, G) = Q(q, q') in q = (theta1, theta2, z1, z2), full nonlinear, with the exact
     contact length of each layer; see `models.interface.reference.equation` and docs/errata.md for the paper's
-    printed form. No sliding: ``friction_demand`` tells when that would fail.
+    printed form. Without the mechanism `sliding`, ``friction_demand`` tells when the joints could not hold.
     """
 
     name = "interface"
@@ -40,7 +42,11 @@ class Interface(Model[LayeredWall]):
     states = declaration.STATES
     identification = IDENTIFICATION
     vertical_by_default = True
-    resumes_with: tuple[str, ...] | None = ("vertical_acceleration", "pivot_inset", "hardening", "locking")
+    resumes_with: tuple[str, ...] | None = (
+        "vertical_acceleration", "pivot_inset", "hardening", "locking", "tilt", "eccentricity", "contact_length",
+        "added_stiffness", "one_sided_stiffness", "viscous_damping", "coulomb_damping", "interface_shear", "sliding",
+        "wall_flexibility",
+    )  # fmt: skip
 
     def assemble(self, values: Values, options: Mapping[str, str], *, vertical: bool, size: int) -> LayeredWall:
         return assemble(values, options, vertical, size)
@@ -97,6 +103,12 @@ class Interface(Model[LayeredWall]):
     def observe(self, coefficients: LayeredWall, samples: FloatArray) -> Mapping[str, FloatArray]:
         return observe(coefficients, samples)
 
+    def resume(
+        self, states: FloatArray, outputs: Mapping[str, NDArray[Any]], initial: Mapping[str, FloatArray]
+    ) -> dict[str, FloatArray]:
+        """The states, with effects those of the other coordinates, too."""
+        return dict(zip((*self.states, *OTHER_STATES), states.T, strict=False))
+
     def settle(self, run: Run, time_step: float) -> FloatArray:
         """States that stay where a body reached pi/2."""
         samples = run.samples.copy()
@@ -106,7 +118,10 @@ class Interface(Model[LayeredWall]):
             for body in (1, 2):
                 if run.outputs[f"overturned_{body}"][lane]:
                     samples[lane, fallen:, body - 1] = run.outputs[f"residual_rotation_{body}"][lane]
-            samples[lane, fallen:, 4:] = 0.0
+            samples[lane, fallen:, 4:8] = 0.0
+            if samples.shape[2] > 8:
+                samples[lane, fallen:, 8:12] = samples[lane, max(fallen - 1, 0), 8:12]
+                samples[lane, fallen:, 12:] = 0.0
         return samples
 
 

@@ -1,6 +1,6 @@
 """Small motions about rest in full contact: static state, natural frequencies, shapes, modal damping.
 
-q = (theta1, theta2, z1, z2). At rest z1 = -(m1+m2) g/(2 k_b b1), z2 = -m2 g/(2 k_t bt) under the linear law;
+q = (theta1, theta2, z1, z2). Upright at rest z1 = -(m1+m2) g/(2 k_b b1), z2 = -m2 g/(2 k_t bt) under the linear law;
 with l = 2 h1 + e_t + z2 the matrices are M, C = B(c_b, c_t), K = B(k_b, k_t) - diag(g (m1 h1 + m2 l), g m2 h2, 0, 0)
 of full contact, k the slope of each layer's law on unloading from there; they equal the Jacobian of the full
 equations with what has flowed in the rubber held, for either kinematics.
@@ -14,21 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.base import FloatArray
+from models.interface import resting
 from models.interface.layered import FREE, LayeredWall
 
 
 def static_state(wall: LayeredWall) -> FloatArray:
-    """q ``(n, 4)`` at rest under gravity, relaxed; nan where a law cannot carry the load, 0 at a bonded joint."""
-    state = np.zeros((wall.size, 4))
-    for joint, column, mass, half, stiffness, thickness in (
-        ("base", 2, wall.mass, wall.base_half_width, wall.base_stiffness, wall.base_thickness),
-        ("top", 3, wall.mass_2, wall.top_half_width, wall.top_stiffness, wall.top_thickness),
-    ):
-        if joint in wall.rubber_joints:
-            load, layer = mass * wall.gravity / (2.0 * half), wall.layer(joint)
-            most = np.maximum(thickness, 4.0 * load / stiffness)
-            state[:, column] = -layer.static_compression(load, most) if layer.laws else -load / stiffness
-    return state
+    """q ``(n, 4)`` at rest under gravity, relaxed; nan where it cannot stand, 0 at a bonded joint."""
+    return resting.at_rest(wall)[:, :4]
 
 
 def tangents(wall: LayeredWall, rest: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -27,22 +27,36 @@ class Observed(Mapping[str, FloatArray]):
 
 
 def observe(wall: LayeredWall, state: FloatArray) -> Observed:
-    """Observables ``(n, m)`` of states q, q' ``(n, m, 8)`` of n walls; see `declaration.OBSERVABLES`."""
-    t1, t2, z1, z2, v1, v2, y1, y2 = np.moveaxis(state, 2, 0)
+    """Observables ``(n, m)`` of states q, q' ``(n, m, 8)`` of n walls; see `declaration.OBSERVABLES`.
+
+    With effects ``(n, m, 16)``: the other coordinates and their rates after the plain ones.
+    """
+    t1, t2, z1, z2, v1, v2, y1, y2 = np.moveaxis(state[:, :, :8], 2, 0)
+    x1 = x2 = zm = beside = np.zeros_like(t1)
+    tm, vm = t1, v1
+    if wall.effects is not None and state.shape[2] == 16:
+        x1, x2, tm, zm, _, _, vm, _ = np.moveaxis(state[:, :, 8:], 2, 0)
+        beside = wall.effects.top_offset[:, None]
     toe = 1.0 if wall.toe_held else 0.0
 
     def lane(values: FloatArray) -> FloatArray:
         return values[:, None]
 
-    def roll() -> FloatArray:
-        return np.asarray(toe * np.sign(t1) * lane(wall.base_half_width) * (1.0 - np.cos(t1)))
+    half = lane(0.5 * wall.height_1)
 
-    def upper() -> FloatArray:
-        turn = t2 - t1
-        along = toe * np.sign(turn) * lane(wall.top_half_width) * (1.0 - np.cos(turn))
-        height = lane(wall.height_1 + wall.top_thickness_in_height) + z2
-        moved = roll() + along * np.cos(t1) + height * np.sin(t1) + lane(wall.centre_2) * np.sin(t2)
-        return np.asarray(moved)
+    def foot() -> FloatArray:
+        return np.asarray(x1 + toe * np.sign(t1) * lane(wall.base_half_width) * (1.0 - np.cos(t1)))
+
+    def wall_centre() -> FloatArray:
+        # of both halves
+        return np.asarray(foot() + 0.75 * half * np.sin(t1) + (0.25 * half + 0.5 * zm) * np.sin(tm))
+
+    def block_centre() -> FloatArray:
+        turn = t2 - tm
+        along = x2 + toe * np.sign(turn) * lane(wall.top_half_width) * (1.0 - np.cos(turn))
+        upper = half + lane(wall.top_thickness_in_height) + zm + z2
+        joint = foot() + half * np.sin(t1) + along * np.cos(tm) + upper * np.sin(tm)
+        return np.asarray(joint + lane(wall.centre_2) * np.sin(t2) + beside * np.cos(t2))
 
     def contact_1() -> FloatArray:
         if wall.joints == "top":
@@ -53,9 +67,9 @@ def observe(wall: LayeredWall, state: FloatArray) -> Observed:
     def contact_2() -> FloatArray:
         if wall.joints == "base":
             return np.ones_like(t1)
-        turn = t2 - t1
+        turn = t2 - tm
         late = np.where(wall.clip, wall.top_damping / wall.top_stiffness, 0.0)
-        return share(lane(wall.top_half_width), lane(late), z2, np.sin(turn), y2, np.cos(turn) * (v2 - v1))
+        return share(lane(wall.top_half_width), lane(late), z2, np.sin(turn), y2, np.cos(turn) * (v2 - vm))
 
     return Observed(
         {
@@ -63,8 +77,8 @@ def observe(wall: LayeredWall, state: FloatArray) -> Observed:
             "rotation_2": lambda: t2,
             "rotation_rate_1": lambda: v1,
             "rotation_rate_2": lambda: v2,
-            "displacement_1_x": lambda: roll() + lane(wall.centre_1) * np.sin(t1),
-            "displacement_2_x": upper,
+            "displacement_1_x": wall_centre,
+            "displacement_2_x": block_centre,
             "compression_base": lambda: -z1,
             "compression_top": lambda: -z2,
             "contact_1": contact_1,

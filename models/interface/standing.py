@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from models.interface import modes
+from models.interface import modes, resting
 from models.interface.layered import LayeredWall
 
 Unable = tuple[NDArray[np.bool_], str]
@@ -14,8 +14,16 @@ Unable = tuple[NDArray[np.bool_], str]
 
 def cannot_stand(wall: LayeredWall) -> list[Unable]:
     """The walls that a layer cannot carry, that creep without end, that tip over, or that crush a layer at rest."""
-    rest = modes.static_state(wall)
-    return [*_laws(wall, -rest[:, 2:]), _tipping(wall, ~modes.stable(wall, rest)), *_crushed(wall, -rest)]
+    straight, rest = resting.upright(wall), modes.static_state(wall)
+    over = np.any(np.isnan(rest), axis=1) & ~np.any(np.isnan(straight), axis=1)
+    leaning = over & modes.stable(wall, straight)
+    said = "what makes the wall lean tips it over before its layers hold it: less of it, or stiffer layers"
+    return [
+        *_laws(wall, -straight[:, 2:]),
+        _tipping(wall, ~modes.stable(wall, np.where(over[:, None], straight, rest))),
+        (leaning, said),
+        *_crushed(wall, -rest),
+    ]
 
 
 def _laws(wall: LayeredWall, compression: NDArray[np.float64]) -> list[Unable]:

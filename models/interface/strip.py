@@ -25,22 +25,23 @@ class Strip(NamedTuple):
     share: float
 
 
-def touching(b: float, z: float, s: float) -> tuple[float, float]:
-    """The stretch of [-b, b] on which z - x s < 0."""
+def touching(ends: tuple[float, float], z: float, s: float) -> tuple[float, float]:
+    """The stretch between ``ends`` on which z - x s < 0."""
+    low, high = ends
     if s > 0.0:
-        low, high = max(-b, z / s), b
+        low = max(low, z / s)
     elif s < 0.0:
-        low, high = -b, min(b, z / s)
-    else:
-        return (-b, b) if z < 0.0 else OPEN
+        high = min(high, z / s)
+    elif z >= 0.0:
+        return OPEN
     return (low, high) if low < high else OPEN
 
 
 def pressing(
-    b: float, k: float, c: float, z: float, s: float, z_rate: float, s_rate: float, clip: bool
+    ends: tuple[float, float], k: float, c: float, z: float, s: float, z_rate: float, s_rate: float, clip: bool
 ) -> tuple[float, float]:
     """The stretch that carries stress: in contact, and under law B (``clip``) not pulled."""
-    low, high = touching(b, z, s)
+    low, high = touching(ends, z, s)
     if not clip:
         return low, high
     y0, y1 = k * z + c * z_rate, k * s + c * s_rate
@@ -51,14 +52,22 @@ def pressing(
     return (low, high) if low < high else OPEN
 
 
+def resultants(
+    stretch: tuple[float, float], k: float, c: float, z: float, s: float, z_rate: float, s_rate: float
+) -> tuple[float, float]:
+    """N = -(Y0 d1 - Y1 d2) and M = -(Y0 d2 - Y1 d3), d_n = [x^n/n], of all of a stretch."""
+    low, high = stretch
+    d1, d2, d3 = high - low, (high**2 - low**2) / 2.0, (high**3 - low**3) / 3.0
+    y0, y1 = k * z + c * z_rate, k * s + c * s_rate
+    return -(y0 * d1 - y1 * d2), -(y0 * d2 - y1 * d3)
+
+
 def strip(
     b: float, k: float, c: float, z: float, s: float, z_rate: float = 0.0, s_rate: float = 0.0, clip: bool = True
 ) -> Strip:
-    """Resultants of the linear law; N = -(Y0 d1 - Y1 d2), M = -(Y0 d2 - Y1 d3), d_n = [x^n/n]."""
-    low, high = pressing(b, k, c, z, s, z_rate, s_rate, clip)
-    d1, d2, d3 = high - low, (high**2 - low**2) / 2.0, (high**3 - low**3) / 3.0
-    y0, y1 = k * z + c * z_rate, k * s + c * s_rate
-    return Strip(-(y0 * d1 - y1 * d2), -(y0 * d2 - y1 * d3), d1 / (2.0 * b))
+    """Resultants of the linear law on [-b, b]."""
+    stretch = pressing((-b, b), k, c, z, s, z_rate, s_rate, clip)
+    return Strip(*resultants(stretch, k, c, z, s, z_rate, s_rate), (stretch[1] - stretch[0]) / (2.0 * b))
 
 
 def stored(b: FloatArray, k: FloatArray, z: FloatArray, s: FloatArray) -> FloatArray:

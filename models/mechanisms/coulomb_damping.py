@@ -4,10 +4,16 @@ from __future__ import annotations
 
 from models.base import Mechanism, MechanismParameter, Values
 from models.housner.block import Block
+from models.interface.layered import LayeredWall
 
 
 def on_housner(block: Block, values: Values) -> Block:
     return block.replace(coulomb=values["over_m_g_b"] * block.mass * block.gravity * block.base_half_width)
+
+
+def on_interface(wall: LayeredWall, values: Values) -> LayeredWall:
+    couple = values["over_m_g_b"] * wall.mass * wall.gravity * wall.base_half_width
+    return wall.with_effect("coulomb_damping", dry_couple=couple)
 
 
 MECHANISM = Mechanism(
@@ -17,7 +23,7 @@ MECHANISM = Mechanism(
     equation="couple -m_c M g b sign(theta'); it holds the block where it stops as long as it can",
     signature="between impacts, with the sign of theta'",
     sentence="dry friction of {over_m_g_b:.4f} M g b acts against the rotation",
-    acts={"housner": on_housner},
+    acts={"housner": on_housner, "interface": on_interface},
     static_test="let the block rock freely and follow the last small swings",
     source="Coulomb's law on a couple",
 )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from models.base import Mechanism, MechanismParameter, Values
 from models.housner.block import Block
+from models.interface.layered import LayeredWall
 from models.stacked.stack import Stack
 
 
@@ -17,6 +18,27 @@ def on_stacked(stack: Stack, values: Values) -> Stack:
     return stack.replace(
         shift_1=stack.shift_1 + offset * stack.half_length_1, shift_2=stack.shift_2 + offset * stack.half_joint
     )
+
+
+def on_interface(wall: LayeredWall, values: Values) -> LayeredWall:
+    return wall.with_effect("eccentricity", top_offset=values["offset_top"])
+
+
+OF_TOP_MASS = Mechanism(
+    name="eccentricity",
+    effect_class="tilt",
+    parameters=(
+        MechanismParameter(
+            "offset_top", "d", "m", "mass centre of the upper body off its middle, positive to +x", -0.2, 0.2
+        ),
+    ),
+    equation="G2 = T + Rot(theta2)(d, h2), T the middle of the upper body's underside",
+    signature="differs left and right; the wall leans at rest",
+    sentence="the mass centre of the upper body lies {offset_top:+.4f} m off its middle (positive to +x)",
+    acts={"interface": on_interface},
+    static_test="turn the top mass by 180 degrees and repeat a run",
+    source="geometry: models/interface/chain.py",
+)
 
 
 MECHANISM = Mechanism(

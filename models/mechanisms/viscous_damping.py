@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from models.base import Mechanism, MechanismParameter, Values
 from models.housner.block import Block
+from models.interface.layered import LayeredWall
 from models.stacked.stack import Stack
 
 
@@ -15,6 +16,23 @@ def on_stacked(stack: Stack, values: Values) -> Stack:
     return stack.replace(viscous=stack.viscous + values["rate"])
 
 
+def on_interface(wall: LayeredWall, values: Values) -> LayeredWall:
+    return wall.with_effect("viscous_damping", couple_damping=values["couple_damping"])
+
+
+OF_WALL = Mechanism(
+    name="viscous_damping",
+    effect_class="viscous_damping",
+    parameters=(
+        MechanismParameter("couple_damping", "c_c", "N m s", "couple on the wall per angular velocity", 0.0, 5e5),
+    ),
+    equation="couple -c_c theta1'",
+    signature="with theta1', beyond what the layers' dashpots explain",
+    sentence="a dashpot of {couple_damping:.3g} N m s acts on the wall's rotation",
+    acts={"interface": on_interface},
+    static_test="let the wall rock freely from several held rotations",
+    source="linear viscous couple",
+)
 MECHANISM = Mechanism(
     name="viscous_damping",
     effect_class="viscous_damping",

@@ -14,9 +14,9 @@ from models.housner.declaration import REST_VELOCITY
 from models.housner.lanes import rows as r
 from models.housner.lanes.advance import advance
 from models.housner.lanes.table import KNOTS
-from models.housner.pitch import pitch
 from models.lanes.record import recorded
 from models.lanes.tables import empty, filled, groups, logged, put
+from models.pitch import pitch
 from models.runs import Request, Run
 
 EVENTS = ("onset", "impact", "rest", "overturned")

@@ -25,10 +25,10 @@ import math
 import numpy as np
 
 from models.base import Event, FloatArray
+from models.ground import PitchedPiece
 from models.housner.cantilever import STRUCTURAL_DAMPING
 from models.housner.declaration import REST_VELOCITY
 from models.housner.reference.equation import Equation
-from models.housner.reference.ground import Piece
 from models.housner.reference.rocking import Named, Rocking
 
 
@@ -78,11 +78,11 @@ class Bending(Rocking):
     def _damping(self, speed: float) -> float:
         return 2.0 * STRUCTURAL_DAMPING * self.natural * self.m * speed**2
 
-    def _rates(self, time: float, y: FloatArray, direction: int, piece: Piece) -> tuple[float, ...]:
+    def _rates(self, time: float, y: FloatArray, direction: int, piece: PitchedPiece) -> tuple[float, ...]:
         second, bent, power = self._seconds(y, direction, piece.at(time))
         return float(y[1]), second, power, float(y[4]), bent
 
-    def _needed(self, time: float, y: FloatArray, piece: Piece, direction: int) -> float:
+    def _needed(self, time: float, y: FloatArray, piece: PitchedPiece, direction: int) -> float:
         theta, rate, _, eta, speed = y.tolist()
         eq = self.equation
         a, gravity, pitching = piece.at(time)
@@ -97,7 +97,7 @@ class Bending(Rocking):
     def _shift(self, y: FloatArray) -> FloatArray:
         return np.asarray(self.f / self.equation.mass * y[3] * np.cos(y[0]))
 
-    def _rock(self, piece: Piece, shaken: bool) -> None:
+    def _rock(self, piece: PitchedPiece, shaken: bool) -> None:
         if not self.relaxed and self.time == 0.0:
             fixed, _ = self.equation.acceleration(
                 self.theta, self.rate, self.side, self._sense(), self.largest, piece.at(0.0)
@@ -110,7 +110,7 @@ class Bending(Rocking):
     def _sense(self) -> int:
         return self.side if self.rate == 0.0 else int(math.copysign(1.0, self.rate))
 
-    def _wait(self, piece: Piece, shaken: bool) -> None:
+    def _wait(self, piece: PitchedPiece, shaken: bool) -> None:
         self.relaxed = True
         eq = self.equation
 
@@ -138,7 +138,7 @@ class Bending(Rocking):
         if kind is not None:
             self._lift(1 if kind == "right" else -1)
 
-    def _impact(self, piece: Piece) -> None:
+    def _impact(self, piece: PitchedPiece) -> None:
         eq, (eta, speed), before, s = self.equation, self.extra, self.rate, self.side
         old, new = eq.half_width(s, self.largest), eq.half_width(-s, self.largest)
 

@@ -16,8 +16,8 @@ import math
 import numpy as np
 
 from models.base import FloatArray
+from models.ground import PitchedPiece
 from models.housner.declaration import REST_VELOCITY
-from models.housner.reference.ground import Piece
 from models.housner.reference.rocking import Named, Rocking
 
 
@@ -28,10 +28,10 @@ class Bouncing(Rocking):
     extra_scale = (1.0,)
     air: tuple[float, ...] = ()
 
-    def _rates(self, time: float, y: FloatArray, direction: int, piece: Piece) -> tuple[float, ...]:
+    def _rates(self, time: float, y: FloatArray, direction: int, piece: PitchedPiece) -> tuple[float, ...]:
         return (*super()._rates(time, y[:3], direction, piece), 0.0)
 
-    def _go(self, piece: Piece, shaken: bool) -> None:
+    def _go(self, piece: PitchedPiece, shaken: bool) -> None:
         if self.mode == "flight":
             self._fly(piece)
         else:
@@ -60,7 +60,7 @@ class Bouncing(Rocking):
     def _energy(self, rate: float, across: float, up: float) -> float:
         return 0.5 * (self.equation.inertia * rate**2 + self.equation.mass * (across**2 + up**2))
 
-    def _impact(self, piece: Piece) -> None:
+    def _impact(self, piece: PitchedPiece) -> None:
         eq, before, c = self.equation, self.rate, float(self.equation.block.contact_restitution[0])
         super()._impact(piece)
         new, old = eq.half_width(self.side, self.largest), eq.half_width(-self.side, self.largest)
@@ -73,7 +73,7 @@ class Bouncing(Rocking):
         self.lost += stays - self._energy(self.rate, across, up)
         self.mode, self.air = "flight", (self.extra[0], across, eq.height, up)
 
-    def _fly(self, piece: Piece) -> None:
+    def _fly(self, piece: PitchedPiece) -> None:
         eq = self.equation
 
         def rates(time: float, y: FloatArray) -> tuple[float, ...]:

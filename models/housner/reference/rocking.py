@@ -16,9 +16,9 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from models.base import STATUS, Event, FloatArray
+from models.ground import PitchedPiece
 from models.housner.declaration import REST_VELOCITY
 from models.housner.reference.equation import MOST_INSET, Equation
-from models.housner.reference.ground import Piece
 from models.housner.reference.impact import restitution
 from models.runs import Run
 
@@ -62,7 +62,7 @@ class Rocking:
             self.side = int(math.copysign(1.0, theta if theta != 0.0 else rate))
             self.largest = self.arc = abs(theta)
 
-    def advance(self, piece: Piece, shaken: bool) -> None:
+    def advance(self, piece: PitchedPiece, shaken: bool) -> None:
         """Through one piece of the ground's motion; ``shaken`` is false after the record's end."""
         self.time = piece.start
         for _ in range(STUCK):
@@ -71,7 +71,7 @@ class Rocking:
             self._go(piece, shaken)
         self.failed = self.finished = True
 
-    def _go(self, piece: Piece, shaken: bool) -> None:
+    def _go(self, piece: PitchedPiece, shaken: bool) -> None:
         """On to the next event, in the present mode."""
         if self.mode == "rest":
             self._wait(piece, shaken)
@@ -80,7 +80,7 @@ class Rocking:
         else:
             self._rock(piece, shaken)
 
-    def _wait(self, piece: Piece, shaken: bool) -> None:
+    def _wait(self, piece: PitchedPiece, shaken: bool) -> None:
         def excess(time: float, side: int) -> float:
             return self.equation.excess(side, self.largest, piece.at(time))
 
@@ -98,7 +98,7 @@ class Rocking:
         self.onset = self.time if math.isnan(self.onset) else self.onset
         self.events.append(Event(self.time, "onset"))
 
-    def _hold(self, piece: Piece, shaken: bool) -> None:
+    def _hold(self, piece: PitchedPiece, shaken: bool) -> None:
         eq = self.equation
 
         def excess(time: float, direction: int) -> float:
@@ -115,7 +115,7 @@ class Rocking:
         else:
             self.mode = "up"
 
-    def _direction(self, piece: Piece) -> int:
+    def _direction(self, piece: PitchedPiece) -> int:
         """Sign of the velocity, of the moment where there is none, 0 where friction holds the block."""
         if self.rate != 0.0:
             return 1 if self.rate > 0.0 else -1
@@ -131,13 +131,13 @@ class Rocking:
         """theta (rad), theta' (rad s-1), energy lost since (J), and the extra degrees of freedom."""
         return np.array([self.theta, self.rate, 0.0, *self.extra])
 
-    def _rates(self, time: float, y: FloatArray, direction: int, piece: Piece) -> tuple[float, ...]:
+    def _rates(self, time: float, y: FloatArray, direction: int, piece: PitchedPiece) -> tuple[float, ...]:
         """Time derivative of `_state` while the block rocks; ``direction`` is the sign of theta'."""
         theta, rate, _ = y.tolist()
         second, power = self.equation.acceleration(theta, rate, self.side, direction, self.largest, piece.at(time))
         return rate, second, power
 
-    def _more_events(self, piece: Piece, direction: int) -> Named:
+    def _more_events(self, piece: PitchedPiece, direction: int) -> Named:
         """Events of the extra degrees of freedom, as (kind, function of time and state, sense)."""
         return []
 
@@ -150,7 +150,7 @@ class Rocking:
         now, outward = abs(self.theta), direction == self.side
         return [a for a in angles if (a > now + 1e-12 if outward else 1e-12 < a < now - 1e-12)]
 
-    def _rock(self, piece: Piece, shaken: bool) -> None:
+    def _rock(self, piece: PitchedPiece, shaken: bool) -> None:
         eq, side = self.equation, self.side
         direction = self._direction(piece)
         if direction == 0:
@@ -243,7 +243,7 @@ class Rocking:
             return abs(self.rate) / -min(now, later)
         return math.inf
 
-    def _happen(self, kind: str, piece: Piece) -> None:
+    def _happen(self, kind: str, piece: PitchedPiece) -> None:
         if kind == "turn":
             self.rate = 0.0
         elif kind == "impact":
@@ -271,7 +271,7 @@ class Rocking:
         )
         return float(ratio[0])
 
-    def _impact(self, piece: Piece) -> None:
+    def _impact(self, piece: PitchedPiece) -> None:
         eq, before = self.equation, self.rate
         old, new = eq.half_width(self.side, self.largest), eq.half_width(-self.side, self.largest)
         after = self._ratio(old, new) * before
@@ -294,14 +294,14 @@ class Rocking:
             self.rate, self.mode = 0.0, "rest"
             self.events.append(Event(self.time, "rest"))
 
-    def _demand(self, solution: Any, piece: Piece, direction: int) -> None:
+    def _demand(self, solution: Any, piece: PitchedPiece, direction: int) -> None:
         """Largest friction demand over eight points of every step just taken."""
         nodes = solution.t
         fine = np.interp(np.linspace(0, nodes.size - 1, 8 * (nodes.size - 1) + 1), np.arange(nodes.size), nodes)
         for time, y in zip(fine.tolist(), solution.sol(fine).T, strict=True):
             self.friction = max(self.friction, self._needed(time, y, piece, direction))
 
-    def _needed(self, time: float, y: FloatArray, piece: Piece, direction: int) -> float:
+    def _needed(self, time: float, y: FloatArray, piece: PitchedPiece, direction: int) -> float:
         theta, rate = y[:2].tolist()
         second = self._rates(time, y, direction, piece)[1]
         return self.equation.friction_demand(theta, rate, second, self.side, self.largest, piece.at(time))

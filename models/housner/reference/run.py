@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import math
 
+from models.ground import pitched_pieces
 from models.housner.block import Block
 from models.housner.reference.equation import Equation
 from models.housner.reference.flexure import Bending
 from models.housner.reference.flight import Bouncing
-from models.housner.reference.ground import pieces
 from models.housner.reference.rocking import Rocking
 from models.housner.reference.slip import Sliding
 from models.runs import Request, Run
@@ -31,7 +31,8 @@ def run(block: Block, request: Request, rtol: float = 1e-10) -> Run:
     body.begin(start.get("rotation_1", 0.0), start.get("rotation_rate_1", 0.0))
     body.largest = max(body.largest, start.get("peak_rotation_1", 0.0))
     body.earlier = start.get("impacts", 0.0)
-    for piece in pieces(block, request.shaking, float(request.scale[0]), request.until):
+    pitching = float(block.pitch_per_acceleration[0]), float(block.pitch_low_pass[0])
+    for piece in pitched_pieces(block, request.shaking, float(request.scale[0]), request.until, *pitching):
         body.advance(piece, shaken=piece.start < request.shaking.duration)
         if body.finished:
             break

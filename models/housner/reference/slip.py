@@ -21,9 +21,9 @@ import math
 import numpy as np
 
 from models.base import Event, FloatArray
+from models.ground import PitchedPiece
 from models.housner.declaration import REST_VELOCITY
 from models.housner.reference.equation import Equation
-from models.housner.reference.ground import Piece
 from models.housner.reference.rocking import Named, Rocking, first_positive
 
 JAM = 0.05
@@ -60,25 +60,25 @@ class Sliding(Rocking):
             second, slip, across, up = np.linalg.solve([*rows, [0.0, 0.0, 1.0, 0.0]], right).tolist()
         return second, slip, across, up
 
-    def _rates(self, time: float, y: FloatArray, direction: int, piece: Piece) -> tuple[float, ...]:
+    def _rates(self, time: float, y: FloatArray, direction: int, piece: PitchedPiece) -> tuple[float, ...]:
         theta, rate, _, _, v = y.tolist()
         ground = piece.at(time)
         second, slip, across, _ = self._contact(theta, rate, self.way, direction, ground)
         _, power = self.equation.acceleration(theta, rate, self.side, direction, self.largest, ground)
         return rate, second, power - (across * v if self.way else 0.0), v, slip
 
-    def _excess(self, time: float, y: FloatArray, direction: int, piece: Piece) -> float:
+    def _excess(self, time: float, y: FloatArray, direction: int, piece: PitchedPiece) -> float:
         _, _, across, up = self._contact(float(y[0]), float(y[1]), 0, direction, piece.at(time))
         return abs(across) - self.mu * max(up, 0.0)
 
-    def _more_events(self, piece: Piece, direction: int) -> Named:
+    def _more_events(self, piece: PitchedPiece, direction: int) -> Named:
         if self.way:
             return [("stop", lambda time, y: self.way * float(y[4]), -1)]
         if self.jammed:
             return []
         return [("slip", lambda time, y: self._excess(time, y, direction, piece), 1)]
 
-    def _rock(self, piece: Piece, shaken: bool) -> None:
+    def _rock(self, piece: PitchedPiece, shaken: bool) -> None:
         if self.way == 0 and self._excess(self.time, self._state(), self._sense(), piece) > 0.0:
             self._start(piece)
         elif self.way and self._jams(self.way):
@@ -89,7 +89,7 @@ class Sliding(Rocking):
     def _sense(self) -> int:
         return self.side if self.rate == 0.0 else int(math.copysign(1.0, self.rate))
 
-    def _start(self, piece: Piece) -> None:
+    def _start(self, piece: PitchedPiece) -> None:
         _, _, across, _ = self._contact(self.theta, self.rate, 0, self._sense(), piece.at(self.time))
         way = -1 if across > 0.0 else 1
         self.jammed = self._jams(way)
@@ -110,7 +110,7 @@ class Sliding(Rocking):
         self.lost += before - 0.5 * inertia * self.rate**2
         self.way, self.jammed, self.extra = 0, True, (u, 0.0)
 
-    def _happen(self, kind: str, piece: Piece) -> None:
+    def _happen(self, kind: str, piece: PitchedPiece) -> None:
         if kind == "slip":
             self._start(piece)
         elif kind == "stop":
@@ -118,14 +118,14 @@ class Sliding(Rocking):
         else:
             super()._happen(kind, piece)
 
-    def _needed(self, time: float, y: FloatArray, piece: Piece, direction: int) -> float:
+    def _needed(self, time: float, y: FloatArray, piece: PitchedPiece, direction: int) -> float:
         _, _, across, up = self._contact(float(y[0]), float(y[1]), self.way, direction, piece.at(time))
         return abs(across) / up if up > 0.0 else math.inf
 
     def _shift(self, y: FloatArray) -> FloatArray:
         return np.asarray(y[3])
 
-    def _wait(self, piece: Piece, shaken: bool) -> None:
+    def _wait(self, piece: PitchedPiece, shaken: bool) -> None:
         eq = self.equation
 
         def loads(time: float) -> tuple[float, float]:
@@ -163,7 +163,7 @@ class Sliding(Rocking):
         if kind == "stop":
             self._happen(kind, piece)
 
-    def _tips(self, piece: Piece) -> int:
+    def _tips(self, piece: PitchedPiece) -> int:
         """The side onto which the block in full contact is lifted at once, 0 when it is not."""
         a, gravity, pitching = piece.at(self.time)
         push = a + self.equation.height * pitching
@@ -172,7 +172,7 @@ class Sliding(Rocking):
         ground = a + held - push, gravity, pitching
         return next((s for s in (1, -1) if self.equation.excess(s, self.largest, ground) > 0.0), 0)
 
-    def _impact(self, piece: Piece) -> None:
+    def _impact(self, piece: PitchedPiece) -> None:
         eq, (u, v), before, s = self.equation, self.extra, self.rate, self.side
         h, m, inertia, mu = eq.height, eq.mass, eq.inertia, self.mu
         old, new = eq.half_width(s, self.largest), eq.half_width(-s, self.largest)

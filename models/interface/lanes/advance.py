@@ -13,7 +13,10 @@ import numpy as np
 
 from models.interface.declaration import CALM
 from models.interface.lanes.along import N_WORK_LAWS
-from models.interface.lanes.fibres import fibres_all
+from models.interface.lanes.effects.begin import load_pitch, pitch_on, vacate
+from models.interface.lanes.effects.rows import X1
+from models.interface.lanes.effects.step import predict, step, strips_of_fibres
+from models.interface.lanes.fibres import fibres_all, sided_fibres
 from models.interface.lanes.rows import (
     CLOCK,
     FLAG,
@@ -55,14 +58,15 @@ def note_joints(log: Table, count: Counts, was: Table, w: Table, lane: int, slot
 @compiled
 def advance(
     record: Record, first: Counts, last: Counts, given: Table, tables: Tables, sampled: bool, mixed: Any, laws: Any,
-    rubber: Any,
+    rubber: Any, more: Any,
 ) -> int:  # fmt: skip
     """Run every lane from sample ``first`` to ``last``; returns the number of lane-steps computed.
 
     The record is linear between its samples, and each lane takes its own number of steps per sample. The trace
     (n, m, 8) takes q and q' at every sample if ``sampled``, else a lane ends when it has come to rest; the log takes
     uplifts, closings, rest and overturning. ``mixed``, ``laws``: see `step`;
-    ``rubber``: the `Rubber` of `models.interface.lanes.fibres` if there are laws.
+    ``rubber``: the `Rubber` of `models.interface.lanes.fibres` if there are laws. ``more``: None or the `More` of
+    walls with effects, whose other coordinates the trace (n, m, 16) holds after the plain ones.
     """
     samples, time_step, shaken = record.samples, record.step, record.shaken
     result, trace, log, count = tables.result, tables.trace, tables.log, tables.length
@@ -77,6 +81,8 @@ def advance(
     logged = log.shape[1] > 0
     for slot in range(W):
         empty(w, slot)
+        if more is not None:
+            vacate(more, slot)
     while True:
         # --- settle lanes at their boundaries, fill empty slots
         active = 0
@@ -91,15 +97,19 @@ def advance(
                     waiting += 1
                     at[slot], bound[slot], window[slot] = first[lane], first[lane], -1
                     per[slot] = int(given[lane, Q_STEPS])
-                    start(given, result, w, lane, slot, samples, at[slot], time_step, logged, mixed, laws, rubber)
+                    start(given, result, w, lane, slot, samples, at[slot], time_step, logged, mixed, laws, rubber, more)
                 if at[slot] < bound[slot]:
                     break
                 i = at[slot]
                 if sampled and i - first[lane] < trace.shape[1]:
                     for k in range(8):
                         trace[lane, i - first[lane], k] = w[T1 + k, slot]
+                        if more is not None:
+                            trace[lane, i - first[lane], 8 + k] = more.own[X1 + k, slot]
                 if i == shaken and i > first[lane]:
-                    consistent(w, slot, 0.0, 0.0, mixed, laws)
+                    if more is not None:
+                        load_pitch(more, slot, samples, i, shaken, 1.0)
+                    consistent(w, slot, 0.0, 0.0, mixed, laws, more)
                 ended = i >= last[lane]
                 if i >= shaken and i >= window[slot]:
                     if at_rest(w, slot, CALM) and window[slot] >= 0:
@@ -108,14 +118,18 @@ def advance(
                         ended = ended or not sampled
                     window[slot] = i + 1 + int(given[lane, Q_PERIOD] / time_step)
                 if ended:
-                    finish(result, w, lane, slot, False, laws, rubber)
+                    finish(result, w, lane, slot, False, laws, rubber, more)
                     lane = -1
                     empty(w, slot)
+                    if more is not None:
+                        vacate(more, slot)
                     continue
                 bound[slot] = min(last[lane], shaken if i < shaken else window[slot])
                 if sampled:
                     bound[slot] = i + 1
                 load(w, slot, samples, i, shaken, float(per[slot]))
+                if more is not None:
+                    load_pitch(more, slot, samples, i, shaken, float(per[slot]))
                 break
             of[slot] = lane
             active += 1 if lane >= 0 else 0
@@ -139,9 +153,17 @@ def advance(
             if logged:
                 for slot in range(W):
                     was[0, slot], was[1, slot] = w[LIFT_B, slot], w[LIFT_T, slot]
-            if laws is not None:
-                fibres_all(flat, rubber.base, rubber.top)
-            flagged = step_all(w, mixed, laws)
+            if more is None:
+                if laws is not None:
+                    fibres_all(flat, rubber.base, rubber.top)
+                flagged = step_all(w, mixed, laws)
+            else:
+                pitch_on(more)
+                predict(w, more)
+                if laws is not None:
+                    strips_of_fibres(w, more)
+                    sided_fibres(flat, rubber.base, rubber.top)
+                flagged = step(w, more, laws)
             steps += active
             if flagged > 0:
                 for slot in range(W):
@@ -154,13 +176,17 @@ def advance(
                         if logged:
                             body = 1.0 if abs(w[T1, slot]) >= HALF_TURN else 2.0
                             note(log, count, lane, w[CLOCK, slot] * w[STEP, slot], LOG_OVERTURNED, body)
-                        finish(result, w, lane, slot, True, laws, rubber)
+                        finish(result, w, lane, slot, True, laws, rubber, more)
                         of[slot] = -1
                         empty(w, slot)
+                        if more is not None:
+                            vacate(more, slot)
                         settle = True
             # --- lanes that have come to a sample take up its growth, whatever becomes of the others
             for slot in range(W):
                 if sub[slot] == 0 and of[slot] >= 0 and at[slot] < bound[slot]:
                     load(w, slot, samples, at[slot], shaken, float(per[slot]))
+                    if more is not None:
+                        load_pitch(more, slot, samples, at[slot], shaken, float(per[slot]))
             if settle:
                 break

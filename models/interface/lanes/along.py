@@ -32,22 +32,24 @@ PLACES = [rubber.Places(LAST[joint] + APART * W, APART * W, P_LAWS[joint], W) fo
 
 
 @inlined
-def _strip(w: Table, joint: int, i: int) -> Any:
-    """Of a joint of one lane: b S, z, c b S', c z', k, the least stress."""
+def _strip(w: Table, joint: int, f0: int, i: int, sided: bool) -> Any:
+    """Of a joint of one lane: b S, z, c b S', c z', k, the least stress, and the factor on the springs from f0 on."""
     return (
         w[(r.FS_B + joint) * W + i], w[(r.FZ_B + joint) * W + i], w[(r.FR_B + joint) * W + i],
         w[(r.FY_B + joint) * W + i], w[(r.KB + joint) * W + i], w[r.FLOOR * W + i],
+        w[(r.FACTOR_L + (0 if f0 < COUNT // 2 else 1)) * W + i] if sided else 1.0,
     )  # fmt: skip
 
 
 @inlined
 def _beyond(f: int, strip: Any, u: float, more: float, slope: float) -> tuple[float, float]:
     """Stress of one fibre beyond the linear one, both clipped under law B, and its slope."""
-    turn, z, turn_drag, drag, k, floor = strip
-    linear = k * u + (NODES[f] * turn_drag - drag)
-    total = linear + more
+    turn, z, turn_drag, drag, k, floor, factor = strip
+    linear = factor * k * u + (NODES[f] * turn_drag - drag)
+    total = linear + factor * more
     touching = NODES[f] * turn - z > 0.0
-    return max(total, floor) - max(linear, floor) if touching else 0.0, slope if touching & (total > floor) else 0.0
+    stress = max(total, floor) - max(linear, floor) if touching else 0.0
+    return stress, factor * slope if touching & (total > floor) else 0.0
 
 
 @inlined
@@ -62,7 +64,7 @@ def _add(w: Table, joint: int, f0: int, i: int, four: Any) -> None:
     w[(r.F3_B + joint) * W + i] += SECOND[f0] * d0 + SECOND[f1] * d1 + SECOND[f2] * d2 + SECOND[f3] * d3
 
 
-def _alone(law: RubberLaw, joint: int) -> Callable[..., None]:
+def _alone(law: RubberLaw, joint: int, sided: bool) -> Callable[..., None]:
     """Compiled ``(w, f0, i)``: four fibres of a joint of one lane under one law beside the linear one."""
     numbers, respond = rubber.responding((law,), PLACES[joint])
     looks_back, last = rubber.looks_back((law,)), LAST[joint]
@@ -78,7 +80,7 @@ def _alone(law: RubberLaw, joint: int) -> Callable[..., None]:
 
     @inlined
     def four(w: Table, f0: int, i: int) -> None:
-        strip, n = _strip(w, joint, i), numbers(w, i)
+        strip, n = _strip(w, joint, f0, i, sided), numbers(w, i)
         _add(
             w, joint, f0, i,
             (fibre(w, f0, i, strip, n), fibre(w, f0 + 1, i, strip, n), fibre(w, f0 + 2, i, strip, n),
@@ -126,7 +128,7 @@ def _pass(law: RubberLaw, joint: int) -> Callable[..., None]:
     return four
 
 
-def _end(joint: int) -> Callable[..., None]:
+def _end(joint: int, sided: bool) -> Callable[..., None]:
     """Compiled ``(w, f0, i)``: what a combination adds to the sums by four fibres."""
 
     @inlined
@@ -137,7 +139,7 @@ def _end(joint: int) -> Callable[..., None]:
 
     @inlined
     def four(w: Table, f0: int, i: int) -> None:
-        strip = _strip(w, joint, i)
+        strip = _strip(w, joint, f0, i, sided)
         _add(
             w, joint, f0, i,
             (fibre(w, f0, i, strip), fibre(w, f0 + 1, i, strip), fibre(w, f0 + 2, i, strip),
@@ -161,8 +163,8 @@ def _over_all(four: Callable[..., None]) -> Callable[..., None]:
     return all_fibres
 
 
-def _joint(laws: Sequence[RubberLaw], joint: int) -> Callable[..., None]:
-    """Compiled ``(w, which)``: the fibres of one joint of all lanes."""
+def _joint(laws: Sequence[RubberLaw], joint: int, sided: bool = False) -> Callable[..., None]:
+    """Compiled ``(w, which)``: the fibres of one joint of all lanes; ``sided``: a factor on the springs of a half."""
     if not laws:
 
         @inlined
@@ -171,14 +173,14 @@ def _joint(laws: Sequence[RubberLaw], joint: int) -> Callable[..., None]:
 
         return nothing
     if len(laws) == 1:
-        alone = _over_all(_alone(laws[0], joint))
+        alone = _over_all(_alone(laws[0], joint, sided))
 
         @inlined
         def one(w: Table, which: Any) -> None:
             alone(w)
 
         return one
-    begin, end = _over_all(_begin(joint)), _over_all(_end(joint))
+    begin, end = _over_all(_begin(joint)), _over_all(_end(joint, sided))
     passes = rubber.guarded([_over_all(_pass(law, joint)) for law in laws])
 
     @inlined
@@ -191,3 +193,4 @@ def _joint(laws: Sequence[RubberLaw], joint: int) -> Callable[..., None]:
 
 
 base_fibres, top_fibres = (rubber.chosen([_joint(laws, joint) for laws in rubber.VARIANTS]) for joint in range(2))
+sided_base_fibres = rubber.chosen([_joint(laws, 0, sided=True) for laws in rubber.VARIANTS])

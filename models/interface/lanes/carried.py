@@ -8,14 +8,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.base import FloatArray
-from models.interface import modes
+from models.interface import modes, resting
 from models.interface.declaration import STATES
+from models.interface.effects import MEMORIES
+from models.interface.effects import STATES as OTHER_STATES
 from models.interface.lanes import rows as r
 from models.interface.lanes.carry import carry as advance
+from models.interface.lanes.effects.given import given_effects
+from models.interface.lanes.effects.rows import N_ENDED
 from models.interface.lanes.laws import HISTORY, given_laws, some
-from models.interface.lanes.run import given_table, substeps
+from models.interface.lanes.run import given_table, low_passes, pitching, substeps
 from models.interface.layered import LayeredWall
 from models.lanes.record import recorded
+from models.lanes.tables import groups
 from models.shaking import Shaking
 
 
@@ -31,25 +36,36 @@ def carry(
 
     As `models.model.Model.carry`.
     """
-    rest = modes.static_state(wall)
+    at_rest, effects = resting.at_rest(wall), wall.effects
+    rest = at_rest[:, :4]
     begun = {**initial, **{name: x[:, 0] for name, x in motion.items()}}
     given = given_table(wall, np.ones(wall.size), begun, rest)
     steps = substeps(wall, modes.at_rest(wall, rest).squares, shaking.time_step)
     given[:, r.Q_STEPS] = steps
-    laws = given_laws(wall, rest, shaking.time_step / steps, initial)
+    laws = given_laws(wall, at_rest, shaking.time_step / steps, initial)
     held = np.array([k for k, name in enumerate(STATES) if name in motion], np.int64)
     prescribed = np.stack([motion[STATES[k]] for k in held], axis=-1)
-    record = recorded(shaking, 1, 0.0)
     states = np.zeros((wall.size, marks.size, len(STATES)))
+    others = np.zeros((wall.size, marks.size, N_ENDED))
     history = np.zeros((wall.size, marks.size, *(() if laws is None else laws.hidden.shape[1:])))
-    for per in np.unique(steps):
-        lanes = np.flatnonzero(steps == per)
-        of_lanes, past = np.zeros((lanes.size, *states.shape[1:])), np.zeros((lanes.size, *history.shape[1:]))
+    for (_, corner), lanes in groups(steps, low_passes(wall)):
+        part = wall.take(lanes)
+        moved, past, more_moved = (np.zeros((lanes.size, *whole.shape[1:])) for whole in (states, history, others))
+        more = None if effects is None else given_effects(part, part.effects, _of(begun, lanes), at_rest[lanes])
         advance(
-            record, first[lanes], given[lanes], prescribed if prescribed.shape[0] == 1 else prescribed[lanes], held,
-            marks, of_lanes, past, None if wall.joints == "both" else True, None if laws is None else True,
-            None if laws is None else some(laws, lanes),
+            recorded(shaking, 1, 0.0, pitching(wall, shaking, corner)), first[lanes], given[lanes],
+            prescribed if prescribed.shape[0] == 1 else prescribed[lanes], held, marks,
+            moved, past, more_moved,
+            None if wall.joints == "both" or more is not None else True, None if laws is None else True,
+            None if laws is None else some(laws, lanes), more,
         )  # fmt: skip
-        states[lanes], history[lanes] = of_lanes, past
+        states[lanes], history[lanes], others[lanes] = moved, past, more_moved
     found = {name: states[:, :, k] for k, name in enumerate(STATES) if name not in motion}
+    if effects is not None:
+        found |= {name: others[:, :, k] for k, name in enumerate((*OTHER_STATES, *MEMORIES))}
     return found if laws is None else {**found, HISTORY: history}
+
+
+def _of(initial: Mapping[str, FloatArray], lanes: NDArray[np.intp]) -> dict[str, FloatArray]:
+    """The initial states of some lanes."""
+    return {name: x[lanes] if x.shape[0] > 1 else x for name, x in initial.items()}

@@ -12,8 +12,12 @@ from typing import Any
 import numpy as np
 
 from models.interface.fibres import COUNT
-from models.interface.lanes.fibres import APART, LAST, N_WORK_LAWS, fibres_all
-from models.interface.lanes.rows import GROWTH_A, GROWTH_V, N_RESULT, N_WORK, Q_STEPS, RA, RV, T1, W
+from models.interface.lanes.along import APART, LAST, N_WORK_LAWS
+from models.interface.lanes.effects import rows as e
+from models.interface.lanes.effects.begin import load_pitch, pitch_on, vacate
+from models.interface.lanes.effects.step import predict, step, strips_of_fibres
+from models.interface.lanes.fibres import fibres_all, sided_fibres
+from models.interface.lanes.rows import GROWTH_A, GROWTH_V, N_RESULT, N_WORK, Q_STEPS, RA, RV, T1, V1, W
 from models.interface.lanes.settle import empty, load, start
 from models.interface.lanes.step import step_all
 from models.lanes.arrays import Counts, Record, Table
@@ -24,13 +28,14 @@ from models.rubber.lanes import N_HIDDEN
 @compiled
 def carry(
     record: Record, first: Counts, given: Table, motion: Table, held: Counts, marks: Counts, states: Table,
-    history: Table, mixed: Any, laws: Any, rubber: Any,
+    history: Table, others: Table, mixed: Any, laws: Any, rubber: Any, more: Any,
 ) -> None:  # fmt: skip
     """Run n lanes from sample ``first`` (n,), each as many steps a sample as the first of them takes.
 
     ``motion`` (1 or n, m, h): the states ``held`` (h,), by their place among the model's, at the samples from ``first``
     on. ``marks`` (k,), counted from ``first``, in order: where ``states`` (n, k, 8) and ``history`` (n, k, joints,
-    laws, fibres) are written. ``mixed``, ``laws``, ``rubber``: as of `models.interface.lanes.advance.advance`.
+    laws, fibres) are written, and ``others`` (n, k, 12) of walls with effects (`More.ended`). ``mixed``, ``laws``,
+    ``rubber``, ``more``: as of `models.interface.lanes.advance.advance`.
     """
     n, per = given.shape[0], int(given[0, Q_STEPS])
     result = np.zeros((n, N_RESULT))
@@ -40,10 +45,24 @@ def carry(
         count = min(W, n - begin)
         for slot in range(W):
             empty(w, slot)
+            if more is not None:
+                vacate(more, slot)
             if slot < count:
                 lane = begin + slot
                 start(
-                    given, result, w, lane, slot, record.samples, first[lane], record.step, False, mixed, laws, rubber
+                    given,
+                    result,
+                    w,
+                    lane,
+                    slot,
+                    record.samples,
+                    first[lane],
+                    record.step,
+                    False,
+                    mixed,
+                    laws,
+                    rubber,
+                    more,
                 )
         mark = 0
         for i in range(marks[-1] + 1):
@@ -51,10 +70,17 @@ def carry(
                 row = begin + slot if motion.shape[0] > 1 else 0
                 for k in range(held.size):
                     w[T1 + held[k], slot] = motion[row, i, k]
+                if more is not None and more.own[e.FREE_M, slot] == 0.0:
+                    more.own[e.TM, slot], more.own[e.VTM, slot] = w[T1, slot], w[V1, slot]
             while mark < marks.size and marks[mark] == i:
                 for slot in range(count):
                     for k in range(states.shape[2]):
                         states[begin + slot, mark, k] = w[T1 + k, slot]
+                    if more is not None:
+                        for k in range(8):
+                            others[begin + slot, mark, k] = more.own[e.X1 + k, slot]
+                        for k in range(4):
+                            others[begin + slot, mark, 8 + k] = more.own[e.CLOSINGS + k, slot]
                     if laws is not None:
                         for joint in range(2):
                             for law in range(N_HIDDEN):
@@ -65,10 +91,20 @@ def carry(
             for slot in range(count):
                 at_sample = min(first[begin + slot] + i, record.shaken)
                 load(w, slot, record.samples, at_sample, record.shaken, float(per))
+                if more is not None:
+                    load_pitch(more, slot, record.samples, at_sample, record.shaken, float(per))
             for _ in range(per):
                 for slot in range(W):
                     w[RA, slot] += w[GROWTH_A, slot]
                     w[RV, slot] += w[GROWTH_V, slot]
-                if laws is not None:
-                    fibres_all(flat, rubber.base, rubber.top)
-                step_all(w, mixed, laws)
+                if more is None:
+                    if laws is not None:
+                        fibres_all(flat, rubber.base, rubber.top)
+                    step_all(w, mixed, laws)
+                else:
+                    pitch_on(more)
+                    predict(w, more)
+                    if laws is not None:
+                        strips_of_fibres(w, more)
+                        sided_fibres(flat, rubber.base, rubber.top)
+                    step(w, more, laws)

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from models.interface.fibres import COUNT, NODES
 from models.interface.lanes import rows as r
-from models.interface.lanes.along import APART, LAST, N_WORK_LAWS, P_LAWS, base_fibres, top_fibres
+from models.interface.lanes.along import APART, LAST, N_WORK_LAWS, P_LAWS, base_fibres, sided_base_fibres, top_fibres
 from models.interface.lanes.rows import W
 from models.lanes.arrays import Table
 from models.lanes.compiler import called, inlined
@@ -71,22 +71,39 @@ def lengths(w: Table, joint: int, i: int) -> None:
 @called
 def fibres_all(w: Table, base: Any, top: Any) -> None:
     """The fibres of all lanes at the predictor of the coming step, with the variants of a `Rubber`."""
-    lanes = w.size // N_WORK_LAWS
-    for i in range(lanes):
+    for i in range(w.size // N_WORK_LAWS):
         predicted_strips(w, i)
     base_fibres(w, base)
     top_fibres(w, top)
-    for i in range(lanes):
+    integrate(w)
+
+
+@called
+def sided_fibres(w: Table, base: Any, top: Any) -> None:
+    """As `fibres_all` of lanes with effects, whose strips at the predictor are known."""
+    sided_base_fibres(w, base)
+    top_fibres(w, top)
+    integrate(w)
+
+
+@inlined
+def integrate(w: Table) -> None:
+    """The sums over [-1, 1] of all lanes to integrals over the joints."""
+    for i in range(w.size // N_WORK_LAWS):
         # no loop over the joints: it would not become vector code
         lengths(w, 0, i)
         lengths(w, 1, i)
 
 
 @called
-def fibres_at_start(w: Table, laws: Rubber, lane: int, slot: int) -> None:
-    """A lane's fibres in the state from which it starts: their forces there first, then its history begins."""
+def fibres_at_start(w: Table, laws: Rubber, lane: int, slot: int, more: Any, upper: float) -> None:
+    """A lane's fibres in the state from which it starts: their forces there first, then its history begins.
+
+    ``upper``: angle (rad) of what the block stands on; ``more``: None without effects.
+    """
     w[r.STEP * W + slot], kept = 0.0, w[r.STEP * W + slot]
     predicted_strips(w, slot)
+    w[r.FS_T * W + slot] = w[r.BT * W + slot] * sine_cosine(w[r.T2 * W + slot] - upper)[0]
     for joint in range(2):
         for row in range(rubber.N_NUMBERS):
             w[P_LAWS[joint] + row * W + slot] = laws.numbers[lane, joint, row]
@@ -97,7 +114,10 @@ def fibres_at_start(w: Table, laws: Rubber, lane: int, slot: int) -> None:
                 w[LAST[joint] + ((row + 1) * APART + f) * W + slot] = laws.hidden[lane, joint, row, f]
     # in a table of its own, so that no history moves
     alone = w.copy()
-    fibres_all(alone, laws.base, laws.top)
+    if more is None:
+        fibres_all(alone, laws.base, laws.top)
+    else:
+        sided_fibres(alone, laws.base, laws.top)
     for row in range(r.FN_B, r.FN_B + 10):
         w[row * W + slot] = alone[row * W + slot]
     w[r.STEP * W + slot] = kept

@@ -24,15 +24,16 @@ def given_laws(
 ) -> Rubber | None:
     """Layers of n walls for steps of ``step`` (n,) seconds; None without laws.
 
-    With the history that ``initial`` holds, else relaxed at ``rest`` (n, 4).
+    With the history that ``initial`` holds, else relaxed at ``rest`` (n, 8).
     """
     if not wall.laws:
         return None
     numbers = np.stack([rubber.number_table(wall.laws_at(joint), step) for joint in JOINTS], axis=1)
     hidden = np.zeros((wall.size, 2, rubber.N_HIDDEN, COUNT))
+    angles = rest[:, 0], rest[:, 1] - (rest[:, 0] if wall.coordinates < 8 else rest[:, 6])
     for k, joint in enumerate(JOINTS):
         if HISTORY not in initial and (laws := wall.laws_at(joint)):
-            hidden[:, k] = rubber.hidden_table(laws, Fibres(wall, joint).relaxed(-rest[:, 2 + k]))
+            hidden[:, k] = rubber.hidden_table(laws, Fibres(wall, joint).relaxed(rest[:, 2 + k], angles[k]))
     if HISTORY in initial:
         hidden = np.ascontiguousarray(initial[HISTORY])
     base, top = (rubber.variant_for(wall.laws_at(joint)) for joint in JOINTS)

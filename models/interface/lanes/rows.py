@@ -25,8 +25,10 @@ W = 16
     FZ_B, FZ_T, FS_B, FS_T, FY_B, FY_T, FR_B, FR_T, FN_B, FN_T, FM_B, FM_T, F1_B, F1_T, F2_B, F2_T, F3_B, F3_T, FLOOR,
     # whether uplifts and closings are to be logged, whether the lane needs attention
     LOGGED, FLAG,
-) = range(94)  # fmt: skip
-N_WORK = 94
+    # of lanes with effects: sine of the wall's rotation, factors on the base's stiffness at x < 0 and x > 0
+    LEAN, FACTOR_L, FACTOR_R,
+) = range(97)  # fmt: skip
+N_WORK = 97
 CONSTANTS = tuple(range(SCALE, FREE_T + 1))
 """Rows copied from ``given``, in this order."""
 

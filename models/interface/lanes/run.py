@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from models.base import STATUS, FloatArray
-from models.interface import modes
+from models.interface import modes, resting
 from models.interface.declaration import STATES
 from models.interface.lanes import rows as r
 from models.interface.lanes.advance import advance
+from models.interface.lanes.effects.given import energy, given_effects
+from models.interface.lanes.effects.rows import CONSTANTS
 from models.interface.lanes.laws import given_laws, stored_in_layers
 from models.interface.lanes.sense import diverged
 from models.interface.layered import LayeredWall
 from models.interface.observe import with_onset
+from models.lanes.arrays import Tables
 from models.lanes.record import recorded
-from models.lanes.tables import empty, filled, logged
+from models.lanes.tables import empty, filled, groups, logged, put
+from models.pitch import pitch
 from models.runs import Request, Run
+from models.shaking import Shaking
 
 EVENTS = ("uplift", "closing", "rest", "overturned")
 LARGEST_PHASE = (0.1, 0.4)
@@ -59,28 +64,63 @@ def given_table(
 
 
 def run(wall: LayeredWall, request: Request, refinement: int = 1) -> Run:
-    """Run n lanes of ``wall`` as requested; ``refinement`` divides every step. Samples: q, q'."""
-    shaking = request.shaking
-    record = recorded(shaking, 1, request.tail)
-    rest = modes.static_state(wall)
+    """Run n lanes of ``wall`` as requested; ``refinement`` divides every step. Samples: q, q'.
+
+    Of walls with effects q, q' of the plain coordinates, then those of the others.
+    """
+    columns = 8 if wall.effects is None else 16
+    found, steps = empty(request, r.N_RESULT, columns), 0
+    for (corner,), lanes in groups(low_passes(wall)):
+        part, asked = wall.take(lanes), request.take(lanes)
+        tables = empty(asked, r.N_RESULT, columns)
+        steps += _advanced(part, asked, refinement, corner, tables)
+        put(found, lanes, tables)
+    result = found.result
+    lost = diverged(wall, request, result)
+    result[:, r.R_FAILED] = np.maximum(result[:, r.R_FAILED], lost)
+    return Run(outputs(wall, result), found.trace, with_onset(logged(found, EVENTS)), steps)
+
+
+def low_passes(wall: LayeredWall) -> FloatArray:
+    """Hz, (n,), of bases that pitch; 0 of others."""
+    e = wall.effects
+    return np.zeros(wall.size) if e is None else np.where(e.pitch != 0.0, e.pitch_low_pass, 0.0)
+
+
+def pitching(wall: LayeredWall, shaking: Shaking, low_pass: float) -> Sequence[FloatArray | None]:
+    """Channels of the record beyond a and a_z: psi and psi'' below ``low_pass`` (Hz; 0: none) for a pitch of 1."""
+    if wall.effects is None or "table_pitch" not in wall.effects.parts:
+        return ()
+    return pitch(shaking.horizontal, shaking.time_step, low_pass) if low_pass > 0.0 else (None, None)
+
+
+def _advanced(wall: LayeredWall, request: Request, refinement: int, low_pass: float, tables: Tables) -> int:
+    """Fill ``tables`` for lanes whose base pitches below ``low_pass`` (Hz; 0: not at all); returns the lane-steps."""
+    shaking, effects = request.shaking, wall.effects
+    record = recorded(shaking, 1, request.tail, pitching(wall, shaking, low_pass))
+    at_rest = resting.at_rest(wall)
+    rest = at_rest[:, :4]
     squares = modes.at_rest(wall, rest).squares
     given = given_table(wall, request.scale, request.initial, rest)
     given[:, r.Q_PERIOD] = 2.0 * np.pi / np.sqrt(np.abs(squares[:, 0]))
     given[:, r.Q_STEPS] = substeps(wall, squares, shaking.time_step) * refinement
-    laws = given_laws(wall, rest, shaking.time_step / given[:, r.Q_STEPS], request.initial)
-    tables = empty(request, r.N_RESULT, 8)
+    laws = given_laws(wall, at_rest, shaking.time_step / given[:, r.Q_STEPS], request.initial)
+    more = None if effects is None else given_effects(wall, effects, request.initial, at_rest)
     steps = advance(
         record, *request.steps(1, record.end), given, tables, request.history,
-        None if wall.joints == "both" else True, None if laws is None else True, laws,
+        None if wall.joints == "both" or more is not None else True, None if laws is None else True, laws, more,
     )  # fmt: skip
-    before = stored_in_layers(wall, given[:, r.Q_STATE : r.Q_STATE + 4], None if laws is None else laws.hidden)
-    result = tables.result
+    result, first = tables.result, given[:, r.Q_STATE : r.Q_STATE + 4]
+    hidden = (None, None) if laws is None else (laws.hidden, laws.ended)
     with np.errstate(invalid="ignore", over="ignore"):
-        after = stored_in_layers(wall, result[:, r.R_END_1 : r.R_END_Z2 + 1], None if laws is None else laws.ended)
-        result[:, r.R_LOST_B : r.R_LOST_T + 1] += before - after
-    lost = diverged(wall, request, result)
-    result[:, r.R_FAILED] = np.maximum(result[:, r.R_FAILED], lost)
-    return Run(outputs(wall, result), tables.trace, with_onset(logged(tables, EVENTS)), steps)
+        last = result[:, r.R_END_1 : r.R_END_Z2 + 1]
+        if more is None:
+            change = stored_in_layers(wall, first, hidden[0]) - stored_in_layers(wall, last, hidden[1])
+        else:
+            began = more.given[:, len(CONSTANTS) :]
+            change = energy(wall, first, began, hidden[0]) - energy(wall, last, more.ended, hidden[1])
+        result[:, r.R_LOST_B : r.R_LOST_T + 1] += change
+    return int(steps)
 
 
 def outputs(wall: LayeredWall, table: NDArray[np.float64]) -> dict[str, NDArray[Any]]:

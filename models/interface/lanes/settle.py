@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 
 from models.interface.lanes import rows as r
+from models.interface.lanes.effects import begin as effects
+from models.interface.lanes.effects.rows import TM, TOP_OFFSET
 from models.interface.lanes.fibres import fibres_at_end, fibres_at_start
 from models.interface.lanes.rows import (
     A1,
@@ -80,8 +82,11 @@ def set_step(w: Table, slot: int, h: float) -> None:
 
 
 @called
-def consistent(w: Table, slot: int, a: float, v: float, mixed: Any, laws: Any) -> None:
+def consistent(w: Table, slot: int, a: float, v: float, mixed: Any, laws: Any, more: Any) -> None:
     """Give a lane the acceleration of its state under the record's values a and v, nothing else."""
+    if more is not None:
+        effects.settle(w, more, slot, a, v, laws)
+        return
     kept = np.empty(N_WORK)
     for row in range(N_WORK):
         kept[row] = w[row, slot]
@@ -103,7 +108,7 @@ def consistent(w: Table, slot: int, a: float, v: float, mixed: Any, laws: Any) -
 @called
 def start(
     given: Table, result: Table, w: Table, lane: int, slot: int, record: Table, sample: int, time_step: float,
-    logged: bool, mixed: Any, laws: Any, rubber: Any,
+    logged: bool, mixed: Any, laws: Any, rubber: Any, more: Any,
 ) -> None:  # fmt: skip
     """Put a lane in a slot, in its initial state, at ``sample`` of the record."""
     for row in range(N_WORK):
@@ -119,9 +124,14 @@ def start(
     n = given[lane, Q_STEPS]
     set_step(w, slot, time_step / n)
     w[CLOCK, slot] = sample * n
+    upper = w[T1, slot]
+    if more is not None:
+        effects.put(w, more, lane, slot)
+        effects.load_pitch(more, slot, record, sample, record.shape[1], 1.0)
+        upper = more.own[TM, slot]
     if laws is not None:
-        fibres_at_start(w.reshape(w.size), rubber, lane, slot)
-    consistent(w, slot, record[0, sample], record[1, sample], mixed, laws)
+        fibres_at_start(w.reshape(w.size), rubber, lane, slot, more, upper)
+    consistent(w, slot, record[0, sample], record[1, sample], mixed, laws, more)
     w[PEAK_1, slot], w[PEAK_2, slot] = abs(w[T1, slot]), abs(w[T2, slot])
     w[ONSET_B, slot] = sample * n if w[LIFT_B, slot] > 0.0 else NEVER
     w[ONSET_T, slot] = sample * n if w[LIFT_T, slot] > 0.0 else NEVER
@@ -149,8 +159,11 @@ def ratio(along: float, across: float) -> float:
 
 
 @called
-def topple(result: Table, w: Table, lane: int, slot: int, time: float) -> None:
-    """At the end of the run: a body whose centre is past its toe and moves outwards counts as overturned."""
+def topple(result: Table, w: Table, lane: int, slot: int, time: float, beside: float) -> None:
+    """At the end of the run: a body whose centre is past its toe and moves outwards counts as overturned.
+
+    ``beside``: of the block's mass centre (m) to +x.
+    """
     t1, t2, v1, v2 = w[T1, slot], w[T2, slot], w[V1, slot], w[V2, slot]
     m1, m2, h1, h2 = w[M1, slot], w[M2, slot], w[H1, slot], w[H2, slot]
     toe_t, bt, b1 = w[r.TOE_T, slot], w[BT, slot], w[B1, slot]
@@ -162,22 +175,24 @@ def topple(result: Table, w: Table, lane: int, slot: int, time: float) -> None:
         xr = math.copysign(toe_t, turn) * (1.0 - math.cos(turn))
         xr_d = math.copysign(toe_t, turn) * math.sin(turn)
         first = x1 + h1 * math.sin(t1)
-        second = x1 + xr * math.cos(t1) + height * math.sin(t1) + h2 * math.sin(t2)
+        second = x1 + xr * math.cos(t1) + height * math.sin(t1) + h2 * math.sin(t2) + beside * math.cos(t2)
         x1_d = side * w[TOE_1, slot] * math.sin(t1)
         rate_1 = (x1_d + h1 * math.cos(t1)) * v1
         rate_2 = (x1_d + (height - xr_d) * math.cos(t1) - xr * math.sin(t1)) * v1
-        rate_2 += (xr_d * math.cos(t1) + h2 * math.cos(t2)) * v2 + math.sin(t1) * w[V1 + 3, slot]
+        rate_2 += (xr_d * math.cos(t1) + h2 * math.cos(t2) - beside * math.sin(t2)) * v2 + math.sin(t1) * w[
+            V1 + 3, slot
+        ]
         toe = b1 if w[TOE_1, slot] > 0.0 else b1 * math.cos(t1)
         if side * (m1 * first + m2 * second) > (m1 + m2) * toe and side * (m1 * rate_1 + m2 * rate_2) > 0.0:
             result[lane, r.R_OVER_1], result[lane, r.R_OVER_2] = time, time
     if w[r.FREE_T, slot] > 0.0 and not result[lane, r.R_OVER_2] == result[lane, r.R_OVER_2]:
         side = 1.0 if turn >= 0.0 else -1.0
-        if side * h2 * math.sin(t2) > bt * math.cos(t2) and side * (v2 - v1) > 0.0:
+        if side * (h2 * math.sin(t2) + beside * math.cos(t2)) > bt * math.cos(t2) and side * (v2 - v1) > 0.0:
             result[lane, r.R_OVER_2] = time
 
 
 @called
-def finish(result: Table, w: Table, lane: int, slot: int, fell: bool, laws: Any, rubber: Any) -> None:
+def finish(result: Table, w: Table, lane: int, slot: int, fell: bool, laws: Any, rubber: Any, more: Any) -> None:
     """Close the account of a lane that ends now; ``fell``: a body has reached pi/2."""
     h = w[STEP, slot]
     time = h * w[CLOCK, slot]
@@ -189,7 +204,7 @@ def finish(result: Table, w: Table, lane: int, slot: int, fell: bool, laws: Any,
             result[lane, r.R_OVER_1] = time
         result[lane, r.R_OVER_2] = time
     else:
-        topple(result, w, lane, slot, time)
+        topple(result, w, lane, slot, time, 0.0 if more is None else more.own[TOP_OFFSET, slot])
     result[lane, r.R_PEAK_1], result[lane, r.R_PEAK_2] = w[PEAK_1, slot], w[PEAK_2, slot]
     result[lane, r.R_UP_B], result[lane, r.R_UP_T] = h * w[UP_B, slot], h * w[UP_T, slot]
     result[lane, r.R_ONSET_B], result[lane, r.R_ONSET_T] = h * w[ONSET_B, slot], h * w[ONSET_T, slot]
@@ -205,6 +220,8 @@ def finish(result: Table, w: Table, lane: int, slot: int, fell: bool, laws: Any,
     result[lane, r.R_END_Z1], result[lane, r.R_END_Z2] = w[Z1, slot], w[Z2, slot]
     if laws is not None:
         fibres_at_end(w.reshape(w.size), rubber, lane, slot)
+    if more is not None:
+        effects.put_on_record(more, lane, slot)
 
 
 @inlined

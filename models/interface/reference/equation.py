@@ -13,7 +13,8 @@ M q'' + n = Q,  Q = (-Mb cos theta1 + Mt cos r, -Mt cos r, Nb, Nt).
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+import operator
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -31,6 +32,15 @@ NONE = Strip(0.0, 0.0, 1.0)
 Pair = tuple[float, float]
 Four = tuple[float, float, float, float]
 Both = tuple[Strip, Strip]
+Ground = tuple[float, float, float]
+"""a - G psi, G (m s-2) and psi'' (rad s-2) of the base; only walls with effects know a base that pitches by psi."""
+
+
+class Switch(NamedTuple):
+    """An event: ``value(q, q', hidden, ground)`` falls through zero."""
+
+    name: str
+    value: Callable[[Sequence[float], Sequence[float], FloatArray, Ground], float]
 
 
 class Kinematics(NamedTuple):
@@ -47,6 +57,9 @@ class Kinematics(NamedTuple):
 class Equation:
     """One wall (of one lane): kinematics, strips, accelerations, energies."""
 
+    size = 4
+    """Coordinates of q."""
+
     def __init__(self, wall: LayeredWall) -> None:
         self.wall = wall.one()
         self.free = FREE[wall.joints]
@@ -57,8 +70,7 @@ class Equation:
         for joint, fibres in self.fibres.items():
             self.parts[joint] = slice(self.hidden, self.hidden + fibres.size)
             self.hidden += fibres.size
-        rest = static_state(wall)
-        self.rest = {"base": -rest[:, 2], "top": -rest[:, 3]}
+        self.rest = static_state(wall)
 
     def kinematics(self, q: Sequence[float], v: Sequence[float]) -> Kinematics:
         t1, t2, z1, z2 = q
@@ -133,13 +145,30 @@ class Equation:
 
     def relaxed(self, q: Sequence[float] = (0.0,) * 4) -> FloatArray:
         """The laws' hidden state after a long rest under gravity, let go at ``q`` (what it becomes there at once)."""
-        places = {"base": (q[2], q[0]), "top": (q[3], q[1] - q[0])}
         found = np.zeros(self.hidden)
         for joint, fibres in self.fibres.items():
-            z, angle = (np.array([value]) for value in places[joint])
-            kept = fibres.layer.reached(fibres.compression(z, angle), fibres.relaxed(self.rest[joint]))
-            found[self.parts[joint]] = fibres.joined(kept)
+            z, angle = (np.array([value]) for value in self.at_joint(joint, q))
+            still = fibres.relaxed(*(np.array([value]) for value in self.at_joint(joint, self.rest[0].tolist())))
+            found[self.parts[joint]] = fibres.joined(fibres.layer.reached(fibres.compression(z, angle), still))
         return found
+
+    @staticmethod
+    def at_joint(joint: str, q: Sequence[float]) -> Pair:
+        """z and the angle of a joint at q, or their rates at q'."""
+        return (q[2], q[0]) if joint == "base" else (q[3], q[1] - q[0])
+
+    def begun(self, q: Sequence[float], v: Sequence[float], memory: Mapping[str, float]) -> FloatArray:
+        """The hidden state of a run that begins at q, q'; ``memory``: what else it starts from."""
+        return self.relaxed(q)
+
+    def switches(self) -> Sequence[Switch]:
+        """Events at which the equations change; none of a plain wall."""
+        return ()
+
+    def switched(
+        self, name: str, q: Sequence[float], v: Sequence[float], hidden: FloatArray, ground: Ground
+    ) -> None:  # fmt: skip
+        """After the event ``name``."""
 
     def mass(self, at: Kinematics) -> FloatArray:
         """M (4, 4)."""
@@ -173,6 +202,10 @@ class Equation:
         left = [forces[i] - along_1 * x1[i] - up_1 * z1[i] - along_2 * x2[i] - up_2 * z2[i] for i in range(4)]
         return self.mass(at), np.array(left)
 
+    def accelerated(self, q: Sequence[float], v: Sequence[float], ground: Ground, strips: Both) -> FloatArray:
+        """q'', the bonded coordinates following the free ones."""
+        return self.acceleration(q, v, *ground[:2], strips)
+
     def acceleration(
         self,
         q: Sequence[float],
@@ -193,12 +226,37 @@ class Equation:
         rate = np.asarray(v)
         return float(0.5 * rate @ self.mass(self.kinematics(q, v)) @ rate)
 
+    def pulls(self, q: Sequence[float], v: Sequence[float], second: Sequence[float], ground: Ground) -> Sequence[Pair]:
+        """Forces (N) along x and z that hold the wall and the block on their way under q''."""
+        at, (a, gravity, _) = self.kinematics(q, v), ground
+        found = []
+        for mass, rows, bias in (
+            (self.wall.mass_1, at.jacobian_1, at.bias_1),
+            (self.wall.mass_2, at.jacobian_2, at.bias_2),
+        ):
+            x, z = (sum(map(operator.mul, row, second)) + b for row, b in zip(rows, bias, strict=True))
+            found.append((mass * (x + a), mass * (z + gravity)))
+        return found
 
-def power(strips: tuple[Strip, Strip], q: Sequence[float], v: Sequence[float]) -> Pair:
-    """Power of each strip on the bodies, in W."""
-    base, top = strips
-    turn, rate = q[1] - q[0], v[1] - v[0]
-    return (
-        base.force * v[2] - base.moment * math.cos(q[0]) * v[0],
-        top.force * v[3] - top.moment * math.cos(turn) * rate,
-    )
+    def leaning(self, q: Sequence[float], v: Sequence[float]) -> tuple[Pair, Pair]:
+        """Of all that stands on the base, and of the block on its joint: mass centre from the middle (m), and its rate.
+
+        The wall's along x, the block's along its own underside.
+        """
+        wall, at = self.wall, self.kinematics(q, v)
+        rates = [sum(map(operator.mul, rows[0], v)) for rows in (at.jacobian_1, at.jacobian_2)]
+        mass = wall.mass_1 + wall.mass_2
+        both = (
+            (wall.mass_1 * at.centre_1[0] + wall.mass_2 * at.centre_2[0]) / mass,
+            (wall.mass_1 * rates[0] + wall.mass_2 * rates[1]) / mass,
+        )
+        return both, (wall.centre_2 * math.tan(q[1]), v[1] - v[0])
+
+    def power(self, strips: Both, q: Sequence[float], v: Sequence[float], ground: Ground) -> Pair:
+        """Power of each strip on the bodies, in W."""
+        base, top = strips
+        turn, rate = q[1] - q[0], v[1] - v[0]
+        return (
+            base.force * v[2] - base.moment * math.cos(q[0]) * v[0],
+            top.force * v[3] - top.moment * math.cos(turn) * rate,
+        )

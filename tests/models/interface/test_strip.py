@@ -77,7 +77,7 @@ def test_the_branch_free_strip_of_the_lanes_is_the_same(state) -> None:
     assert fast[1] == pytest.approx(slow.moment, abs=1e-13 * size * b + 1e-30)
     assert fast[5] / (2.0 * b) == pytest.approx(slow.share, abs=1e-12)
     # the tangent stiffness: integrals of a constant times 1, x, x^2 over the stretch that presses
-    low, high = pressing(b, k, c, z, s, z_rate, s_rate, clip)
+    low, high = pressing((-b, b), k, c, z, s, z_rate, s_rate, clip)
     for power in (1, 2, 3):
         exact = 3.0 * (high**power - low**power) / power
         assert fast[1 + power] == pytest.approx(exact, abs=1e-11 * b**power)

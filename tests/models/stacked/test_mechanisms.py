@@ -8,7 +8,7 @@ from models.stacked.model import MODEL
 from tests.models.stacked.walls import LANES, A, B, G
 from tests.models.strategies import random_motion
 
-ACTING = {"pivot_inset", "tilt", "eccentricity", "restitution", "viscous_damping"}
+ACTING = {"pivot_inset", "tilt", "eccentricity", "restitution", "viscous_damping", "vertical_acceleration"}
 
 
 def test_the_mechanisms_that_act() -> None:
@@ -34,6 +34,15 @@ def test_inset_moves_the_onset_of_its_joint() -> None:
     for name, factors in (("onset_acceleration_base", (0.8, 1.0, 0.8)), ("onset_acceleration_top", (0.8, 0.9, 0.9))):
         for found, factor in zip((both, top, mixed), factors, strict=True):
             np.testing.assert_allclose(found[name], factor * plain[name], rtol=1e-14)
+
+
+def test_all_of_the_vertical_motion_as_a_mechanism_is_the_vertical_motion() -> None:
+    motion = random_motion(np.random.default_rng(3), duration=4.0)
+    fed, left_out = (Shaking(motion.time_step, motion.horizontal, motion.vertical, acts) for acts in (True, False))
+    acting = MODEL.simulate(B, fed, scale=2.5).channels["rotation_2"]
+    mechanism = MODEL.simulate({**B, "vertical_acceleration.kappa": 1.0}, left_out, scale=2.5).channels["rotation_2"]
+    np.testing.assert_array_equal(mechanism, acting)
+    assert np.max(np.abs(MODEL.simulate(B, left_out, scale=2.5).channels["rotation_2"] - acting)) > 1e-4
 
 
 @pytest.mark.parametrize("integrator", LANES)
