@@ -8,6 +8,7 @@ Between windows nothing moves or nothing was compared: an interval goes on there
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,7 @@ from diagnosis.answer.phases import MOSTLY, phases, share_at_events
 from diagnosis.answer.result import Located, Visited
 from diagnosis.data.measured import Measured
 from diagnosis.forces.action import Action
+from grids.stages import Stage, intervals
 from models.base import FloatArray
 
 LEAST = 0.01
@@ -24,6 +26,8 @@ ROUNDING = 1e-9
 """Share of the largest rate under which an impulse is rounding."""
 MOST_POINTS = 500
 """Samples of a law that are kept to be drawn."""
+UNSEEN = 1.0
+"""s compared, at most, between an end of a stage and what acts in it: impacts may be as far apart."""
 PAUSE = 0.1
 """s that an action may pass through zero within one interval."""
 
@@ -66,6 +70,33 @@ def acts(measured: Measured, action: Action) -> tuple[Located, ...]:
                     )
                 )  # fmt: skip
     return tuple(sorted(found, key=lambda place: -place.share))
+
+
+def within_stages(measured: Measured, places: Sequence[Located], stages: Sequence[Stage]) -> tuple[Located, ...]:
+    """The intervals of an effect with stages, carried on to the ends of its stages where next to nothing was compared.
+
+    There nothing contradicts that it acts, and that it does is what the stages say.
+    """
+    if not stages:
+        return tuple(places)
+    found = []
+    for place in places:
+        r = next(k for k, one in enumerate(measured.recordings) if one.name == place.recording)
+        recording = measured.recordings[r]
+        own = np.flatnonzero(measured.recording_of == r)
+        compared = _along(measured, own, recording.time.size, measured.mask[own].any(axis=1).astype(float)) > 0.0
+        same = [one for one in places if one.recording == place.recording and one.channel == place.channel]
+        start, end = place.start, place.end
+        for begins, ends in intervals(stages, place.recording):
+            begins, ends = max(begins, 0.0), min(ends, float(recording.time[-1]))
+            if not any(begins <= one.start < place.start for one in same) and begins <= place.start < ends:
+                skipped = compared & (recording.time >= begins) & (recording.time < start)
+                start = begins if skipped.sum() * recording.time_step <= UNSEEN else start
+            if not any(place.end < one.end <= ends for one in same) and begins < place.end <= ends:
+                skipped = compared & (recording.time > end) & (recording.time <= ends)
+                end = ends if skipped.sum() * recording.time_step <= UNSEEN else end
+        found.append(replace(place, start=start, end=end))
+    return tuple(found)
 
 
 def visited(measured: Measured, action: Action) -> Visited:

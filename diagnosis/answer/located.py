@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diagnosis.answer.acts import acts, visited
+from diagnosis.answer.acts import acts, visited, within_stages
 from diagnosis.answer.phases import EVERYWHERE
 from diagnosis.answer.result import Located, Visited
 from diagnosis.fit.solver import Fitted
@@ -24,7 +24,12 @@ def located(
     if explained is not None:
         fitted = explained.fitted
         actions = [action(fitted.misfit.predictor, fitted.point, name) for name in explained.names]
-        places = tuple(place for one in actions for place in acts(fitted.measured, one))
+        stages = fitted.misfit.predictor.stages
+        places = tuple(
+            place
+            for one in actions
+            for place in within_stages(fitted.measured, acts(fitted.measured, one), stages.get(one.effect, ()))
+        )
         return places, tuple(visited(fitted.measured, one) for one in actions)
     if not base.measured.identification.forces:
         return (), ()

@@ -36,8 +36,8 @@ class EffectStage:
 class HeldStage:
     """From when to when (s) an effect with stages acts in the prediction of a recording held out.
 
-    As after the last recording learned from, or, of one that came and went (``found_there``), where the recording held
-    out asks for it itself.
+    As after the last recording learned from, or, of one that came and went or changed between recordings
+    (``found_there``), where the recording held out asks for it itself.
     """
 
     effect: str

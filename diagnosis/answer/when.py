@@ -51,16 +51,19 @@ def _interval(instant: Instant, estimate: float) -> tuple[float, float] | None:
     return min(instant.low95, estimate), max(instant.high95, estimate)
 
 
-def comes_and_goes(spell: Spell, recordings: int) -> bool:
-    """Whether it both begins and ends within what was learned from, so that nothing is known of later recordings."""
+def may_change_again(spell: Spell, recordings: int) -> bool:
+    """Whether nothing is known of later recordings: what came and went, or changed from one recording to the next.
+
+    What begins within a recording and is there to the end has happened to the specimen, and stays.
+    """
     begins = spell.begins is not None or spell.first > 0
-    return begins and (spell.ends is not None or spell.last < recordings - 1)
+    return begins and (spell.begins is None or spell.ends is not None or spell.last < recordings - 1)
 
 
 def held_stages(explanation: Explanation, misfit: Misfit, states: FloatArray) -> tuple[HeldStage, ...]:
     """How each effect with stages is predicted in other recordings, those of ``misfit`` (nothing unknown in it).
 
-    An effect that comes and goes acts in the run of windows that asks for it there by more than MISSING, or not at
+    An effect that may change again acts in the run of windows that asks for it there by more than MISSING, or not at
     all; any other one as after the last recording learned from.
     """
     learned = len(explanation.measured.recordings)
@@ -68,7 +71,7 @@ def held_stages(explanation: Explanation, misfit: Misfit, states: FloatArray) ->
     for candidate in explanation.candidates:
         if candidate.spell is None:
             continue
-        own = comes_and_goes(candidate.spell, learned)
+        own = may_change_again(candidate.spell, learned)
         acts = candidate.spell.last == learned - 1 and candidate.spell.ends is None
         gain = _gain(misfit, candidate, states) if own else np.zeros(0)
         for r, recording in enumerate(misfit.measured.recordings):
@@ -143,7 +146,7 @@ def held_text(held: Sequence[HeldStage]) -> list[str]:
         if not one.found_there:
             state = "as after the last recording learned from" + ("" if one.ends > one.begins else ", without it")
         elif one.ends <= one.begins:
-            state = "without it: it came and went, and nothing asks for it there"
+            state = "without it, for nothing asks for it there"
         else:
             until = "its end" if one.ends == LASTS else f"{one.ends:.1f} s"
             state = f"with it from {one.begins:.1f} s to {until}, the interval found there"

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from diagnosis.answer.acts import acts
+from diagnosis.answer.acts import acts, within_stages
 from diagnosis.answer.result import Located
 from diagnosis.data.measured import Measured
 from diagnosis.fit.prediction import Point, Predictor
@@ -123,3 +123,7 @@ def test_what_begins_acts_from_there_on(effect: Mapping[str, float]) -> None:
     assert {place.recording for place in places} == {"b"} and min(
         place.start for place in places
     ) >= begins - 2 * SAMPLE
+    carried_on = within_stages(measured, places, stages[name])
+    assert min(place.start for place in carried_on) == begins
+    assert max(place.end for place in carried_on) == measured.recordings[1].time[-1]
+    assert sum(place.share for place in carried_on) == pytest.approx(1.0)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import models
-from diagnosis.answer.when import comes_and_goes, stages_of, when_text
+from diagnosis.answer.when import may_change_again, stages_of, when_text
 from diagnosis.errors.model import calibrated
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.setup import measure
@@ -94,8 +94,9 @@ def test_what_always_acts_does_not_begin() -> None:
     assert yielded == []
 
 
-def test_what_comes_and_goes_is_told_from_what_stays_or_is_gone() -> None:
-    assert comes_and_goes(Spell(0, 2.0, 0, 5.0), 2)
-    assert comes_and_goes(Spell(0, 2.0, 0, None), 2)
-    assert not comes_and_goes(Spell(0, 2.0, 1, None), 2)
-    assert not comes_and_goes(Spell(0, None, 1, 3.0), 2)
+def test_what_may_change_again_is_told_from_what_stays_or_is_gone() -> None:
+    assert may_change_again(Spell(1, None, 1, None), 2)
+    assert may_change_again(Spell(0, 2.0, 0, 5.0), 2)
+    assert may_change_again(Spell(0, 2.0, 0, None), 2)
+    assert not may_change_again(Spell(0, 2.0, 1, None), 2)
+    assert not may_change_again(Spell(0, None, 1, 3.0), 2)
