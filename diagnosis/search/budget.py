@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 
 from models.runs import DONE
 
-MOST = 400_000_000
-"""Lane-steps of a search: about two minutes of one core with a mechanism that needs short steps."""
+MOST = 150_000_000
+"""Lane-steps of a search: one to two and a half minutes of one core, by what each of them costs."""
 ENDED = "the search's budget of work ended before it"
 
 
