@@ -11,6 +11,7 @@ import pytest
 from diagnosis.answer.heldout import compare
 from diagnosis.answer.result import EffectStage, HeldStage
 from diagnosis.answer.when import LASTS, held_text, when_text
+from diagnosis.errors.model import disturbance_about, estimate
 from diagnosis.fit.setup import base_fit, measure
 from diagnosis.report.extended import extend
 from diagnosis.search.candidates import candidates
@@ -71,14 +72,15 @@ def test_a_held_out_recording_of_what_came_and_went_has_its_own_interval() -> No
     [gain] = [c for c in candidates(measured, SPECIMEN) if c.name == "gain"]
     came = replace(gain, spell=Spell(0, 2.0, 0, None))
     explained = with_candidate(base, came, np.array([came.unknowns[0].coordinate(0.1)]))
+    errors = estimate(base.fitted, disturbance_about(base.fitted))
     held = measure(SPECIMEN, [recording("c", 4, switched), recording("d", 5)], measured.reference_peak)
-    shown = compare(base, explained, held)
+    shown = compare(base, explained, held, errors)
     there, not_there = shown.held_stages
     assert there.found_there and there.begins == 0.0 and there.ends == LASTS
     assert not_there.ends == not_there.begins == 0.0
     stays = with_candidate(base, replace(gain, spell=Spell(1, 2.0, 1, None)), came.null)
-    assert all(not one.found_there and one.ends == LASTS for one in compare(base, stays, held).held_stages)
-    assert compare(base, explained, measured).held_stages == ()
+    assert all(not one.found_there and one.ends == LASTS for one in compare(base, stays, held, errors).held_stages)
+    assert compare(base, explained, measured, errors).held_stages == ()
 
 
 def test_the_state_of_a_held_out_recording_is_said() -> None:
