@@ -15,8 +15,10 @@ import typer.main
 import xarray as xr
 from typer.testing import CliRunner
 
+from grids.files import check, parse_toml
 from grids.plan import parse_plan, read_plan
 from grids.recordings import read_recording
+from grids.recordings.outcomes import OutcomeFile
 from grids.specimen import parse_specimen
 from rocking.commands import app
 from study.selection import on_grid
@@ -78,6 +80,8 @@ def test_toml_is_read(block: Block, tmp_path: Path, monkeypatch: pytest.MonkeyPa
         assert len(read_recording(tmp_path / "run.csv").responses) == 2
     elif block.text.startswith("title"):
         assert parse_specimen(block.text).title
+    elif block.text.startswith("table"):
+        assert check(OutcomeFile, parse_toml(block.text)).motion
     else:
         text = block.text if "[study]" in block.text else WALL + block.text
         found = "[mechanisms.pivot_inset]\ninset_over_half_width = 0.05"
