@@ -45,4 +45,4 @@ app = typer.Typer(
     help="Parameter studies, maps and simulations of rocking walls.",
 )
 for command in COMMANDS:
-    app.command(command.__name__.rstrip("_"))(command)
+    app.command(command.__name__.rstrip("_").replace("_", "-"))(command)
