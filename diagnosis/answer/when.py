@@ -37,16 +37,16 @@ def stages_of(explanation: Explanation, candidate: Candidate) -> tuple[EffectSta
         ends = ends_of(explanation, candidate.name, spell)
     except InputError:  # it acts in whole recordings only
         return tuple(stages)
-    if spell.begins is not None and (interval := _interval(ends.begins, spell.begins)):
+    if spell.begins is not None and (interval := _interval(ends.begins, spell.first, spell.begins)):
         stages[spell.first] = replace(stages[spell.first], begins_low95=interval[0], begins_high95=interval[1])
-    if spell.ends is not None and (interval := _interval(ends.ends, spell.ends)):
+    if spell.ends is not None and (interval := _interval(ends.ends, spell.last, spell.ends)):
         stages[spell.last] = replace(stages[spell.last], ends_low95=interval[0], ends_high95=interval[1])
     return tuple(stages)
 
 
-def _interval(instant: Instant, estimate: float) -> tuple[float, float] | None:
-    """The 95 % interval, which holds the estimate that the parameters were fitted with."""
-    if instant.low95 is None or instant.high95 is None:
+def _interval(instant: Instant, recording: int, estimate: float) -> tuple[float, float] | None:
+    """The 95 % interval, which holds the estimate that the parameters were fitted with; None in another recording."""
+    if instant.low95 is None or instant.high95 is None or instant.recording != recording:
         return None
     return min(instant.low95, estimate), max(instant.high95, estimate)
 
@@ -63,8 +63,8 @@ def may_change_again(spell: Spell, recordings: int) -> bool:
 def held_stages(explanation: Explanation, misfit: Misfit, states: FloatArray) -> tuple[HeldStage, ...]:
     """How each effect with stages is predicted in other recordings, those of ``misfit`` (nothing unknown in it).
 
-    An effect that may change again acts in the run of windows that asks for it there by more than MISSING, or not at
-    all; any other one as after the last recording learned from.
+    An effect that may change again acts in the run of windows that asks for it there by more than MISSING and the price
+    of a spell, or not at all; any other one as after the last recording learned from.
     """
     learned = len(explanation.measured.recordings)
     found: list[HeldStage] = []
@@ -77,7 +77,7 @@ def held_stages(explanation: Explanation, misfit: Misfit, states: FloatArray) ->
         for r, recording in enumerate(misfit.measured.recordings):
             begins, ends = (0.0, LASTS) if acts else (0.0, 0.0)
             if own:
-                begins, ends = _own(misfit.measured, r, gain)
+                begins, ends = _own(misfit.measured, r, gain, MISSING + candidate.price)
             found.append(HeldStage(candidate.name, recording.name, begins, ends, own))
     return tuple(found)
 
@@ -99,13 +99,13 @@ def _gain(misfit: Misfit, candidate: Candidate, states: FloatArray) -> FloatArra
     return np.asarray(np.subtract(*(fit(one, NO_UNKNOWNS, states).window_losses for one in (off, on))))
 
 
-def _own(m: Measured, r: int, gain: FloatArray) -> tuple[float, float]:
+def _own(m: Measured, r: int, gain: FloatArray, least: float) -> tuple[float, float]:
     """Begin and end (s) of the run of windows of recording ``r`` that asks for the effect; twice 0 for none."""
     own = np.flatnonzero(m.recording_of == r)
     if not own.size:
         return 0.0, 0.0
     low, high = largest_run(gain[own])
-    if float(gain[own[low : high + 1]].sum()) < MISSING:
+    if float(gain[own[low : high + 1]].sum()) < least:
         return 0.0, 0.0
     step = m.recordings[r].time_step
     last = m.windows[own[high]]

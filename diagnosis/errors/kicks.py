@@ -7,16 +7,18 @@ the responses to short pulses of base acceleration is 15-20 % low).
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.fit.prediction import Point, Predictor
-from diagnosis.fit.unknowns import instruments_of, without_instruments
+from diagnosis.fit.unknowns import instruments_of
 from grids.instruments.base import Surroundings
+from grids.instruments.staged import moved_in_stages, recorded_in_stages
 from grids.instruments.windowed import moved_in_windows, recorded_in_windows
 from models.base import FloatArray
+from models.piecewise import Part, trajectories
 from models.shaking import Shaking
 
 CHANGE = 0.01
@@ -31,22 +33,29 @@ def kicks(predictor: Predictor, point: Point) -> FloatArray:
     if declared is None:
         return np.zeros((*m.values.shape, 0))
     columns: list[tuple[int, FloatArray]] = []
-    values, instruments = without_instruments(point.values), instruments_of(point.values)
     samples = m.values.shape[2]
     for r, recording in enumerate(m.recordings):
         own = np.flatnonzero(m.recording_of == r)
         if not own.size:
             continue
-        shaking = moved_in_windows(m.shakings[r], instruments)
+        sets = predictor.sets(instruments_of(point.values), recording)
+        parts = predictor.parts(point.values, recording)
+        shaking = moved_in_stages(m.shakings[r], sets, moved_in_windows)
 
         def run(
-            windows: NDArray[np.intp], after: NDArray[np.intp], states: FloatArray, shaking: Shaking = shaking
+            windows: NDArray[np.intp],
+            after: NDArray[np.intp],
+            states: FloatArray,
+            shaking: Shaking = shaking,
+            parts: Sequence[Part] = parts,
         ) -> Mapping[str, FloatArray]:
             initial = dict(zip(m.model.states, states.T, strict=True)) | {k: v[windows] for k, v in m.memory.items()}
             first = m.first[windows] + after
-            return m.model.trajectories(
-                values, shaking, first=first, samples=samples, initial=initial, options=predictor.options
-            )
+            instants = np.tile(np.array([part.first for part in parts[1:]], np.int64), (first.size, 1))
+            return trajectories(
+                m.model, [part.values for part in parts], instants, shaking, first=first, samples=samples,
+                initial=initial, options=predictor.options,
+            )  # fmt: skip
 
         plain = run(own, np.zeros(own.size, np.int64), point.states[own])
         sign = np.sign(plain[declared.coordinate])
@@ -58,14 +67,15 @@ def kicks(predictor: Predictor, point: Point) -> FloatArray:
             continue
         states = np.stack([plain[name][window, after] for name in m.model.states], axis=1)
         rate = m.model.states.index(declared.rate)
-        around = Surroundings(recording.time_step, m.base[own[window]], m.reference_peak)
+        start = np.asarray(recording.time_step * m.first[own[window], None], np.float64)
+        around = Surroundings(recording.time_step, m.base[own[window]], m.reference_peak, start)
         recorded = []
         for share in (1.0 + CHANGE, 1.0 - CHANGE):
             changed = states.copy()
             changed[:, rate] *= share
             ran = run(own[window], after, changed)
             channels = {c: _from(plain[c][window], ran[c], after) for c in m.channels}
-            found = recorded_in_windows(channels, instruments, around)
+            found = recorded_in_stages(channels, sets, around, recorded_in_windows)
             recorded.append(np.stack([found[c] for c in m.channels], axis=1))
         slope = (recorded[0] - recorded[1]) / (2.0 * CHANGE)
         columns += list(zip(own[window].tolist(), slope, strict=True))

@@ -13,7 +13,7 @@ from diagnosis.errors.drifts import columns, knots_of
 from diagnosis.errors.kicks import kicks
 from diagnosis.errors.likelihood import Piece, Prior, climbed, maximise, robust_deviance
 from diagnosis.errors.lines import lines
-from diagnosis.errors.pieces import Scene, opened, prior_of, stills, windows
+from diagnosis.errors.pieces import Scene, opened, peaks_of, prior_of, stills, windows
 from diagnosis.errors.sensors import of_sensors
 from diagnosis.fit.setup import base_fit
 from diagnosis.fit.solver import Fitted, fit_thoroughly
@@ -55,7 +55,8 @@ class Errors:
     def of_sensors(self, measured: Measured) -> Whitening:
         """The sensors' errors in windows of other recordings; those of channels not known are taken for white."""
         channels = self.whitening.measured.channels
-        return of_sensors(self.components, self.theta, self.unit, channels, measured)
+        peaks = peaks_of(self.whitening.measured)
+        return of_sensors(self.components, self.theta, self.unit, channels, peaks, measured)
 
 
 def disturbance_about(fitted: Fitted) -> FloatArray:
@@ -140,7 +141,7 @@ def _whitening(
     """Of the sensors' errors, with base noise and events as columns and drifts as errors that windows share."""
     m = scene.fitted.measured
     scatter = float(np.sqrt(sum(t for c, t in zip(components, theta, strict=True) if c.kind == "scatter")))
-    found = of_sensors(components, theta, scene.unit, m.channels, m)
+    found = of_sensors(components, theta, scene.unit, m.channels, peaks_of(m), m)
     found = found.with_columns(np.concatenate([base, scatter * kicked], axis=-1))
     knots, root = knots_of(m, components), prior.root(theta)
     root = root[:, np.sum(root**2, axis=0) > FAINT]

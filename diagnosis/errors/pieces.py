@@ -69,7 +69,7 @@ def windows(scene: Scene, components: Sequence[Component]) -> list[Piece]:
     """One piece a window."""
     m = scene.fitted.measured
     found = []
-    grown, knots = growth(m), knots_of(m, components)
+    grown, knots = growth(m, peaks_of(m)), knots_of(m, components)
     for w, window in enumerate(m.windows):
         keep = m.compared[w].ravel()
         channel = np.repeat(np.arange(len(m.channels)), m.compared.shape[2])[keep]
@@ -156,8 +156,13 @@ def _stationary(component: Component, at: np.ndarray, step: float, inside: slice
     return Stationary(inside, component.kernel(lag) / (stride if component.kind == "white" else 1.0))
 
 
-def growth(measured: Measured) -> FloatArray:
-    """Squared size of the signal over its peak (W, C, n)."""
+def peaks_of(measured: Measured) -> FloatArray:
+    """Largest absolute value of each channel (C,) in the windows."""
     size = np.abs(measured.averaged(measured.values)) * measured.compared
-    peak = np.maximum(size.max(axis=(0, 2)), 1e-300)
+    return np.asarray(np.maximum(size.max(axis=(0, 2)), 1e-300))
+
+
+def growth(measured: Measured, peak: FloatArray) -> FloatArray:
+    """Squared size of the signal over the ``peak`` (C,) of the recordings that the errors are estimated from."""
+    size = np.abs(measured.averaged(measured.values)) * measured.compared
     return np.asarray((size / peak[None, :, None]) ** 2, np.float64)

@@ -14,17 +14,24 @@ from models.base import FloatArray
 
 
 def of_sensors(
-    components: Sequence[Component], theta: FloatArray, unit: FloatArray, names: Sequence[str], measured: Measured
+    components: Sequence[Component],
+    theta: FloatArray,
+    unit: FloatArray,
+    names: Sequence[str],
+    peaks: FloatArray,
+    measured: Measured,
 ) -> Whitening:
     """By the inverse Cholesky factor of each channel's errors in each window.
 
-    ``unit`` (C,) and the components' channels are those of ``names``; the errors of other channels are white.
+    ``unit`` (C,), ``peaks`` (C,) that growing noise is given over, and the components' channels are those of ``names``;
+    the errors of other channels are white.
     """
     m = measured
     n = m.compared.shape[2]
     index = np.arange(n)
     factor = np.zeros((*m.compared.shape, n))
-    grown, stationary = growth(m), {}
+    places = [names.index(name) if name in names else -1 for name in m.channels]
+    grown, stationary = growth(m, np.append(peaks, 1.0)[places]), {}
     for w, window in enumerate(m.windows):
         stride = int(m.strides[w])
         step = m.recordings[window.recording].time_step * stride
@@ -35,14 +42,14 @@ def of_sensors(
                 continue
             own = names.index(name)
             acting = [(k, float(t)) for k, t in zip(components, theta, strict=True) if k.channel == own and t > 0.0]
-            if (c, step) not in stationary:
+            if (c, step, stride) not in stationary:
                 lag = np.abs(index[:, None] - index[None, :]) * step
                 found = FLOOR / stride * np.eye(n)
                 for component, value in acting:
                     if not component.moving and not component.shared:
                         found += value * component.kernel(lag) / (stride if component.kind == "white" else 1.0)
-                stationary[c, step] = found
-            covariance = stationary[c, step][np.ix_(inside, inside)].copy()
+                stationary[c, step, stride] = found
+            covariance = stationary[c, step, stride][np.ix_(inside, inside)].copy()
             growing = sum(value for component, value in acting if component.kind == "growing")
             covariance[range(inside.size), range(inside.size)] += growing * grown[w, c, inside] / stride
             factor[w, c][np.ix_(inside, inside)] = np.linalg.inv(np.linalg.cholesky(covariance)) / unit[own]

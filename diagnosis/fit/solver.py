@@ -8,7 +8,7 @@ windows share moves with the parameters; it is linear and costs no runs.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.stats import qmc
@@ -50,6 +50,12 @@ class Fitted:
     def point(self) -> Point:
         """With the model's own parameters."""
         return self.misfit.predictor.declared([self.misfit.point(self.u, self.states)])[0]
+
+    @property
+    def frozen(self) -> Misfit:
+        """The misfit with nothing unknown but the windows' states, at the model's own parameters."""
+        predictor = replace(self.misfit.predictor, coordinates=())
+        return replace(self.misfit, predictor=predictor, unknowns=(), fixed=self.point.values, smooth=None)
 
     @property
     def values(self) -> dict[str, float]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 
@@ -47,9 +48,7 @@ def assemble(found: Search, flags: FloatArray, rng: np.random.Generator, progres
         verdict=_verdict(found, misfit),
         statement="",
         effects=tuple(_effect(step, estimates) for step in found.steps),
-        rivals=tuple(
-            Rival(repair.name, repair.mechanism.effect_class, gap) for repair, gap in _rivals(found) if gap >= 0.0
-        ),
+        rivals=tuple(Rival(repair.name, repair.mechanism.effect_class, gap) for repair, gap in _rivals(found)),
         wrong=wrong_predictions(base, flags, outcomes.groups, measures),
         left=wrong_predictions(last, flags, outcomes.groups, measures),
         compared=_compared(found, flags, measures, base, last),
@@ -80,6 +79,8 @@ def assemble(found: Search, flags: FloatArray, rng: np.random.Generator, progres
 
 
 def _verdict(found: Search, misfit: float) -> Verdict:
+    if not found.finished and not found.steps:
+        return "cannot_tell_apart"
     if not found.steps:
         return "nothing_missing" if misfit > INADEQUATE else "not_in_library"
     if misfit <= INADEQUATE:
@@ -89,7 +90,10 @@ def _verdict(found: Search, misfit: float) -> Verdict:
 
 
 def _rivals(found: Search) -> list[tuple[Repair, float]]:
-    return found.chosen.rivals if found.steps else []
+    """Of every effect that was found, the strongest first; not what was found itself."""
+    named = {repair.name for repair in found.chosen.effects}
+    of_all = [rival for step in found.steps for rival in step.rivals if rival[0].name not in named]
+    return list({repair.name: (repair, gap) for repair, gap in sorted(of_all, key=lambda one: -one[1])}.values())
 
 
 def _effect(step: Found, estimates: Mapping[str, Estimate]) -> Effect:
@@ -155,11 +159,11 @@ def _estimate(unknown: Unknown, value: float, samples: FloatArray) -> Estimate:
     edge = 0.02 * (high - low)
     u = unknown.coordinate(value)
     null = unknown.coordinate(unknown.start)
-    reached = "low" if u < low + edge else "high" if u > high - edge else ""
+    reached: Literal["", "low", "high"] = "low" if u < low + edge else "high" if u > high - edge else ""
     if unknown.prior is None and reached and abs(u - null) > edge:
         if unknown.kind == "inverse":
             reached = "low" if reached == "high" else "high"
-        return Estimate(value, *_ends(samples), unknown.unit, "low" if reached == "low" else "high")
+        return Estimate(value, *_ends(samples), unknown.unit, reached)
     return Estimate(value, *_ends(samples), unknown.unit)
 
 

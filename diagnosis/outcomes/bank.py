@@ -10,7 +10,7 @@ Source: Cornuet, Marin, Mira, Robert, Scand. J. Stat. 39 (2012), adaptive multip
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 import numpy as np
@@ -18,7 +18,7 @@ from scipy.special import logsumexp
 from scipy.stats import norm, qmc, truncnorm
 
 from diagnosis.fit.unknowns import Unknown, values_of
-from diagnosis.outcomes.ladder import LOG_SCALES, SCATTERS, Ladder, probabilities
+from diagnosis.outcomes.ladder import LOG_SCALES, Ladder, probabilities
 from diagnosis.progress import Progress, silent
 from models.base import FloatArray
 
@@ -54,11 +54,6 @@ class Bank:
         """Posterior probabilities (n, scatters) of points and scatters: likelihood x weight, of sum 1."""
         log = log_likelihood + self.log_weight[:, None]
         return np.asarray(np.exp(log - logsumexp(log)))
-
-    def evidence(self, log_likelihood: FloatArray) -> float:
-        """Log of the likelihood averaged over prior and scatters (n, scatters)."""
-        log = log_likelihood + self.log_weight[:, None]
-        return float(logsumexp(log) - logsumexp(self.log_weight) - np.log(SCATTERS.size))
 
     def values(self, index: int) -> dict[str, float]:
         return values_of(self.unknowns, self.points[index])
@@ -162,6 +157,18 @@ class Kernels:
         )
         each = norm.logpdf(u[:, None], centres, self.widths) - np.log(inside)
         return np.asarray(logsumexp(each.sum(axis=2) + np.log(self.shares[kept]), axis=1))
+
+
+def with_points(bank: Bank, ladder: Ladder, points: FloatArray) -> Bank:
+    """The bank with further points (m, d) that no proposal drew: they have no weight and may be the best."""
+    values = [values_of(bank.unknowns, u) for u in points]
+    return replace(
+        bank,
+        points=np.vstack([bank.points, points]),
+        chances=np.concatenate([bank.chances, probabilities(ladder.fell(values))]),
+        log_tolerance=np.append(bank.log_tolerance, tolerated(bank.unknowns, points)),
+        log_weight=np.append(bank.log_weight, np.full(points.shape[0], -np.inf)),
+    )
 
 
 Drawn = tuple[Proposal, int]

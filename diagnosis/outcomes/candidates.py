@@ -32,20 +32,22 @@ def repairs(model: Model, specimen: Specimen, motions: Sequence[Motion]) -> tupl
     for name, mechanism in library(model).items():
         if name in specimen.mechanisms or mechanism.tabulated:
             continue
-        if why := _why_not(name, mechanism, motions):
+        if why := _why_not(name, mechanism, motions, specimen.vertical or model.vertical_by_default):
             refused[name] = why
             continue
         found.append(Repair(mechanism, tuple(of_parameter(mechanism, p) for p in mechanism.parameters)))
     return tuple(found), refused
 
 
-def _why_not(name: str, mechanism: Mechanism, motions: Sequence[Motion]) -> str:
+def _why_not(name: str, mechanism: Mechanism, motions: Sequence[Motion], vertical: bool) -> str:
     if name in INSTRUMENTS and "base" not in mechanism.acts:
         return "an instrument of the response changes no outcome"
     if any(p.stiff for p in mechanism.parameters):
         return "its equations are stiff: too costly for so many runs"
     if any(isinstance(p, Level) for p in mechanism.parameters):
         return "its level is given over a peak that was not recorded"
+    if name == "vertical_acceleration" and vertical:
+        return "the vertical motion of the base acts in the base model already"
     if name == "vertical_acceleration" and any(motion.vertical is None for motion in motions):
         return "not all motions have a vertical component"
     return ""

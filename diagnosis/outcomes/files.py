@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import io
-import math
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from diagnosis.outcomes.answer import OutcomeDiagnosis, Posterior, Prediction
+from diagnosis.report.json_file import entry, finite
 from grids.netcdf_file import read_netcdf
 from grids.specimen import Specimen, read_specimen
 from grids.write_specimen import specimen_text
@@ -36,7 +36,7 @@ def write_answer(answer: OutcomeDiagnosis, specimen: Specimen, folder: str | Pat
 
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    write_text(folder / JSON, as_json(_finite(as_mapping(answer)), indent=2, allow_nan=False) + "\n")
+    write_text(folder / JSON, as_json(finite(as_mapping(answer)), indent=2, allow_nan=False) + "\n")
     write_text(folder / EXTENDED, specimen_text(answer.extended))
     write_posterior(answer.posterior, folder / POSTERIOR)
     write_text(folder / RUNS, runs_text(answer))
@@ -51,13 +51,13 @@ def as_mapping(answer: OutcomeDiagnosis) -> dict[str, Any]:
     crossed = [one for one in answer.compared if one.cross_validated]
     return {
         "verdict": answer.verdict,
-        "effects": [_entry(asdict(one)) for one in answer.effects],
-        "rivals": [_entry(asdict(one)) for one in answer.rivals],
+        "effects": [entry(asdict(one)) for one in answer.effects],
+        "rivals": [entry(asdict(one)) for one in answer.rivals],
         "located": [asdict(one) for one in answer.wrong],
         "left": [asdict(one) for one in answer.left],
-        "base": {name: _entry(asdict(one)) for name, one in answer.base.items()},
+        "base": {name: entry(asdict(one)) for name, one in answer.base.items()},
         "at_bound": list(answer.at_bound),
-        "scatter": _entry(asdict(answer.scatter)),
+        "scatter": entry(asdict(answer.scatter)),
         "p_value": answer.p_value,
         "misfit_p_value": answer.misfit_p_value,
         "scores": {
@@ -67,21 +67,6 @@ def as_mapping(answer: OutcomeDiagnosis) -> dict[str, Any]:
         "not_tried": [{"name": name, "why": why} for name, why in answer.not_tried.items()],
         "provenance": {**answer.provenance, "finished": answer.finished},
     }
-
-
-def _entry(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {"class" if key == "effect_class" else key: _entry(item) for key, item in value.items()}
-    return None if value == "" else value
-
-
-def _finite(value: Any) -> Any:
-    """The same with null for numbers that JSON does not know."""
-    if isinstance(value, dict):
-        return {key: _finite(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_finite(item) for item in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def runs_text(answer: OutcomeDiagnosis) -> str:

@@ -25,6 +25,7 @@ from diagnosis.progress import Progress, silent
 from grids.instruments import moved
 from grids.motions import Motion
 from grids.specimen import Specimen
+from grids.stages import after_the_last
 from models.base import MISSING, FloatArray
 from models.model import Model
 from models.shaking import Shaking
@@ -74,7 +75,9 @@ class Ladder:
     @classmethod
     def of(cls, model: Model, specimen: Specimen, motions: Sequence[Motion]) -> Ladder:
         """The motions as means over about 10 ms: overturning does not feel what is faster."""
-        return cls(model, specimen, [_thinned(motion.shaking()) for motion in motions], fixed_values(specimen))
+        acts = model.vertical_by_default if specimen.vertical is None else specimen.vertical
+        shakings = [_thinned(motion.shaking(vertical_acts=acts)) for motion in motions]
+        return cls(model, specimen, shakings, fixed_values(after_the_last(specimen)))
 
     def fell(self, points: Sequence[Mapping[str, float]], progress: Progress = silent) -> FloatArray:
         """Whether each point's specimen overturns (points, runs, scales): 1, 0, or `UNKNOWN`.

@@ -27,17 +27,24 @@ MEANINGS = {
 }
 
 
+def headline(answer: OutcomeDiagnosis) -> str:
+    """The answer in a line."""
+    names = words.listed(words.plain(effect.name) for effect in answer.effects)
+    if not answer.finished:
+        return f"Stopped early; found so far: {names}" if names else "Stopped before anything was found"
+    return HEADLINES[answer.verdict].format(names=names)
+
+
 def report_page(answer: OutcomeDiagnosis, specimen: Specimen, drawn: Mapping[str, Picture]) -> str:
     """The page as text, with the pictures ``drawn``; nothing in it is computed anew."""
     known = library(models.get(specimen.model))
-    names = words.listed(words.plain(effect.name) for effect in answer.effects)
     return (
         environment()
         .get_template("outcomes.html.j2")
         .render(
             d=answer,
             specimen=specimen,
-            headline=HEADLINES[answer.verdict].format(names=names),
+            headline=headline(answer),
             effects=[
                 (one, known[one.name].says({name: value.estimate for name, value in one.parameters.items()}))
                 for one in answer.effects

@@ -60,13 +60,6 @@ def scores(chance: FloatArray, outcomes: FloatArray, groups: Sequence[str], seed
     )
 
 
-def difference(better: FloatArray, worse: FloatArray, outcomes: FloatArray, groups: Sequence[str]) -> Score:
-    """How much more accurate the first chances are, run by run, with its interval."""
-    fell = outcomes > 0.5
-    gained = ((better > 0.5) == fell).astype(np.float64) - ((worse > 0.5) == fell).astype(np.float64)
-    return _by_groups(gained, groups, 0)
-
-
 def _by_groups(values: FloatArray, groups: Sequence[str], seed: int) -> Score:
     """Mean of values (runs,); runs of one group are drawn together."""
     names, member = np.unique(np.asarray(groups), return_inverse=True)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from diagnosis.fit.unknowns import Unknown
-from diagnosis.outcomes.bank import Bank, Beside, Drawn, Kernels, Spread, filled
+from diagnosis.outcomes.bank import Bank, Beside, Drawn, Kernels, Spread, filled, with_points
 from diagnosis.outcomes.candidates import Repair
 from diagnosis.outcomes.evidence import cannot_be_excluded, chance_of, gain, null_gains
 from diagnosis.outcomes.ladder import Ladder
@@ -69,6 +69,13 @@ def one_more(
     trials = _tried(found, possible, flags, rng, progress)
     if not trials:
         return False
+    if before.bank.unknowns:
+        before.bank = _searched_as_well(found.ladder, before.bank, trials[0].bank, flags)
+        if not found.steps:
+            found.base = before.bank
+        for one in trials:
+            one.gain = gain(one.bank, before.bank, flags)
+        trials.sort(key=lambda one: -one.gain)
     null = null_gains([one.bank for one in trials], before.bank, flags, rng)
     winner, others = trials[0], trials[1:REFINED]
     winner.p_value = chance_of(winner.gain, null)
@@ -107,6 +114,12 @@ def _tried(
         one.bank = _with(found.ladder, before.bank, repair, flags, [CLOSER] * CLOSER_ROUNDS, rng)
         one.gain = gain(one.bank, before.bank, flags)
     return sorted(trials, key=lambda one: -one.gain)
+
+
+def _searched_as_well(ladder: Ladder, before: Bank, winner: Bank, flags: FloatArray) -> Bank:
+    """The bank without the new effect, tried where the winner fits best: a better base must not pass for an effect."""
+    best_first = np.argsort(-winner.log_posterior(flags).max(axis=1))[:SCREENED]
+    return with_points(before, ladder, winner.points[best_first, : len(before.unknowns)])
 
 
 def _share(number: int, within: float) -> float:

@@ -37,12 +37,14 @@ def statement(answer: OutcomeDiagnosis, found: Search) -> str:
         f"({answer.scatter.low95:.0%} to {answer.scatter.high95:.0%})."
     )
     parts.append(_scores(answer))
-    if not answer.finished:
+    if not answer.finished and answer.effects:
         parts.append("The search was stopped; this is what was found until then.")
     return " ".join(parts)
 
 
 def _opening(answer: OutcomeDiagnosis) -> str:
+    if not answer.finished and not answer.effects:
+        return "The search was stopped before anything was found: whether something is missing is not known."
     if answer.effects:
         return f"The model leaves something out (p {_at_most(answer.p_value)})."
     if answer.verdict == "nothing_missing":
@@ -56,7 +58,7 @@ def _at_most(p: float) -> str:
 
 def _wrong(one: Wrong) -> str:
     did = "overturned" if one.predicted == "stands" else "stood"
-    where = "Of all runs" if one.low is None or one.high is None else (
+    where = f"Of {one.over}" if one.low is None or one.high is None else (
         f"It shows along {one.over} (standard score {one.standard_score:+.1f}): between "
         f"{with_unit(one.low, one.unit)} and {with_unit(one.high, one.unit)}"
     )  # fmt: skip

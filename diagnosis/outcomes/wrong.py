@@ -12,7 +12,9 @@ from diagnosis.outcomes.measures import UNITS
 from models.base import FloatArray
 
 NOTABLE = 3.0
-"""Standard score from which a measure or a group is named."""
+"""Standard score from which a measure is named."""
+RARE = 0.01
+"""Chance, times the number of groups, under which a group is named."""
 MOST_GROUPS = 5
 
 
@@ -30,15 +32,22 @@ def wrong_predictions(
         if abs(score) >= NOTABLE:
             found.append(_along(name, measures[name], chance, outcomes, score))
     names = np.asarray(groups)
-    each = [(name, _sum_score(chance[names == name], outcomes[names == name])) for name in dict.fromkeys(groups)]
+    each = dict.fromkeys(groups)
     if len(each) < outcomes.size:
-        worst = sorted(each, key=lambda one: -abs(one[1]))[:MOST_GROUPS]
-        found += [
-            _wrong(f"group {name}", "", None, names == name, chance, outcomes, score)
-            for name, score in worst
-            if abs(score) >= NOTABLE
-        ]
+        tails = {name: _tail(chance[names == name], int(outcomes[names == name].sum())) for name in each}
+        for name in sorted(tails, key=lambda one: tails[one])[:MOST_GROUPS]:
+            if tails[name] * len(each) < RARE:
+                score = _sum_score(chance[names == name], outcomes[names == name])
+                found.append(_wrong(f"group {name}", "", None, names == name, chance, outcomes, score))
     return tuple(found)
+
+
+def _tail(chance: FloatArray, fell: int) -> float:
+    """Probability, both tails, that so few or so many of independent runs overturn: their exact distribution."""
+    spread = np.ones(1)
+    for p in chance:
+        spread = np.convolve(spread, [1.0 - p, p])
+    return 2.0 * min(float(spread[: fell + 1].sum()), float(spread[fell:].sum()))
 
 
 def _sum_score(chance: FloatArray, outcomes: FloatArray) -> float:

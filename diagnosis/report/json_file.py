@@ -13,7 +13,7 @@ from study.provenance import as_json
 
 def diagnosis_json(diagnosis: Diagnosis) -> str:
     """The text of the file. Numbers that are not finite, which JSON does not know, become null."""
-    return as_json(_finite(as_mapping(diagnosis)), indent=2, allow_nan=False) + "\n"
+    return as_json(finite(as_mapping(diagnosis)), indent=2, allow_nan=False) + "\n"
 
 
 def as_mapping(diagnosis: Diagnosis) -> dict[str, Any]:
@@ -25,11 +25,11 @@ def as_mapping(diagnosis: Diagnosis) -> dict[str, Any]:
         "located": _entries(diagnosis.located),
         "shows": [_without_effect(place) for place in _entries(diagnosis.shows)],
         "constancy": _entries(diagnosis.constancy),
-        "undecided": None if diagnosis.undecided is None else _entry(asdict(diagnosis.undecided)),
+        "undecided": None if diagnosis.undecided is None else entry(asdict(diagnosis.undecided)),
         "suspicions": [
             {"recording": name, "suspicion": what} for name, all_of in diagnosis.suspicions.items() for what in all_of
         ],
-        "base": {name: _entry(asdict(value)) for name, value in diagnosis.base.items()},
+        "base": {name: entry(asdict(value)) for name, value in diagnosis.base.items()},
         "screen": _entries(diagnosis.screen),
         "null_band": diagnosis.null_band,
         "missing_force": diagnosis.missing_force,
@@ -48,13 +48,13 @@ def as_mapping(diagnosis: Diagnosis) -> dict[str, Any]:
 
 
 def _entries(parts: Sequence[Any]) -> list[Any]:
-    return [_entry(asdict(part)) for part in parts]
+    return [entry(asdict(part)) for part in parts]
 
 
-def _entry(value: Any) -> Any:
+def entry(value: Any) -> Any:
     """A part of the answer: what it leaves empty is null, its class has the file's name."""
     if isinstance(value, dict):
-        return {"class" if key == "effect_class" else key: _entry(item) for key, item in value.items()}
+        return {"class" if key == "effect_class" else key: entry(item) for key, item in value.items()}
     return list(value) if isinstance(value, tuple) else None if value == "" else value
 
 
@@ -72,13 +72,14 @@ def _holdout(fit: Fit, held: Sequence[HeldStage]) -> dict[str, Any]:
     return {**_fit(fit), "share_of_achievable": fit.share_of_achievable, "stages": stages}
 
 
-def _finite(value: Any) -> Any:
+def finite(value: Any) -> Any:
+    """The same with null for numbers that JSON does not know."""
     if hasattr(value, "tolist"):
         value = value.tolist()
     if isinstance(value, Mapping):
-        return {str(key): _finite(item) for key, item in value.items()}
+        return {str(key): finite(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [_finite(item) for item in value]
+        return [finite(item) for item in value]
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value

@@ -29,7 +29,7 @@ from diagnosis.search.found import MISSING, Search, adjusted, explains_all, pric
 from diagnosis.search.instants import NO_UNKNOWNS, WHOLE, ends_of
 from diagnosis.search.null import null_distribution
 from diagnosis.search.refit import QUICK, Explanation, again, best_of, extend, with_memory
-from diagnosis.search.runs import InRuns, chance, in_runs, runs
+from diagnosis.search.runs import SHORTEST, InRuns, chance, in_runs, runs
 from diagnosis.search.select import seconds
 from diagnosis.search.spells import Spell, in_spell, of_windows
 from diagnosis.search.weighing import by_white_noise, weigh_again
@@ -164,7 +164,7 @@ def _asked_for(single: Explanation) -> Spell | None:
     """The run of windows in which the mechanism takes most off the loss, parameters held; None where it is all."""
     candidate = single.candidates[-1]
     f = single.fitted
-    on = in_spell(replace(f.misfit, unknowns=(), fixed=f.point.values, smooth=None), candidate.name, None)
+    on = in_spell(f.frozen, candidate.name, None)
     nulls = {x.name: x.value(float(u)) for x, u in zip(candidate.unknowns, candidate.null, strict=True)}
     off = replace(on, fixed={**on.fixed, **nulls})
     gain = np.subtract(*(fit(one, NO_UNKNOWNS, f.states, QUICK).window_losses for one in (off, on)))
@@ -183,9 +183,10 @@ def _simplest(gain: FloatArray, recording_of: NDArray[np.int64]) -> tuple[int, i
 
 
 def largest_run(values: FloatArray) -> tuple[int, int]:
-    """First and last place of the run with the largest sum."""
+    """First and last place of the run of at least `SHORTEST` places with the largest sum."""
     total = np.concatenate([[0.0], np.cumsum(values)])
-    sums = np.where(np.arange(total.size)[:, None] < np.arange(total.size), total[None, :] - total[:, None], -np.inf)
+    place, shortest = np.arange(total.size), min(SHORTEST, values.size)
+    sums = np.where(place[:, None] + shortest <= place, total[None, :] - total[:, None], -np.inf)
     low, high = np.unravel_index(int(np.argmax(sums)), sums.shape)
     return int(low), int(high) - 1
 

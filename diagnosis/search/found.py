@@ -101,13 +101,14 @@ def price(candidate: Candidate) -> float:
 def survives(before: Explanation, after: Explanation, threshold: float = MISSING) -> bool:
     """Whether the gain passes without its most influential window and, of more than two, any one recording.
 
-    What does not always act may rest on one recording.
+    What does not always act may rest on one recording, never on one window.
     """
     gains = gain_by_window(before, after)
     total = before.loss - adjusted(after) + (adjusted(before) - before.loss)
     largest = float(gains.max(initial=0.0))
     if total - largest < threshold:
-        return largest >= ALONE * threshold and total - largest > -threshold and settles(before, after)
+        always = all(c.spell is None for c in after.candidates)
+        return always and largest >= ALONE * threshold and total - largest > -threshold and settles(before, after)
     measured = after.measured
     if len(measured.recordings) > 2 and all(c.spell is None for c in after.candidates):
         each = [float(gains[measured.recording_of == r].sum()) for r in range(len(measured.recordings))]

@@ -60,7 +60,7 @@ class Ends:
 def ends_of(explanation: Explanation, mechanism: str, spell: Spell) -> Ends:
     """Both ends of the spell of one of the explanation's mechanisms, each the likeliest while the other is held."""
     f = explanation.fitted
-    frozen = replace(f.misfit, unknowns=(), fixed=f.point.values, smooth=None)
+    frozen = f.frozen
     begins = _end(frozen, f.states, mechanism, spell, True)
     spell = Spell(begins.recording, begins.time, spell.last, spell.ends)
     return Ends(begins, _end(frozen, f.states, mechanism, spell, False))
@@ -92,7 +92,8 @@ def _end(misfit: Misfit, states: FloatArray, mechanism: str, spell: Spell, begin
         return Instant(_recording(moved[min(plain)[1]], begin), None)
     likely = [k for value, k in zip(loss, coarse, strict=True) if value < least + LEVEL]
     between = moved[max(0, likely[0] - COARSE) : likely[-1] + COARSE + 1]
-    fine = [one for one in between[:: -(-len(between) // MOST)] if not _whole(one, begin)]
+    stride = -(-len(between) // MOST)
+    fine = [one for one in between[::stride] if not _whole(one, begin)]
     loss = losses(fine)
     weight = np.cumsum(np.exp(-0.5 * (loss - loss.min())))
     middle = fine[int(np.searchsorted(weight, 0.5 * weight[-1]))]
@@ -101,7 +102,7 @@ def _end(misfit: Misfit, states: FloatArray, mechanism: str, spell: Spell, begin
         _time(one, begin) for value, one in zip(loss, fine, strict=True)
         if value < loss.min() + LEVEL and _recording(one, begin) == recording
     ]  # fmt: skip
-    return Instant(recording, best, max(0.0, min([*same, best]) - FINE), max([*same, best]) + FINE)
+    return Instant(recording, best, max(0.0, min([*same, best]) - stride * FINE), max([*same, best]) + stride * FINE)
 
 
 def _whole(spell: Spell, begin: bool) -> bool:

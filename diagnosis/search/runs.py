@@ -70,11 +70,15 @@ def chance(screen: Linearisation, scores: Sequence[Score], ends: NDArray[np.int6
     """What chance alone does to the largest statistic of all mechanisms in all runs: noise drawn and screened alike."""
     rng = np.random.default_rng(seed)
     root = np.sqrt(screen.weights)
+    # what priors hold may lie off their means too: without it the base parameters would take up more than they do
+    values, vectors = np.linalg.eigh(screen.fitted.misfit.prior_normal(screen.fitted.u)[0])
+    of_priors = np.sqrt(np.maximum(values, 0.0)) * vectors
     sums = [_Sums.of(screen, one.column, ends) for one in scores]
     largest = np.zeros(DRAWS)
     for start in range(0, DRAWS, AT_ONCE):
         noise = root[:, None] * rng.normal(size=(AT_ONCE, *screen.residual.shape))
         gradient = np.einsum("wmi,swm->si", screen.by_unknown, noise, optimize=True)
+        gradient += rng.normal(size=(AT_ONCE, values.size)) @ of_priors.T
         part = slice(start, start + AT_ONCE)
         for one, of_runs in zip(scores, sums, strict=True):
             along = np.einsum("wm,swm->sw", one.column, noise, optimize=True)

@@ -63,8 +63,8 @@ class Outcomes:
         return len(self.runs)
 
 
-def read_outcomes(path: str | Path, *, vertical: bool = False) -> Outcomes:
-    """The runs that a TOML describes, with their motions; ``vertical``: with their vertical component.
+def read_outcomes(path: str | Path) -> Outcomes:
+    """The runs that a TOML describes, with their motions, vertical components where there are any.
 
     Raises InputError with file, line, value and cure.
     """
@@ -83,7 +83,7 @@ def read_outcomes(path: str | Path, *, vertical: bool = False) -> Outcomes:
         raise InputError(f"{file.table}: run {twice[0]!r} stands there twice in column {file.run!r}; rename one")
     flags = None if file.overturned is None else np.array([_flag(line, file) for line in lines])
     groups = runs if file.group is None else tuple(line[file.group].strip() for line in lines)
-    motions = tuple(_motion(file, line, folder, run, vertical) for line, run in zip(lines, runs, strict=True))
+    motions = tuple(_motion(file, line, folder, run) for line, run in zip(lines, runs, strict=True))
     return Outcomes(path.stem, runs, motions, groups, flags)
 
 
@@ -133,10 +133,10 @@ def _completed(template: str, line: Mapping[str, str]) -> Iterator[str]:
         yield format(line[column].strip(), layout or "")
 
 
-def _motion(file: OutcomeFile, line: Mapping[str, str], folder: Path, run: str, vertical: bool) -> Motion:
+def _motion(file: OutcomeFile, line: Mapping[str, str], folder: Path, run: str) -> Motion:
     source = "".join(_completed(file.motion, line))
     given = {"file": source, **file.statement} if file.statement else source
     try:
-        return read_motion(given, component=file.component, vertical=vertical, near=folder)
+        return read_motion(given, component=file.component, near=folder)
     except InputError as error:
         raise InputError(f"run {run!r}: {error}") from None

@@ -16,6 +16,11 @@ from models.rubber import LAWS
 from models.walls import bodies, lanes_shape
 
 JOINTS = ("base", "top")
+OF_THE_BASE = frozenset({
+    "sliding", "one_sided_stiffness", "degradation", "bonded_layer", "wall_flexibility", "added_stiffness",
+    "viscous_damping", "coulomb_damping",
+})  # fmt: skip
+"""Mechanisms whose forces act between the wall and its base."""
 
 
 def assemble(values: Values, options: Mapping[str, str], vertical: bool, size: int | None = None) -> LayeredWall:
@@ -118,6 +123,15 @@ def build(
         raise InputError(
             "sliding and interface_shear both give way along the base and do not act together: leave one out, or give "
             "interface_shear.shear_over_normal_top alone"
+        )
+    frozen = wall.effects is not None and np.any(wall.effects.frozen_base + wall.effects.frozen_top)
+    if frozen and any(wall.laws_at(joint) for joint in wall.rubber_joints):
+        raise InputError(
+            "contact_length mixes the contact with the frozen one of linear rubber: leave the rubber's law out, or it"
+        )
+    if wall.effects is not None and wall.joints == "top" and (lost := OF_THE_BASE & set(wall.effects.parts)):
+        raise InputError(
+            f"{', '.join(sorted(lost))} acts on the rubber of the base, and joints = 'top' has none there: leave it out"
         )
     for joint in wall.rubber_joints:
         for law, p in wall.laws_at(joint):

@@ -31,10 +31,13 @@ NULLS = {
     "bending": np.inf,
 }
 STATES = (
-    "displacement_x_1", "displacement_x_2", "rotation_upper", "displacement_z_upper",
-    "velocity_x_1", "velocity_x_2", "rotation_rate_upper", "velocity_z_upper",
+    "displacement_x_1", "displacement_x_2", "bend", "displacement_z_upper",
+    "velocity_x_1", "velocity_x_2", "bend_rate", "velocity_z_upper",
 )  # fmt: skip
-"""Coordinates beyond those of the plain wall, and their rates; see `models.interface.chain`."""
+"""Coordinates beyond those of the plain wall, and their rates, as handed over; see `models.interface.chain`."""
+BENDS = {"bend": "rotation_1", "bend_rate": "rotation_rate_1"}
+"""Handed over as what the upper half of the wall has more than the lower one, so that a wall that is turned stays
+straight: the coordinates of the chain are the sums."""
 MEMORIES = ("closings", "opened", "torn_left", "torn_right")
 """Uplifts of the base closed again and whether one is under way (1 or 0); ends of what is bonded still (m)."""
 OPENED, CLOSED = 0.9, 0.98

@@ -12,6 +12,7 @@ from models.base import FloatArray, Values
 from models.errors import InputError
 from models.interface import declaration, modes, standing
 from models.interface.assembly import assemble, build
+from models.interface.effects import BENDS
 from models.interface.effects import STATES as OTHER_STATES
 from models.interface.identification import IDENTIFICATION
 from models.interface.layered import LayeredWall
@@ -107,7 +108,8 @@ class Interface(Model[LayeredWall]):
         self, states: FloatArray, outputs: Mapping[str, NDArray[Any]], initial: Mapping[str, FloatArray]
     ) -> dict[str, FloatArray]:
         """The states, with effects those of the other coordinates, too."""
-        return dict(zip((*self.states, *OTHER_STATES), states.T, strict=False))
+        found = dict(zip((*self.states, *OTHER_STATES), states.T, strict=False))
+        return found | {name: found[name] - found[lower] for name, lower in BENDS.items() if name in found}
 
     def settle(self, run: Run, time_step: float) -> FloatArray:
         """States that stay where a body reached pi/2."""

@@ -119,8 +119,11 @@ def _lever(wall: LayeredWall, rest: FloatArray) -> FloatArray:
 
 
 def _stiffness(wall: LayeredWall, rest: FloatArray) -> FloatArray:
-    """K (n, 4, 4) in full contact, gravity included."""
-    return layer_matrix(wall, *tangents(wall, rest)) - gravity_matrix(wall, _lever(wall, rest))
+    """K (n, 4, 4) in full contact, gravity and an added couple without a gap included."""
+    found = layer_matrix(wall, *tangents(wall, rest)) - gravity_matrix(wall, _lever(wall, rest))
+    if wall.effects is not None:
+        found[:, 0, 0] += np.where(wall.effects.couple_gap == 0.0, wall.effects.couple_stiffness, 0.0)
+    return np.asarray(found)
 
 
 def modes(wall: LayeredWall, mass: FloatArray, stiffness: FloatArray) -> Modes:

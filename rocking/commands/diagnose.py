@@ -72,7 +72,7 @@ def of_outcomes(wall: Specimen, table: Path, out: Path) -> None:
     from diagnosis.outcomes.files import write_answer
     from grids.recordings.outcomes import read_outcomes
 
-    runs = read_outcomes(table, vertical=bool(wall.vertical))
+    runs = read_outcomes(table)
     make_folder(out)
     with stages("stopped; nothing was written") as progress:
         found = diagnose_outcomes(wall, runs, progress=progress)

@@ -26,7 +26,7 @@ def predict_outcomes(
     from study.store import write_text
 
     specimen, posterior = read_answer(answer)
-    runs = read_outcomes(outcomes, vertical=bool(specimen.vertical))
+    runs = read_outcomes(outcomes)
     with stages("stopped; nothing was written") as progress:
         found = predict(specimen, posterior, runs, lambda _, share: progress("predicting the runs", share))
     text = prediction_text(found)

@@ -13,6 +13,7 @@ from models.ground import PitchedPiece, pitched_pieces
 from models.interface import modes, resting
 from models.interface.chain import SIZE
 from models.interface.declaration import CALM, STATES
+from models.interface.effects import BENDS
 from models.interface.effects import STATES as MORE
 from models.interface.layered import LayeredWall
 from models.interface.observe import with_onset
@@ -68,7 +69,10 @@ class _Run:
         names, rest = STATES + MORE, np.zeros(2 * SIZE)
         at_rest = self.equation.rest[0]
         rest[:4], rest[8 : 4 + at_rest.size] = at_rest[:4], at_rest[4:]
+        rest[names.index("bend")] -= rest[0]
         state = np.array([start.get(name, value) for name, value in zip(names, rest.tolist(), strict=True)])
+        for name, lower in BENDS.items():
+            state[names.index(name)] += state[names.index(lower)]
         q, v = np.append(state[:4], state[8:12])[: self.size], np.append(state[4:8], state[12:])[: self.size]
         hidden = self.equation.begun(q.tolist(), v.tolist(), start)
         self.y = np.concatenate([q[self.pick], v[self.pick], (0.0, 0.0), hidden])

@@ -9,7 +9,7 @@ import pytest
 from scipy.stats import norm
 
 from diagnosis.fit.unknowns import Unknown
-from diagnosis.outcomes.bank import Bank, Spread, filled
+from diagnosis.outcomes.bank import Bank, Spread, filled, with_points
 from diagnosis.outcomes.evidence import best, chance_of, expected, gain, left_out, null_gains
 from diagnosis.outcomes.ladder import LOG_SCALES, ODD, SCATTERS, Ladder, probabilities, weights
 from models.base import FloatArray
@@ -73,8 +73,15 @@ def test_the_posterior_is_that_of_direct_integration() -> None:
     mean, sd = exact @ grid, np.sqrt(exact @ grid**2 - (exact @ grid) ** 2)
     assert shares @ bank.points[:, 0] == pytest.approx(mean, abs=0.3 * sd)
     assert np.sqrt(shares @ (bank.points[:, 0] - mean) ** 2) == pytest.approx(sd, rel=0.3)
-    direct = float(np.log(np.mean(np.exp(log - log.max()))) + log.max())
-    assert bank.evidence(bank.log_likelihood(outcomes)) == pytest.approx(direct, abs=0.3)
+
+
+def test_a_point_without_weight_may_be_the_best_and_moves_no_average() -> None:
+    ladder, outcomes = drawn(1)
+    bank = bank_of(ladder, outcomes, LEVEL)
+    more = with_points(bank, ladder, np.array([[LEVEL.coordinate(0.1)], [LEVEL.coordinate(-1.0)]]))
+    np.testing.assert_allclose(expected(more, outcomes), expected(bank, outcomes), rtol=1e-12)
+    assert best(more, outcomes).log >= best(bank, outcomes).log
+    assert more.log_posterior(outcomes).shape[0] == bank.points.shape[0] + 2
 
 
 def test_leaving_runs_out_is_a_fit_without_them() -> None:

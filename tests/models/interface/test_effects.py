@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import pytest
 
@@ -263,3 +265,28 @@ def test_a_lane_with_effects_does_not_depend_on_the_others() -> None:
         found = MODEL.evaluate(alone, SHAKING, 0.5 + size[k : k + 1], outputs=names, tail=1.0)
         for name in names:
             np.testing.assert_array_equal(found[name][0], together[name][k], err_msg=name)
+
+
+@pytest.mark.parametrize("integrator", ["lanes", "reference"])
+def test_a_bending_wall_that_is_turned_starts_straight(integrator: str) -> None:
+    """Nearly stiff, it rocks as the plain wall from the same state; a kink at the start would ring."""
+    start, quiet = {"rotation_1": 0.01, "rotation_2": 0.01}, Shaking.silence(0.15, 0.005)
+    run = partial(MODEL.simulate, shaking=quiet, initial=start, integrator=integrator)
+    plain = run(SHORT).channels["rotation_1"]
+    bending = run({**SHORT, "wall_flexibility.flexural_stiffness_ratio": 1e4}).channels["rotation_1"]
+    np.testing.assert_allclose(bending, plain, atol=0.02 * float(np.max(np.abs(plain))))
+
+
+def test_a_couple_that_takes_more_than_the_layers_give_tips_the_wall() -> None:
+    tipping = MODEL.build({**SHORT, "added_stiffness.couple_stiffness": -1e9}, size=1)
+    assert MODEL.refused(tipping)
+
+
+def test_a_frozen_contact_goes_with_linear_rubber_only() -> None:
+    with pytest.raises(InputError, match="contact_length mixes"):
+        MODEL.build({**SHORT, **typical("contact_length"), "hardening.beta2": 20.0})
+
+
+def test_effects_of_the_base_need_rubber_there() -> None:
+    with pytest.raises(InputError, match="sliding acts on the rubber of the base"):
+        MODEL.build({**SHORT, "sliding.friction": 0.1}, {"joints": "top"})

@@ -8,7 +8,7 @@ import numpy as np
 
 from models.base import FloatArray
 from models.interface.chain import masses
-from models.interface.effects import FROZEN_OVER, MEMORIES, STATES, Effects
+from models.interface.effects import BENDS, FROZEN_OVER, MEMORIES, STATES, Effects
 from models.interface.lanes.effects import rows as e
 from models.interface.lanes.effects.rows import More
 from models.interface.lanes.rows import W
@@ -54,8 +54,12 @@ def given_effects(
         e.HALF_INERTIA: inertia[0],
     }  # fmt: skip
     table = filled(wall.size, e.N_GIVEN, {row - e.PITCH: values for row, values in constants.items()})
+    lower = rest[:, 0]
+    at_rest = {**dict(zip(STATES, rest[:, 4:].T, strict=False)), "bend": rest[:, 6] - lower, "rotation_1": lower}
     for k, name in enumerate(STATES):
-        table[:, e.G_STATE + k] = initial.get(name, rest[:, 4 + k] if k < 4 else 0.0)
+        table[:, e.G_STATE + k] = initial.get(name, at_rest.get(name, 0.0))
+        if of_lower := BENDS.get(name):
+            table[:, e.G_STATE + k] += initial.get(of_lower, at_rest.get(of_lower, 0.0))
     half = np.where(effects.tearing > 0.0, wall.base_half_width, -wall.base_half_width)
     for k, (name, value) in enumerate(zip(MEMORIES, (0.0 * half, 0.0 * half, -half, half), strict=True)):
         table[:, e.G_MEMORY + k] = initial.get(name, value)
@@ -81,6 +85,6 @@ def energy(wall: LayeredWall, q: FloatArray, states: FloatArray, hidden: FloatAr
         for k, joint in enumerate(("base", "top"))
         if (given := wall.laws_at(joint))
     }  # fmt: skip
-    if not (wall.effects is not None and "wall_flexibility" in wall.effects.parts):
-        whole[:, 6] = whole[:, 0]
+    effects = wall.effects or Effects.none(wall.size)
+    whole[:, 6] = np.where(np.isfinite(effects.bending), whole[:, 6], whole[:, 0])
     return stored(wall, whole, [states[:, 8], states[:, 10], states[:, 11]], laws)
