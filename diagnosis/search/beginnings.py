@@ -51,7 +51,7 @@ def beginnings(found: Search, progress: Progress) -> Iterator[Search]:
     Alone if it can, else beside the one effect that was found.
     """
     few = len(found.measured.windows) < FEWEST_WINDOWS
-    if found.null is None or few or not found.affordable() or _settled(found):
+    if found.null is None or few or _settled(found) or not found.affordable("effects that begin or end"):
         return
     progress("looking for effects that begin or end", 0.82)
     starts = [found.base]

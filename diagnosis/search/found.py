@@ -77,7 +77,7 @@ class Search:
         return MISSING + min(DETAIL * max(self.gain(self.chosen), 0.0), MISSING)
 
     def affordable(self, *names: str) -> bool:
-        """Whether the budget lasts; if not, that the mechanisms of these names were not tried (further) is noted."""
+        """Whether the budget lasts; if not, that these mechanisms or stages were not tried (further) is noted."""
         if self.budget.spent:
             for name in names:
                 self.not_tried.setdefault(name, ENDED)

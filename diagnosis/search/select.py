@@ -180,7 +180,7 @@ def _pairs(found: Search, progress: Progress) -> None:
     pairs: list[Explanation] = []
     for k, single in enumerate(singles):
         progress(f"looking for a second effect beside {single.names[0]}", 0.5 + 0.25 * k / len(singles))
-        if not found.affordable():
+        if not found.affordable(f"a second effect beside {single.names[0]}"):
             break
         pairs += _extended(found, single, others if single is found.best else seconds(found, single))
         if any(adequate(e) for e in pairs):  # the backward check still tries the others in its place
@@ -214,7 +214,9 @@ def _extended(found: Search, explanation: Explanation, scores: Sequence[Score]) 
 
 def _more(found: Search, progress: Progress) -> None:
     """A third effect, by the same rule, unless a law outside the library explains more."""
-    while found.best is not None and 2 <= len(found.best.candidates) < MOST_EFFECTS and found.affordable():
+    while (
+        found.best is not None and 2 <= len(found.best.candidates) < MOST_EFFECTS and found.affordable("a third effect")
+    ):
         progress("looking for a further effect", 0.8)
         others = seconds(found, found.best)
         if not adequate(found.best):
@@ -247,7 +249,7 @@ def _backward(found: Search) -> None:
     if len(found.best.candidates) < 2:
         return
     for candidate in found.best.candidates:
-        if found.affordable():
+        if found.affordable(f"others in the place of {candidate.name}"):
             rest = without(found.best, candidate)
             found.tried += _extended(found, rest, seconds(found, rest))
     same = [e for e in found.tried if len(e.candidates) == len(found.best.candidates)]
