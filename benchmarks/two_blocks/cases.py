@@ -134,13 +134,13 @@ def buildings(rng: Any, n: int) -> dict[str, Any]:
 def operations(law: str) -> int:
     """Of one lane-step of the interface model."""
     from models.interface.fibres import COUNT
-    from models.interface.lanes import fibres
+    from models.interface.lanes import along, fibres
     from models.interface.lanes.step import step_all
 
     if law == "linear":
         return count_operations(step_all, ("mixed", "laws"))
     once = sum(count_operations(part, ("mixed",)) for part in (step_all, fibres.predicted_strips, fibres.lengths))
-    four = fibres._four((LAWS[law],), 0)
+    four = along._alone(LAWS[law], 0, False)
     return once + 2 * (COUNT // 4) * count_operations(four, ())
 
 

@@ -27,7 +27,7 @@ ROUNDING = 1e-9
 MOST_POINTS = 500
 """Samples of a law that are kept to be drawn."""
 UNSEEN = 1.0
-"""s compared, at most, between an end of a stage and what acts in it: impacts may be as far apart."""
+"""s compared, at most, between an end of a stage and what acts in it: events may be as far apart."""
 PAUSE = 0.1
 """s that an action may pass through zero within one interval."""
 

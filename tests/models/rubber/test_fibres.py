@@ -77,5 +77,5 @@ def test_an_open_fibre_forgets_only_what_relaxes() -> None:
     for name in LAWS:
         one = wall({**SHORT, **GIVEN[name]})
         fibres = Fibres(one, "base")
-        found = fibres.difference((1e-3, 1e-4, -0.2, 0.1), fibres.relaxed(np.array([1.1e-3])))
+        found = fibres.difference((1e-3, 1e-4, -0.2, 0.1), fibres.relaxed(np.array([-1.1e-3]), np.zeros(1)))
         assert found.force == found.moment == 0.0
