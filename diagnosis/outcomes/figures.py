@@ -36,6 +36,8 @@ def plot_chances(answer: OutcomeDiagnosis, *, width: float = WIDE, palette: Pale
                 markersize=5, label="stood")  # fmt: skip
         ax.plot(x[fell], one.chance[fell], "o", color=palette.accent, markersize=5, label="overturned")
         ax.set_xscale("log")
+        ax.xaxis.set_major_formatter("{x:g}")
+        ax.xaxis.set_minor_formatter("{x:g}")
         ax.set_ylim(-0.04, 1.04)
         ax.set_ylabel("chance predicted")
         ax.set_title(one.by, loc="left", fontsize="medium", color=palette.ink)
