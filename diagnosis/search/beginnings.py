@@ -24,6 +24,7 @@ from diagnosis.fit.solver import fit
 from diagnosis.forces.columns import forces
 from diagnosis.forces.constancy import flags, tests
 from diagnosis.progress import Progress
+from diagnosis.search.budget import RESERVED, Budget
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.found import MISSING, Search, adjusted, explains_all, price, survives
 from diagnosis.search.instants import NO_UNKNOWNS, WHOLE, ends_of
@@ -51,13 +52,16 @@ def beginnings(found: Search, progress: Progress) -> Iterator[Search]:
     Alone if it can, else beside the one effect that was found.
     """
     few = len(found.measured.windows) < FEWEST_WINDOWS
-    if found.null is None or few or _settled(found) or not found.affordable("effects that begin or end"):
+    if found.null is None or few or _settled(found):
         return
     progress("looking for effects that begin or end", 0.82)
+    found.budget = Budget(RESERVED)
     starts = [found.base]
     if found.best is not None and len(found.best.candidates) == 1:
         starts.append(found.best)
     for start in starts:
+        if not found.affordable("effects that begin or end beside the one that was found"):
+            return
         fits = _in_spells(found, start)
         if fits and _needed(found, start, fits[0]):
             trial = _weighed(found, fits)

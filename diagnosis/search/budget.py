@@ -8,6 +8,8 @@ from models.runs import DONE
 
 MOST = 150_000_000
 """Lane-steps of a search: one to two and a half minutes of one core, by what each of them costs."""
+RESERVED = 60_000_000
+"""Lane-steps for effects that begin or end, whatever was spent before: they come last and may explain everything."""
 ENDED = "the search's budget of work ended before it"
 
 
