@@ -16,7 +16,7 @@ import numba
 from numba.extending import overload, register_jitable
 
 from models.lanes import elementary
-from models.lanes.sealed_cache import seal_cache
+from models.lanes.sealed_cache import compile_once, seal_cache
 
 F = TypeVar("F", bound=Callable[..., object])
 _ROOT = Path(__file__).resolve().parent.parent.parent
@@ -96,6 +96,7 @@ def compiled(function: F) -> F:
     try:
         dispatcher = numba.njit(**_SETTINGS)(function)
         seal_cache(dispatcher)
+        compile_once(dispatcher)
         return cast(F, dispatcher)
     finally:
         numba.config.CACHE_DIR = given

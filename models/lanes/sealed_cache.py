@@ -1,10 +1,17 @@
-"""Numba's files of machine code with a checksum: what is damaged is compiled anew, never executed."""
+"""Numba's files of machine code with a checksum: what is damaged is compiled anew, never executed.
+
+Of several processes that want the same kernel one compiles it, the others wait and load what it has written.
+"""
 
 from __future__ import annotations
 
+import fcntl
 import hashlib
 import logging
+import os
 import pickle
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -47,6 +54,33 @@ def seal_cache(dispatcher: Any) -> None:
     cache = dispatcher._cache
     stamp = cache._impl.locator.get_source_stamp()
     cache._cache_file = SealedFiles(cache._cache_path, cache._impl.filename_base, stamp)
+
+
+@contextmanager
+def _locked(path: Path) -> Iterator[None]:
+    """Alone with ``path`` among all processes; not alone where no file can be made there."""
+    try:
+        lock = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC, 0o600)
+    except OSError:
+        yield
+        return
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(lock)
+
+
+def compile_once(dispatcher: Any) -> None:
+    """Let a process that wants a kernel wait for another that compiles it at this moment."""
+    compile_here = dispatcher.compile
+
+    def compile_or_wait(signature: Any) -> Any:
+        wanted = hashlib.sha256(str(signature).encode()).hexdigest()[:16]
+        with _locked(Path(dispatcher._cache._cache_path) / f"{wanted}.lock"):
+            return compile_here(signature)
+
+    dispatcher.compile = compile_or_wait
 
 
 def _intact(data: bytes) -> bool:

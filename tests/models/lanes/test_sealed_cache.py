@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import os
 import random
 import subprocess
 import sys
@@ -13,11 +14,12 @@ import pytest
 
 KERNEL = """
 import numba, os, sys
-from models.lanes.sealed_cache import seal_cache
+from models.lanes.sealed_cache import compile_once, seal_cache
 @numba.njit(cache=True)
 def kernel(x):
     return 2.0 * x + 1.0
 seal_cache(kernel)
+compile_once(kernel)
 kernel(3.0)
 print(kernel(20.0), sum(kernel.stats.cache_hits.values()))
 """
@@ -50,6 +52,19 @@ def test_files_are_used_until_they_are_damaged(kernel: Callable[[], tuple[str, s
         result, said = kernel()
         assert result == "41.0 0" and "is damaged: compiled anew" in said
         assert kernel() == ("41.0 1", "")
+
+
+def test_of_several_processes_one_compiles(tmp_path: Path) -> None:
+    script = tmp_path / "script.py"
+    script.write_text(KERNEL)
+    environment = {
+        **os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "cache"), "PYTHONPATH": str(Path(__file__).resolve().parents[3])
+    }  # fmt: skip
+    at_once = [
+        subprocess.Popen([sys.executable, str(script)], stdout=subprocess.PIPE, env=environment, text=True)
+        for _ in range(4)
+    ]
+    assert sorted(one.communicate()[0].strip() for one in at_once) == ["41.0 0", "41.0 1", "41.0 1", "41.0 1"]
 
 
 def test_no_flipped_bit_is_executed(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
