@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from grids.motions.measures import MEASURES, PREFIX, measures_of
 from grids.plan import Plan
 from grids.targets import MOTION, SCALES
 from models.base import STATUS, Parameter, Quantity
@@ -71,20 +72,19 @@ def _declared(model: Model, name: str) -> dict[str, Any]:
 
 
 def motion_coordinates(plan: Plan) -> list[Coordinate]:
-    """Name and own peak of the records: along the axis that varies them, or scalars."""
+    """Names and measures (`grids.motions.measures`) of the records: along the axis that varies them, or scalars."""
     along = next((axis for axis in plan.axes if MOTION in axis.sets), None)
     motions = motions_by_name(plan)
-    label = {"units": "1", "long_name": "ground motion", "comment": "name of the record"}
-    peak = {
-        "units": "m s-2",
-        "long_name": "peak horizontal acceleration of the record",
-        "comment": "largest absolute sample before any scaling",
-    }
+    measured = {name: measures_of(motion) for name, motion in motions.items()}
+    names = list(motions) if along is None else along.sets[MOTION].tolist()
+    dims = () if along is None else (along.name,)
+    found = []
+    for measure in MEASURES:
+        values = np.array([measured[name][measure.name] for name in names])
+        attributes = {"units": measure.unit, "long_name": measure.meaning, "symbol": measure.symbol}
+        attributes["comment"] = "of the record as read, before any scaling"
+        found.append(Coordinate(PREFIX + measure.name, dims, values if dims else np.asarray(values[0]), attributes))
     if along is None:
-        (motion,) = motions.values()
-        return [
-            Coordinate(MOTION, (), np.array(motion.name, dtype=object), label),
-            Coordinate("record_pga", (), np.array(motion.pga), peak),
-        ]
-    peaks = np.array([motions[value].pga for value in along.sets[MOTION].tolist()])
-    return [Coordinate("record_pga", (along.name,), peaks, peak)]
+        label = {"units": "1", "long_name": "ground motion", "comment": "name of the record"}
+        found.insert(0, Coordinate(MOTION, (), np.array(names[0], dtype=object), label))
+    return found

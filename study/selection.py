@@ -53,7 +53,7 @@ def complete(
 def place(cube: xr.Dataset, at: Mapping[str, Any]) -> str:
     """What ``at`` takes of the cube, for a title or a line: the motion, and the value of every axis."""
     chosen = cube.isel({name: int(np.flatnonzero(cube[name].values == value)[0]) for name, value in at.items()})
-    parts = [str(chosen["motion"].values)] if "motion" in chosen.coords and chosen["motion"].size == 1 else []
+    parts = [str(chosen["motion"].values.item())] if "motion" in chosen.coords and chosen["motion"].size == 1 else []
     for name, axis in chosen.coords.items():
         is_axis = axis.attrs.get("axis_of_study") == "true"
         if is_axis and name != "motion" and axis.size == 1:

@@ -62,7 +62,7 @@ def test_python_runs_as_printed(block: Block, tmp_path: Path, monkeypatch: pytes
     monkeypatch.chdir(tmp_path)
     (tmp_path / "studies").mkdir()
     for plan in (ROOT / "studies").glob("*.toml"):
-        thin = re.sub(r"(linspace = \[[^,\]]+, [^,\]]+), \d+\]", r"\1, 4]", plan.read_text("utf-8"))
+        thin = re.sub(r"((?:lin|geom)space = \[[^,\]]+, [^,\]]+), \d+\]", r"\1, 4]", plan.read_text("utf-8"))
         (tmp_path / "studies" / plan.name).write_text(thin)
     exec(compile(block.text, block.page, "exec"), {})
 
@@ -106,7 +106,8 @@ def test_commands_are_ones_that_exist(block: Block) -> None:
         if (selected := context.params.get("select")) and file.exists():
             plan = read_plan(file)
             cube = xr.Dataset(coords={a.name: (a.name, a.values, {"units": a.unit}) for a in plan.axes})
-            on_grid(cube, dict(entry.split("=", 1) for entry in selected))
+            nearest = bool(context.params.get("nearest"))
+            on_grid(cube, dict(entry.split("=", 1) for entry in selected), nearest=nearest)
 
 
 def test_pages_leave_the_contents_to_the_theme(monkeypatch: pytest.MonkeyPatch) -> None:

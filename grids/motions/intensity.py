@@ -41,7 +41,7 @@ def intensity_measures(motion: Motion, high_pass: float | None = HIGH_PASS) -> I
     PGA, Arias intensity and duration are of the acceleration as it is. ``high_pass`` as in
     `velocity_and_displacement`; a pulse or an artificial motion needs none, its velocity is never filtered.
     """
-    corner = None if motion.source.get("format") in ("pulse", "artificial") else high_pass
+    corner = high_pass_of(motion, high_pass)
     velocity, displacement = velocity_and_displacement(motion.horizontal, motion.time_step, corner)
     start, end = significant_interval(motion.horizontal, motion.time_step)
     return IntensityMeasures(
@@ -54,6 +54,11 @@ def intensity_measures(motion: Motion, high_pass: float | None = HIGH_PASS) -> I
         end=end,
         rule=velocity_rule(corner),
     )
+
+
+def high_pass_of(motion: Motion, high_pass: float | None = HIGH_PASS) -> float | None:
+    """The corner of the high-pass for a motion, Hz: none for a pulse or an artificial motion."""
+    return None if motion.source.get("format") in ("pulse", "artificial") else high_pass
 
 
 def velocity_rule(high_pass: float | None) -> str:

@@ -7,8 +7,11 @@ import typer
 from rocking.commands import (
     calibrate,
     check,
+    cloud,
     diagnose,
     export,
+    fragility,
+    ida,
     map,
     motions,
     plan,
@@ -17,6 +20,7 @@ from rocking.commands import (
     run,
     simulate,
     slices,
+    spectra,
     status,
 )
 from rocking.commands.base import Commands
@@ -29,6 +33,10 @@ COMMANDS = (
     export.export,
     map.map_,
     slices.slices,
+    fragility.fragility,
+    ida.ida,
+    cloud.cloud,
+    spectra.spectra,
     motions.motions,
     simulate.simulate,
     calibrate.calibrate,

@@ -14,6 +14,8 @@ from rocking.interrupts import INTERRUPTED, STOPPED, raise_interrupts
 if TYPE_CHECKING:
     import xarray as xr
 
+    from study.sets.cells import Event
+
 USER_ERROR = 2
 FAILURES = 1
 
@@ -63,6 +65,20 @@ def read_selection(cube: xr.Dataset, entries: Sequence[str] | None, nearest: boo
             raise InputError(f"selection '{entry}': {name} is selected twice; leave one out")
         found[name] = text
     return on_grid(cube, found, nearest=nearest)
+
+
+def read_event(cube: xr.Dataset, text: str | None) -> Event:
+    """``"peak_rotation > 2 deg"`` as an event of the cube; overturning without a text. Raises InputError."""
+    from grids.units import to_si
+    from study.sets.cells import event_of
+
+    if text is None:
+        return event_of(cube)
+    output, sign, value = (part.strip() for part in text.partition(">"))
+    if not sign or not value:
+        raise InputError(f"event '{text}': write OUTPUT > VALUE, for instance 'peak_rotation > 2 deg'")
+    unit = str(cube[output].attrs.get("units", "1")) if output in cube.data_vars else "1"
+    return event_of(cube, output, to_si(value, unit, f"event '{text}'"))
 
 
 STRICT = "Refuse what is unusual (a block 1500 m high, a PGA over 5 g) instead of warning."

@@ -43,6 +43,12 @@ def label(values: xr.DataArray) -> str:
     return words if unit == "1" else f"{words} [{unit}]"
 
 
+def symbol_label(values: xr.DataArray) -> str:
+    """Symbol (else name) and unit of a quantity for an axis."""
+    words, unit = str(values.attrs.get("symbol") or title(str(values.name))), shown(values)[1]
+    return words if unit == "1" else f"{words} [{unit}]"
+
+
 def literal(text: str) -> str:
     """A name from a file as matplotlib prints it: a dollar sign in it begins no formula."""
     return text.replace("$", r"\$")

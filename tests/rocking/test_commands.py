@@ -247,3 +247,24 @@ def test_simulate_refuses_before_the_work_what_it_would_refuse_after() -> None:
     for more, words in ((("--figure", "h.xyz"), "end the name in"), (("--scale", 0), "leaves no motion")):
         refused = rocking(*free, *more)
         assert refused.exit_code == 2 and words in refused.stderr and not Path("h.nc").exists()
+
+
+def test_a_set_of_motions_from_plan_to_figures() -> None:
+    plan = plan_text(
+        motion='files = ["ridgecrest_2019_c*", "ridgecrest_2019_tow2"]\nvertical = false',
+        aspect="values = [0.15]",
+        pga="linspace = [0.1, 1.0, 8], unit = 'g'",
+    )
+    Path("set.toml").write_text(plan.replace("small", "set"))
+    assert rocking("run", "set.toml").exit_code == 0
+    words = ("--event", "peak_rotation > 1 deg")
+    few = rocking("fragility", "results/set", *words, "--measure", "pgv", "--over", "top_mass")
+    assert few.exit_code == 0 and "peak_rotation > 0.01745 rad" in few.stdout and "3000 kg" in few.stdout
+    assert rocking("ida", "results/set", "peak_rotation").exit_code == 0
+    cloud = rocking("cloud", "results/set", "peak_rotation", *words)
+    assert cloud.exit_code == 0 and "pgv_over_pga" in cloud.stdout
+    for name in ("fragility", "ida", "cloud", "measures"):
+        assert (Path("results/set") / f"{name}.png").stat().st_size > 5000
+    refused = rocking("spectra", "results/set")
+    assert refused.exit_code == 2 and "onset_acceleration changes along top_mass too" in refused.stderr
+    assert "did you mean 'pgv'" in rocking("fragility", "results/set", "--measure", "pvg").stderr

@@ -1,0 +1,105 @@
+"""Cubes of a set of motions: fragility, incremental curves, measures, against capacities that are known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from grids.motions import make_pulse, read_motion
+from grids.motions.measures import MEASURES, measures_of
+from models.errors import InputError
+from study.sets.cells import event_of, intensity
+from study.sets.fragility import fragility
+from study.sets.incremental import incremental
+from study.sets.sorting import area_under_curve, sorting
+from study.status import NOT_CONVERGED
+from tests.study.sets.simulated import DISPERSION, LEVELS, MEDIAN, capacities, cube_of
+
+CAPACITY = capacities(np.random.default_rng(5), 60)
+CUBE = cube_of(CAPACITY)
+
+
+@pytest.mark.parametrize(("scale", "stretch"), [(1.7, 1.0), (1.0, 1.5)])
+def test_measures_grow_as_they_say(scale: float, stretch: float) -> None:
+    """A scaled or stretched motion has the measures that follow from the record's. PGD is left out of the stretched
+    record: its high-pass does not stretch with it; the pulse has none."""
+    pulse = make_pulse({"shape": "sine", "amplitude": "2 m/s^2", "frequency": "2 Hz", "lead": "0.1 s", "rest": "1 s"})
+    motions = [pulse] if stretch != 1.0 else [pulse, read_motion("ridgecrest_2019_clc")]
+    for motion in motions:
+        before, after = measures_of(motion), measures_of(motion.scaled(scale).time_scaled(stretch))
+        for measure in MEASURES:
+            if stretch == 1.0 or measure.stretch is not None:
+                factor = scale**measure.power * stretch ** (measure.stretch or 0.0)
+                assert after[measure.name] == pytest.approx(factor * before[measure.name], rel=1e-6), measure.name
+
+
+def test_intensity_of_a_cell_is_that_of_its_scaled_motion() -> None:
+    np.testing.assert_allclose(intensity(CUBE, "pga"), np.broadcast_to(LEVELS, (60, 12)))
+    np.testing.assert_allclose(intensity(CUBE, "pgv"), LEVELS / CAPACITY[:, None])
+    assert (intensity(CUBE, "duration") == CUBE["record_duration"]).all()
+    with pytest.raises(InputError, match="does not hold record_arias"):
+        intensity(CUBE, "arias")
+
+
+def test_fragility_finds_the_capacities() -> None:
+    found = fragility(CUBE, event_of(CUBE))
+    assert found["median_low"] < MEDIAN < found["median_high"]
+    assert found["dispersion_low"] < DISPERSION < found["dispersion_high"]
+    np.testing.assert_allclose(found["share"], [(level >= CAPACITY).mean() for level in LEVELS])
+    np.testing.assert_allclose(found["strength"], LEVELS)
+    assert (found["share_low"] <= found["share"]).all() and (found["share"] <= found["share_high"]).all()
+    half = fragility(CUBE, event_of(CUBE, "peak_rotation", 0.05))
+    assert half["median"] == pytest.approx(float(found["median"]) / 2, rel=0.1)
+    sharp = fragility(CUBE, event_of(CUBE), "pgv")
+    assert "one threshold" in str(sharp["why"].values), "PGV decides alone here"
+
+
+def test_unanswered_cells_are_left_out() -> None:
+    cube = CUBE.copy(deep=True)
+    cube["status"][:30, 4] = NOT_CONVERGED
+    found = fragility(cube, event_of(cube))
+    assert found["unknown"] == 30 and found["cells"] == 690
+    assert found["share"][4] == pytest.approx((CAPACITY[30:] <= LEVELS[4]).mean())
+
+
+def test_quantiles_of_incremental_curves() -> None:
+    """Of rotations .1 pga/capacity, infinite from the capacity on, the quantiles are known at every level."""
+    found = incremental(CUBE, "peak_rotation")
+    ratio = LEVELS / np.sort(CAPACITY)[::-1][:, None]
+    for k, quantile in enumerate(found["quantile"].values):
+        exact = np.where(ratio >= 1.0, np.inf, 0.1 * ratio)[int(np.ceil(quantile * 60)) - 1]
+        np.testing.assert_allclose(found["quantile_curves"][k], exact)
+    np.testing.assert_allclose(found["overturned_share"], [(level >= CAPACITY).mean() for level in LEVELS])
+    by_velocity = incremental(CUBE, "peak_rotation", "pgv")
+    finite = by_velocity["quantile_curves"].where(np.isfinite(by_velocity["quantile_curves"]))
+    assert (finite.max("quantile") - finite.min("quantile")).max() < 0.005, "over PGV all motions are one curve"
+    with pytest.raises(InputError, match="does not grow"):
+        incremental(CUBE, "peak_rotation", "duration")
+
+
+def test_the_measure_that_decides_sorts_best() -> None:
+    found = sorting(CUBE, event_of(CUBE), measures=("pga", "pgv", "duration"))
+    assert found["measure"].values.tolist()[:2] == ["pgv", "pga"] and found["area"][0] == 1.0
+    last = found.sel(measure="duration")
+    assert last["area_low"] < 0.5 < last["area_high"]
+    with pytest.raises(InputError, match="nothing to sort"):
+        sorting(CUBE.isel(pga=[0]), event_of(CUBE))
+
+
+def test_area_is_the_chance_that_a_pair_is_sorted() -> None:
+    random = np.random.default_rng(7)
+    x, y = random.integers(0, 9, 60).astype(float), random.integers(0, 2, 60).astype(float)
+    ones, zeros = x[y == 1.0][:, None], x[y == 0.0]
+    assert area_under_curve(x, y) == pytest.approx(np.mean((ones > zeros) + 0.5 * (ones == zeros)))
+
+
+def test_bad_events_are_refused() -> None:
+    for words, cure in (
+        (("peak_rotaton", 0.1), "did you mean"),
+        (("peak_rotation", None), "needs the threshold"),
+        (("overturned", 0.5), "yes or no"),
+    ):
+        with pytest.raises(InputError, match=cure):
+            event_of(CUBE, *words)  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="no axis 'motion'"):
+        fragility(CUBE.isel(motion=0), event_of(CUBE))
