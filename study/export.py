@@ -33,15 +33,21 @@ def export(
     if path.suffix == ".csv":
         write_whole(path, lambda temporary: _write_csv(chosen, temporary))
     elif path.suffix == ".nc":
-        write_whole(path, lambda temporary: _write_netcdf(chosen, temporary))
+        write_dataset(chosen, path)
     else:
         raise InputError(f"cannot export to '{path.name}': end the name in .csv or .nc")
     return path
 
 
-def _write_netcdf(cube: xr.Dataset, path: Path) -> None:
-    with NETCDF_LOCK:
-        cube.to_netcdf(path, engine="netcdf4", format="NETCDF4")
+def write_dataset(values: xr.Dataset, path: Path) -> Path:
+    """Write a Dataset as netCDF, whole or not at all."""
+
+    def write(temporary: Path) -> None:
+        with NETCDF_LOCK:
+            values.to_netcdf(temporary, engine="netcdf4", format="NETCDF4")
+
+    write_whole(path, write)
+    return path
 
 
 def _write_csv(cube: xr.Dataset, path: Path) -> None:

@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-PACKAGES = ("rocking-study", "numpy", "scipy", "numba", "xarray", "netCDF4", "dask", "distributed")
+PACKAGES = ("rocking-study", "numpy", "scipy", "numba", "xarray", "netCDF4", "dask", "distributed", "SALib")
 
 
 def attribute(value: Any) -> Any:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from grids.axes import cases, geomspace, latin_hypercube, linspace, sobol, values
-from grids.axes.base import Axis, AxisKind, Request
+from grids.axes import cases, geomspace, latin_hypercube, linspace, morris, saltelli, sobol, values
+from grids.axes.base import Axis, AxisKind, Design, Request
 from models.errors import InputError, nearest
 
 KINDS: tuple[AxisKind, ...] = (
@@ -12,10 +12,12 @@ KINDS: tuple[AxisKind, ...] = (
     values.KIND,
     latin_hypercube.KIND,
     sobol.KIND,
+    saltelli.KIND,
+    morris.KIND,
     cases.KIND,
 )
 
-__all__ = ["KINDS", "Axis", "Request", "read_axis"]
+__all__ = ["KINDS", "Axis", "Design", "Request", "read_axis"]
 
 
 def read_axis(request: Request) -> Axis:

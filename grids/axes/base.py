@@ -18,6 +18,14 @@ MOST_POINTS = 10_000_000
 
 
 @dataclass(frozen=True, eq=False)
+class Design:
+    """Points of a sensitivity analysis: its kind of axis, and the shares ``(n, parameters)`` of the distributions."""
+
+    kind: str
+    shares: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
 class Axis:
     """``values`` (n,): numbers in the SI ``unit``, or words (records, options, labels of cases).
 
@@ -30,6 +38,7 @@ class Axis:
     unit: str
     long_name: str
     points: Mapping[str, NDArray[Any]] | None = None
+    design: Design | None = None
 
     @property
     def size(self) -> int:

@@ -18,14 +18,19 @@ def _draw(dimensions: int, count: int, seed: int) -> Any:
     return qmc.Sobol(dimensions, scramble=True, seed=seed).random(count)
 
 
-def _read(request: Request) -> Axis:
-    size = count(request.table["sobol"], 1, f"{request.where} sobol")
+def check_power_of_two(request: Request, key: str) -> None:
+    """Raise InputError for a count that is none."""
+    size = count(request.table[key], 1, f"{request.where} {key}")
     if size & (size - 1):
         below = 1 << (size.bit_length() - 1)
         raise InputError(
-            f"{request.where}: sobol = {size} is no power of two, without which the sample loses its "
+            f"{request.where}: {key} = {size} is no power of two, without which the sample loses its "
             f"balance; give {below} or {2 * below}."
         )
+
+
+def _read(request: Request) -> Axis:
+    check_power_of_two(request, "sobol")
     return read_sample(request, "sobol", _draw)
 
 

@@ -12,6 +12,7 @@ from study.figures.onset import plot_onset_map
 from study.figures.output import plot_output_map
 from study.figures.overturning import plot_overturning_map
 from study.figures.save import save_figure
+from study.figures.sensitivity import plot_indices, plot_interactions, plot_tornado
 from study.figures.slices import plot_slices
 from study.figures.spectra import plot_overturning_spectrum, plot_rocking_spectrum
 
@@ -20,6 +21,8 @@ __all__ = [
     "plot_fragility",
     "plot_history",
     "plot_incremental",
+    "plot_indices",
+    "plot_interactions",
     "plot_map",
     "plot_motion",
     "plot_onset_map",
@@ -29,5 +32,6 @@ __all__ = [
     "plot_rocking_spectrum",
     "plot_slices",
     "plot_sorting",
+    "plot_tornado",
     "save_figure",
 ]

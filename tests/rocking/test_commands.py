@@ -268,3 +268,21 @@ def test_a_set_of_motions_from_plan_to_figures() -> None:
     refused = rocking("spectra", "results/set")
     assert refused.exit_code == 2 and "onset_acceleration changes along top_mass too" in refused.stderr
     assert "did you mean 'pgv'" in rocking("fragility", "results/set", "--measure", "pvg").stderr
+
+
+def test_sensitivity_from_plan_to_table() -> None:
+    axes = "sample = { morris = 10, seed = 1, parameters = { aspect_ratio = [0.15, 0.3], pga = [2, 9] } }"
+    text = plan_text(outputs='"overturned", "peak_rotation"')
+    head, tail = text.split("[axes]")[0], text[text.index("[outputs]") :]
+    Path("sens.toml").write_text(f"{head}[axes]\n{axes}\n{tail}")
+    result = rocking("sensitivity", "sens.toml", "--event", "peak_rotation > 2 deg")
+    assert result.exit_code == 0, result.output
+    assert "30 cells" in result.stdout and "mu*" in result.stdout and "peak_rotation > 0.03491 rad" in result.stdout
+    with xr.open_dataset("results/small/sensitivity.nc") as found:
+        assert found["mu_star"].dims == ("output", "motions", "parameter") and found.attrs["kind"] == "morris"
+    again = rocking("sensitivity", "sens.toml", "--output", "overturned")
+    assert "0 computed" in again.stdout and "tornado_peak" not in again.stdout
+    refused = rocking("sensitivity", "sens.toml", "--output", "overturnd")
+    assert refused.exit_code == 2 and "did you mean 'overturned'" in refused.stderr
+    Path("plain.toml").write_text(plan_text())
+    assert "saltelli or morris" in rocking("sensitivity", "plain.toml").stderr

@@ -1,0 +1,1 @@
+"""Sensitivity of a study's outputs to the parameters it draws: Morris screening and Sobol indices."""
