@@ -1,4 +1,4 @@
-"""Numba's files of machine code with a checksum: what is damaged is compiled anew, never executed.
+"""Numba's files of machine code with a checksum: what is damaged or another's is compiled anew, never executed.
 
 Of several processes that want the same kernel one compiles it, the others wait and load what it has written.
 """
@@ -22,7 +22,24 @@ _SIZE = hashlib.sha256().digest_size
 
 
 class SealedFiles(IndexDataCacheFile):  # type: ignore[misc]
-    """Index and code of one kernel; every pickle is followed by its SHA-256, which pickle itself passes over."""
+    """Index and code of one kernel; every pickle is followed by its SHA-256, which pickle itself passes over.
+
+    Code is kept with the kernel and the types that it is for: files that are exchanged, or that two processes
+    numbered alike at the same time, are found too.
+    """
+
+    def save(self, key: Any, data: Any) -> None:
+        try:
+            super().save(key, (self._index_name, key, data))
+        except OSError as error:
+            _LOG.warning("%s: %s; this kernel is compiled again next time", self._cache_path, error.strerror)
+
+    def load(self, key: Any) -> Any:
+        found = super().load(key)
+        if found is None or found[:2] == (self._index_name, key):
+            return None if found is None else found[2]
+        _LOG.warning("%s names code of another kernel: compiled anew", self._index_path)
+        return None
 
     def _dump(self, obj: Any) -> bytes:
         data: bytes = super()._dump(obj)

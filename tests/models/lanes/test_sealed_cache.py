@@ -83,3 +83,29 @@ def test_no_flipped_bit_is_executed(tmp_path: Path, caplog: pytest.LogCaptureFix
                 assert files.load("key") is None
         path.write_bytes(whole)
     assert files.load("key") == {"code": bytes(range(200))}
+
+
+def test_code_of_another_kernel_is_not_executed(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    """Exchanged files, and those of two processes that gave code for different types the same number."""
+    from models.lanes.sealed_cache import SealedFiles
+
+    one, other = (SealedFiles(str(tmp_path), name, "stamp") for name in ("one", "other"))
+    one.save("float", "code of one"), other.save("float", "code of other")
+    for suffix in ("nbi", "1.nbc"):
+        first, second = tmp_path / f"one.{suffix}", tmp_path / f"other.{suffix}"
+        first.rename(tmp_path / "aside"), second.rename(first), (tmp_path / "aside").rename(second)
+        with caplog.at_level(logging.ERROR):
+            assert one.load("float") is None and other.load("float") is None
+        first.rename(tmp_path / "aside"), second.rename(first), (tmp_path / "aside").rename(second)
+    assert (one.load("float"), other.load("float")) == ("code of one", "code of other")
+    late = SealedFiles(str(tmp_path), "one", "stamp")
+    late._save_data("one.1.nbc", ("one.nbi", "integer", "code for integers"))
+    with caplog.at_level(logging.ERROR):
+        assert one.load("float") is None
+
+
+def test_code_that_cannot_be_kept_is_said(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    from models.lanes.sealed_cache import SealedFiles
+
+    SealedFiles(str(tmp_path / "gone"), "kernel", "stamp").save("key", "code")
+    assert "compiled again next time" in caplog.text
