@@ -4,10 +4,11 @@
 PYTHON ?= python3
 BIN := .venv/bin
 READY := .venv/.ready
+OLDEST := .venv-oldest
 STUDY := results/rubber_interface
 HEAVY := --select "top_mass=5 t" --select damping_ratio=0.0544
 
-.PHONY: study quick test lint types bench independent kill-test agreement diagnosis-bench laboratory-bench beginnings-bench gallery docs clean
+.PHONY: study quick test lint types bench independent faults long fuzz verify audit test-oldest agreement diagnosis-bench laboratory-bench beginnings-bench gallery docs clean
 
 study: $(READY)
 	$(BIN)/rocking run studies/rubber_interface.toml
@@ -37,8 +38,27 @@ independent: $(READY)
 	-$(BIN)/pip install --quiet -e ".[proof]"
 	$(BIN)/python -m benchmarks.independent
 
-kill-test: $(READY)
-	$(BIN)/python -m benchmarks.kill_test
+faults: $(READY)
+	$(BIN)/python -m benchmarks.faults
+
+long: $(READY)
+	$(BIN)/python -m benchmarks.faults.long
+
+fuzz: $(READY)
+	$(BIN)/python -m benchmarks.fuzz
+
+verify: $(READY)
+	$(BIN)/rocking verify
+
+audit: $(READY)
+	$(BIN)/python -m benchmarks.audit
+
+# the lowest versions that pyproject.toml allows, in an environment of its own
+test-oldest:
+	test -x $(OLDEST)/bin/python || $(PYTHON) -m venv $(OLDEST)
+	$(PYTHON) -c "import tomllib; print(*(d.replace('>=', '==') for d in tomllib.load(open('pyproject.toml', 'rb'))['project']['dependencies']), sep='\n')" > $(OLDEST)/oldest.txt
+	$(OLDEST)/bin/python -m pip install --quiet --disable-pip-version-check -c $(OLDEST)/oldest.txt -e . pytest hypothesis
+	$(OLDEST)/bin/python -m pytest -q -m "not slow" tests/grids tests/study
 
 agreement: $(READY)
 	$(BIN)/python -m benchmarks.agreement
@@ -65,4 +85,4 @@ $(READY): pyproject.toml
 	touch $@
 
 clean:
-	rm -rf .venv docs/_build .mypy_cache .ruff_cache .pytest_cache
+	rm -rf .venv $(OLDEST) docs/_build .mypy_cache .ruff_cache .pytest_cache

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from grids.files import read_text
 from grids.plan import Plan, parse_plan
 from models.base import MISSING
 from models.errors import InputError
@@ -80,7 +81,11 @@ def load_plan(folder: Path) -> Plan:
     damaged = damaged_blocks(manifest, BlockStore(folder))
     if damaged:
         raise InputError(f"{folder} has damaged blocks: {len(damaged)}; run the plan again, they are computed anew")
-    plan = parse_plan((folder / "study.toml").read_text("utf-8"), Path(manifest.plan_folder))
+    frozen = folder / "study.toml"
+    try:
+        plan = parse_plan(read_text(frozen, "the plan"), Path(manifest.plan_folder))
+    except InputError as error:
+        raise InputError(f"{frozen}: {error} Run the plan again, it is kept anew.") from None
     differences = manifest.differences(plan)
     if differences:
         raise InputError(f"{folder} was computed with something else: " + "; ".join(differences))

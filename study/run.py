@@ -11,7 +11,7 @@ import os
 import time
 import traceback
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future, wait
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Future, wait
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import islice
@@ -29,7 +29,7 @@ from study.recovery import blocks_on_disk, damaged_blocks, sound_manifest
 from study.schedulers import check_scheduler, count_workers, open_executor
 from study.store import BlockStore, write_text
 from study.tally import tally, tally_line
-from study.task import Outcome, Task, make_task, run_task
+from study.task import OtherCode, Outcome, Task, make_task, run_task
 from study.timing import cells_per_block, time_sample
 
 AHEAD = 2
@@ -124,7 +124,13 @@ def run(
         tasks = (make_task(plan, setting, folder, key, block) for key, block in missing.items())
         counter = _Counter(blocks, missing, progress)
         if missing:
-            _compute(tasks, store, scheduler, workers, counter)
+            try:
+                _compute(tasks, store, scheduler, workers, counter)
+            except (BrokenExecutor, CancelledError) as error:
+                raise WorkerLost(
+                    f"{str(error).rstrip('.') or 'the work was cancelled'} (killed, or out of memory?); "
+                    "finished blocks are kept, run again to continue"
+                ) from None
         cube = write_cube(plan, setting, manifest, store, started=started, scheduler=scheduler)
     return Report(
         folder=folder,
@@ -149,6 +155,7 @@ def _manifest(
     folder = store.folder
     old = sound_manifest(plan, setting, folder)
     if old is not None and plan.grid.size == old.cells:
+        _freeze(plan, folder)
         return old
     kept = blocks_on_disk(plan, setting, store) if old is None else {}
     if kept:
@@ -163,13 +170,20 @@ def _manifest(
     if sample is not None:
         check_capacity(plan, folder, sample, most_cells)
     new = Manifest.start(plan, most_cells, plan_folder, kept) if old is None else old.extended(plan, most_cells)
-    write_text(folder / "study.toml", plan.text)
+    _freeze(plan, folder)
     new.save(folder)
     return new
 
 
+def _freeze(plan: Plan, folder: Path) -> None:
+    """Keep the plan's text as ``study.toml``, anew where it was lost or is another."""
+    path = folder / "study.toml"
+    if not path.is_file() or path.read_bytes() != plan.text.encode():
+        write_text(path, plan.text)
+
+
 class WorkerLost(RuntimeError):
-    """A worker process was killed, by hand or because memory ran out."""
+    """A worker process, or the scheduler of a cluster, was killed, by hand or because memory ran out."""
 
 
 class _Counter:
@@ -226,11 +240,8 @@ def _compute(tasks: Iterable[Task], store: BlockStore, scheduler: str, workers: 
 def _outcome(future: Future[Outcome], task: Task, store: BlockStore) -> Outcome:
     try:
         return future.result()
-    except BrokenExecutor as error:
-        raise WorkerLost(
-            f"a worker process ended without an answer (killed, or out of memory: {error}); "
-            "finished blocks are kept, run again to continue"
-        ) from None
+    except (BrokenExecutor, CancelledError, OtherCode, OSError):
+        raise
     except Exception as error:
         store.fail(task.key, traceback.format_exc())
         return Outcome(task.key, task.grid.size, 0.0, 0.0, f"{type(error).__name__}: {error}")

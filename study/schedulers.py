@@ -6,12 +6,13 @@ submitted, awaited and stopped by the same code on a notebook's machine and on a
 
 from __future__ import annotations
 
+import logging
 import multiprocessing
 import os
 import signal
 import threading
 from collections.abc import Iterator
-from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import contextmanager
 from multiprocessing.connection import wait
 from typing import Any
@@ -86,6 +87,20 @@ def _end_with(sentinel: int) -> None:
 
 
 @contextmanager
+def _quiet() -> Iterator[None]:
+    """Without the tracebacks that dask logs when its scheduler goes: the run says in a sentence what happened."""
+    loggers = [logging.getLogger(name) for name in logging.root.manager.loggerDict if name.startswith("distributed")]
+    levels = [logger.level for logger in loggers]
+    for logger in loggers:
+        logger.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        for logger, level in zip(loggers, levels, strict=True):
+            logger.setLevel(level)
+
+
+@contextmanager
 def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
     from distributed import Client
 
@@ -95,7 +110,7 @@ def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
         raise InputError(
             f"no dask cluster answers at '{address}' ({type(error).__name__}): start it, or correct the address"
         ) from None
-    with client:
+    with _quiet(), client:
         threads = sum(client.nthreads().values())
         if not threads:
             raise InputError(f"the dask cluster at '{address}' has no workers: start some with 'dask worker'")
@@ -103,5 +118,9 @@ def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
         executor = client.get_executor(pure=False)
         try:
             yield executor, threads
+        except Exception:
+            if client.status != "running":
+                raise BrokenExecutor(f"the dask scheduler at {address} is gone") from None
+            raise
         finally:
             executor.shutdown(wait=True)

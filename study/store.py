@@ -8,7 +8,9 @@ netCDF library is not safe between threads, so every open..close holds `NETCDF_L
 
 from __future__ import annotations
 
+import errno
 import os
+import shutil
 import time
 import uuid
 from collections.abc import Callable, Mapping
@@ -39,16 +41,26 @@ def flush(path: Path) -> None:
 
 
 def write_whole(path: Path, write: Callable[[Path], None]) -> None:
-    """Let ``write`` fill a hidden temporary file beside ``path``, then put it in place in one step."""
+    """Let ``write`` fill a hidden temporary file beside ``path``, then put it in place in one step.
+
+    Raises OSError that names ``path`` for whatever the disk refuses, by way of the netCDF library too.
+    """
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(f".{path.stem}.{uuid.uuid4().hex}.tmp")
     try:
         write(temporary)
         flush(temporary)
         os.replace(temporary, path)
-    except BaseException:
+    except OSError as error:
+        raise OSError(error.errno or errno.EIO, error.strerror or str(error), str(path)) from None
+    except RuntimeError as error:
+        if not str(error).startswith("NetCDF:"):
+            raise
+        free = shutil.disk_usage(path.parent).free / 1e6
+        why = f"the netCDF library cannot write it ({free:.0f} MB are free on that disk)"
+        raise OSError(errno.EIO, why, str(path)) from None
+    finally:
         temporary.unlink(missing_ok=True)
-        raise
     flush(path.parent)
 
 

@@ -16,15 +16,23 @@ from grids.grid import Grid, Rectangle
 from grids.motions import Motion
 from grids.plan import Plan
 from grids.targets import MOTION
+from models.errors import InputError
+from study.code import code_version
 from study.evaluate import evaluate
 from study.keys import Setting, motions_by_name
+from study.provenance import machine
 from study.store import BlockStore
+
+
+class OtherCode(InputError):
+    """A worker has other code than the run that gave it a block."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """A block to compute: its own axes, the motions it uses, and where its file goes."""
+    """A block to compute: its own axes, the motions it uses, and where its file goes; ``code`` of the run."""
 
+    code: str
     key: str
     folder: Path
     setting: Setting
@@ -49,7 +57,15 @@ class Outcome:
 
 
 def run_task(task: Task) -> Outcome:
-    """Compute and store one block; an exception becomes ``failed/<key>.txt`` and a failed outcome."""
+    """Compute and store one block; an exception becomes ``failed/<key>.txt`` and a failed outcome.
+
+    Raises OtherCode, and OSError for what the disk refuses: no later block would fare better.
+    """
+    if task.code != code_version():
+        raise OtherCode(
+            f"the worker on {machine()['host']} runs another version of this program, or of numpy or numba: "
+            "install the same on every machine and start its worker anew"
+        )
     started = time.perf_counter()
     store, grid = BlockStore(task.folder), task.grid
     try:
@@ -61,6 +77,8 @@ def run_task(task: Task) -> Outcome:
             {name: column.reshape(grid.shape) for name, column in results.items()},
             {"seconds": computed - started},
         )
+    except OSError:
+        raise
     except Exception as error:
         store.fail(task.key, traceback.format_exc())
         sentence = f"{type(error).__name__}: {error}"
@@ -81,4 +99,4 @@ def make_task(plan: Plan, setting: Setting, folder: Path, key: str, block: Recta
     axes = tuple(take(axis, positions) for axis, positions in where)
     motions = motions_by_name(plan)
     used = next((axis.sets[MOTION].tolist() for axis in axes if MOTION in axis.sets), motions)
-    return Task(key, folder, setting, axes, {name: motions[name] for name in used})
+    return Task(code_version(), key, folder, setting, axes, {name: motions[name] for name in used})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -45,7 +46,11 @@ def _refusal(error: OSError) -> str:
     if error.strerror is None:
         return str(error)
     what = error.strerror[0].lower() + error.strerror[1:]
-    return f"{error.filename}: {what}; name another place, or make this one writable." if error.filename else f"{what}."
+    if not error.filename:
+        return f"{what}."
+    full = error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
+    cure = "make room there, or name another place." if full else "name another place, or make this one writable."
+    return f"{error.filename}: {what}; {cure}"
 
 
 SELECT = "AXIS=VALUE with its unit, for instance 'pga=0.3 g'"

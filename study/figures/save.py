@@ -11,6 +11,7 @@ from matplotlib.backend_bases import FigureCanvasBase
 from matplotlib.figure import Figure
 
 from models.errors import InputError
+from study.store import write_whole
 
 
 def check_suffix(path: Path) -> None:
@@ -27,7 +28,6 @@ def save_figure(draw: Callable[[], Axes | tuple[Axes, ...]], path: Path) -> Path
         figure = (drawn[0] if isinstance(drawn, tuple) else drawn).get_figure(root=True)
         if not isinstance(figure, Figure):
             raise TypeError("the Axes belong to no figure")
-        path.parent.mkdir(parents=True, exist_ok=True)
-        figure.savefig(path, dpi=150)
+        write_whole(path, lambda temporary: figure.savefig(temporary, dpi=150, format=path.suffix.lstrip(".")))
         plt.close(figure)
     return path

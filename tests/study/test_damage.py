@@ -159,6 +159,17 @@ def test_a_changed_cube_is_refused_and_written_anew(finished: tuple[Path, xr.Dat
     assert_identical(open_study(folder), finished[1])
 
 
+@pytest.mark.parametrize("content", [b"\xff\xfe no text", b"[study", b"", None])
+def test_a_damaged_plan_is_a_sentence_and_kept_anew(folder: Path, content: bytes | None) -> None:
+    plan = folder / "study.toml"
+    whole = plan.read_bytes()
+    plan.unlink() if content is None else plan.write_bytes(content)
+    with pytest.raises(InputError, match=r"study\.toml.*[Rr]un the plan again"):
+        check(folder)
+    assert again(folder).computed == 0
+    assert plan.read_bytes() == whole and not check(folder, cells=3).differing
+
+
 def test_a_lock_that_is_a_link_is_refused(folder: Path, tmp_path: Path) -> None:
     precious = tmp_path / "precious.txt"
     precious.write_text("mine")

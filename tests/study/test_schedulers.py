@@ -3,53 +3,74 @@
 from __future__ import annotations
 
 import json
-import os
 import random
+import shutil
 import signal
 import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
+import netCDF4
 import pytest
 import xarray as xr
 
 import models
-from benchmarks.kill_test import MODELS, Finding, finish, kill_study, local_cluster, plan_text, same_cube, start_run
+import study.run
+import study.task
+from benchmarks.faults import kills
+from benchmarks.faults.commands import Cluster, Command
+from benchmarks.faults.commands import cluster as dask_cluster
+from benchmarks.faults.commands import run as command
+from benchmarks.faults.row import Row
+from benchmarks.faults.studies import MODELS, NAME, compare_cubes, plan_text
+from grids.plan import parse_plan
 from models.errors import InputError
 from study.open import open_study
 from study.run import run
+from study.seal import seal
+from study.task import OtherCode
 from tests.study.cubes import assert_identical
 from tests.study.plans import small_plan
 
 
-@pytest.fixture(scope="module")
-def cluster() -> Iterator[str]:
-    """Address of a cluster of two processes."""
-    with local_cluster() as address:
-        yield address
+@pytest.fixture(scope="module", autouse=True)
+def one_model() -> Iterator[None]:
+    """The processes that are killed begin with the kernel of one model only."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("FAULTS_MODELS", "housner")
+        yield
 
 
 @pytest.fixture(scope="module")
-def plan(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A study of one or two seconds in blocks of a tenth."""
-    path = tmp_path_factory.mktemp("plan") / "killed.toml"
-    path.write_text(plan_text("housner", 10))
-    return path
+def cluster() -> Iterator[Cluster]:
+    with dask_cluster() as found:
+        yield found
 
 
 @pytest.fixture(scope="module")
-def undisturbed(plan: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    results = tmp_path_factory.mktemp("undisturbed")
-    run(plan, results=results, scheduler="synchronous")
-    return results / "killed"
+def work(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Holds undisturbed runs, for all tests."""
+    return tmp_path_factory.mktemp("work")
 
 
-def test_a_cluster_leaves_no_trace(cluster: str, tmp_path: Path) -> None:
+@pytest.fixture(scope="module")
+def plan(work: Path) -> Path:
+    """A study of one or two seconds in many blocks."""
+    return kills.write_plan(work, "housner", 3)
+
+
+@pytest.fixture(scope="module")
+def undisturbed(plan: Path, work: Path) -> Path:
+    return kills.undisturbed(plan, work)
+
+
+def test_a_cluster_leaves_no_trace(cluster: Cluster, tmp_path: Path) -> None:
     """A client in this process: no warning about anything left open."""
     here = open_study(run(small_plan(), results=tmp_path / "here").folder)
-    there = run(small_plan(block_seconds=0.005), results=tmp_path / "there", scheduler=cluster)
+    there = run(small_plan(block_seconds=0.005), results=tmp_path / "there", scheduler=cluster.address)
     assert there.computed == there.blocks > 1
     assert_identical(open_study(there.folder), here)
 
@@ -62,39 +83,62 @@ def test_every_model_is_killed() -> None:
 def test_killed_runs_lose_no_finished_block(
     scheduler: str, plan: Path, undisturbed: Path, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
-    """One kill a scheduler here; twenty each with ``make kill-test``."""
-    address = request.getfixturevalue("cluster") if scheduler == "cluster" else scheduler
-    finding = Finding(scheduler)
-    kill_study(plan, tmp_path, address, 1, random.Random(scheduler), finding)
-    assert not finding.damage
-    assert not same_cube(undisturbed, tmp_path / "killed")
+    """One kill a scheduler here; hundreds with ``make faults``."""
+    address = request.getfixturevalue("cluster").address if scheduler == "cluster" else scheduler
+    row, words = Row(scheduler), ("--scheduler", address)
+    draw = random.Random(scheduler)
+    kills.strike_at_random(plan, undisturbed, tmp_path, words, kills.kill_command, 1, draw, row)
+    assert row.injections == 1 and row.clean, row.notes
 
 
 @pytest.mark.parametrize("model", [name for name in MODELS if name != "housner"])
 def test_the_other_models_lose_nothing_either(model: str, tmp_path: Path) -> None:
     """Killed once on threads and finished: the bits of blocks of another size, one after the other."""
-    plan, finding = tmp_path / "killed.toml", Finding("threads")
-    plan.write_text(plan_text(model, 6))
-    kill_study(plan, tmp_path / "threads", "threads", 1, random.Random(model), finding)
-    assert finding.kills == 1 and not finding.damage
-    plan.write_text(plan_text(model, 6).replace("block_seconds = 0.1", "block_seconds = 30"))
-    whole = run(plan, results=tmp_path / "whole", scheduler="synchronous")
-    assert whole.blocks < finding.blocks_seen
-    assert not same_cube(whole.folder, tmp_path / "threads" / "killed")
+    plan, row = kills.write_plan(tmp_path, model, 6), Row("threads")
+    whole = run(
+        parse_plan(plan_text(model, 6, block_seconds=30.0), tmp_path), results=tmp_path, scheduler="synchronous"
+    )
+    draw = random.Random(model)
+    kills.strike_at_random(plan, whole.folder, tmp_path / "struck", (), kills.kill_command, 1, draw, row)
+    assert row.injections == 1 and row.clean, row.notes
+    assert whole.blocks < len(list((tmp_path / "struck" / NAME / "blocks").glob("*.nc")))
 
 
 def test_ctrl_c_stops_cleanly(plan: Path, undisturbed: Path, tmp_path: Path) -> None:
     """Signal 2 to the whole group, as a terminal sends it: exit code 130, then the run continues."""
-    with start_run(plan, tmp_path, "processes") as process:
-        while process.poll() is None and not list(tmp_path.glob("killed/blocks/*.nc")):
-            time.sleep(0.01)
-        os.killpg(process.pid, signal.SIGINT)
-        _, complaint = process.communicate(timeout=60)
-    assert process.returncode == 130, complaint.decode()
-    assert "Traceback" not in complaint.decode() and "finished blocks are kept" in complaint.decode()
-    assert not list((tmp_path / "killed" / "blocks").glob(".*.tmp"))
-    finish(plan, tmp_path, "processes")
-    assert not same_cube(undisturbed, tmp_path / "killed")
+    words = ("run", plan, "--results", tmp_path, "--scheduler", "processes", "--workers", "2")
+    running = Command(*words)
+    while running.running and not kills.count(tmp_path / NAME):
+        time.sleep(0.01)
+    running.signal(signal.SIGINT, group=True)
+    code, said = running.end()
+    assert code == 130, said
+    assert "Traceback" not in said and "finished blocks are kept" in said
+    assert not list((tmp_path / NAME / "blocks").glob(".*.tmp"))
+    row = Row("Ctrl-C")
+    row.finished(*command(*words))
+    compare_cubes(undisturbed, tmp_path / NAME, row)
+    assert row.clean, row.notes
+
+
+def test_a_killed_worker_process_is_a_sentence(plan: Path, undisturbed: Path, tmp_path: Path) -> None:
+    row, words = Row("worker"), ("--scheduler", "processes", "--workers", "2")
+    kills.strike_at_random(plan, undisturbed, tmp_path, words, kills.kill_process_worker, 1, random.Random(2), row)
+    assert row.injections == 1 and row.clean, row.notes
+
+
+def test_a_killed_dask_scheduler_is_a_sentence(plan: Path, work: Path) -> None:
+    row = Row("scheduler")
+    kills.dask_scheduler(work, 1, random.Random(1), row, size=3)
+    assert row.injections == 1 and row.clean, row.notes
+
+
+def test_workers_with_other_code_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The run stops with a sentence; no block is noted as failed."""
+    monkeypatch.setattr("study.run.make_task", lambda *given: replace(study.task.make_task(*given), code="other"))
+    with pytest.raises(OtherCode, match="another version of this program"):
+        run(small_plan(), results=tmp_path)
+    assert not list(tmp_path.rglob("blocks/*.nc")) and not list(tmp_path.rglob("failed/*.txt"))
 
 
 def test_a_silent_address_is_one_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -116,3 +160,12 @@ def test_identical_means_identical(undisturbed: Path) -> None:
     two["impacts"].values[0, 0, 0] += 1
     with pytest.raises(AssertionError):
         assert_identical(one, two)
+
+
+def test_differing_means_counted(undisturbed: Path, tmp_path: Path) -> None:
+    row, other = Row("one bit"), Path(shutil.copytree(undisturbed, tmp_path / "other"))
+    with netCDF4.Dataset(other / "cube.nc", "a") as cube:
+        cube["impacts"][0, 0, 0] = int(cube["impacts"][0, 0, 0]) + 1
+    seal(other / "cube.nc", "cube.nc")
+    compare_cubes(undisturbed, other, row)
+    assert row.wrong_cells == 1
