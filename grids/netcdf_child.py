@@ -1,5 +1,7 @@
 """The process that reads netCDF files of others: ``python -m grids.netcdf_child``, one request a line.
 
+With the name of a file it reads that one and ends, which says whether anybody can (`grids.netcdf_file.check_netcdf`).
+
 The library under netCDF4 trusts what a file says of itself: a few wrong bytes make it take all memory, run for
 ever or end the process. So it works here, under limits of memory and computing time, and the process that asks
 survives it (`grids.netcdf_file`). A request is JSON with ``path`` and ``bytes`` (the most that may be taken); the
@@ -19,6 +21,19 @@ import numpy as np
 
 SECONDS = 5
 """Of computing time that one file may take."""
+
+
+COMPRESSED = 1000
+"""Largest ratio of compression that zlib reaches."""
+
+
+def try_file(path: Path) -> None:
+    """Read all variables and keep nothing; within the memory and the time that a file of its size can need."""
+    size = path.stat().st_size
+    _limit(COMPRESSED * size + 100_000_000, SECONDS + size // 1_000_000)
+    with netCDF4.Dataset(path) as data:
+        for variable in data.variables.values():
+            variable[...]
 
 
 def main() -> None:
@@ -41,13 +56,13 @@ def main() -> None:
         answers.flush()
 
 
-def _limit(more_bytes: int) -> None:
-    """Let this process take so much more memory, and `SECONDS` more of computing time."""
+def _limit(more_bytes: int, seconds: int = SECONDS) -> None:
+    """Let this process take so much more memory and computing time."""
     now = 1024 * int(Path("/proc/self/status").read_text().split("VmSize:")[1].split()[0])
     resource.setrlimit(resource.RLIMIT_AS, (now + more_bytes, resource.RLIM_INFINITY))
     used = resource.getrusage(resource.RUSAGE_SELF)
     spent = int(used.ru_utime + used.ru_stime)
-    resource.setrlimit(resource.RLIMIT_CPU, (spent + SECONDS + 1, resource.RLIM_INFINITY))
+    resource.setrlimit(resource.RLIMIT_CPU, (spent + seconds + 1, resource.RLIM_INFINITY))
 
 
 def _read(path: Path, most_bytes: int, arrays: list[np.ndarray]) -> dict[str, Any]:
@@ -80,4 +95,7 @@ def _attributes(owner: Any) -> dict[str, str]:
 
 
 if __name__ == "__main__":
-    main()
+    if len(sys.argv) > 1:
+        try_file(Path(sys.argv[1]))
+    else:
+        main()

@@ -53,17 +53,33 @@ def read_netcdf(path: Path) -> NetcdfFile:
         return _reader().ask(path.absolute(), TIMES_THE_FILE * size + MORE_BYTES)
 
 
+def check_netcdf(path: Path) -> None:
+    """Raise InputError when a process that reads the whole file does not survive it, or cannot read it."""
+    done = subprocess.run([*_CHILD, str(path.absolute())], capture_output=True, env=_environment())
+    if done.returncode:
+        said = done.stderr.decode("utf-8", "replace").strip().splitlines()[-1:] or ["the netCDF library broke off"]
+        raise InputError(f"not a readable netCDF file ({said[0]}); is it damaged or cut short?")
+
+
+_CHILD = [sys.executable, "-P", "-m", "grids.netcdf_child"]
+"""-P: a module of the current folder, where data lie, is not taken for a library."""
+
+
+def _environment() -> dict[str, str]:
+    return {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+
+
 class _Reader:
     """The process that reads, and the pipes to it."""
 
     def __init__(self) -> None:
         self.owner = os.getpid()
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "grids.netcdf_child"],
+            _CHILD,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
-            env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+            env=_environment(),
         )
         if self._answers.readline() != b"ready\n":
             self.stop()

@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 import study.accessor  # noqa: F401  (registers cube.rocking)
+from grids.netcdf_file import check_netcdf
 from grids.netcdf_lock import NETCDF_LOCK
 from models.base import STATUS
 from models.errors import InputError
@@ -31,7 +32,12 @@ def open_study(folder: str | Path, outputs: Collection[str] | None = None) -> xr
         path = path / CUBE
     if not path.exists():
         raise InputError(f"{path} does not exist: run the study first, or correct the folder")
-    if is_sealed(path) and not is_intact(path, CUBE):
+    if not is_sealed(path):  # another program's, or an export: the library below may not survive what is wrong with it
+        try:
+            check_netcdf(path)
+        except InputError as error:
+            raise InputError(f"{path}: {error}") from None
+    elif not is_intact(path, CUBE):
         raise InputError(f"{path} has changed since it was written: run the study again, it is made anew")
     try:
         with NETCDF_LOCK, xr.open_dataset(path, engine="netcdf4") as cube:

@@ -17,6 +17,7 @@ from grids.motions.readers.base import FloatArray, Record, vertical_sign
 from models.errors import InputError, nearest
 
 
+@np.errstate(over="ignore", invalid="ignore")  # what becomes infinite is refused where samples are checked
 def read_motion(
     source: str | Path | Mapping[str, Any],
     *,

@@ -16,6 +16,7 @@ from models.errors import InputError, nearest
 READERS = (netcdf, csv_toml)
 
 
+@np.errstate(over="ignore", invalid="ignore")  # what becomes infinite is a sample without a value
 def read_recording(path: str | Path, *, base_only: bool = False) -> Recording:
     """Read and check a recording: netCDF, or CSV with a TOML beside it (either may be named).
 

@@ -19,6 +19,7 @@ from grids.netcdf_file import read_netcdf
 from grids.recordings.read import read_recording
 from grids.units import to_si
 from models.errors import InputError
+from study.open import open_study
 
 
 @pytest.mark.parametrize(
@@ -94,6 +95,14 @@ def test_a_reader_that_dies_is_one_sentence(tmp_path: Path, monkeypatch: pytest.
         read_netcdf(whole)
     monkeypatch.undo()
     assert read_netcdf(whole).variables == {}
+
+
+def test_a_cube_of_others_cannot_end_the_program(tmp_path: Path) -> None:
+    """A header that claims gigabytes; a file without a seal is read by a process of its own first."""
+    path = tmp_path / "cube.nc"
+    path.write_bytes(classic(2**31 - 1))
+    with pytest.raises(InputError, match=r"cube\.nc: not a readable netCDF file"):
+        open_study(path)
 
 
 def test_a_text_scale_factor(tmp_path: Path) -> None:
