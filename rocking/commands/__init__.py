@@ -23,6 +23,7 @@ from rocking.commands import (
     slices,
     spectra,
     status,
+    verify,
 )
 from rocking.commands.base import Commands
 
@@ -45,6 +46,7 @@ COMMANDS = (
     diagnose.diagnose,
     predict_outcomes.predict_outcomes,
     prove.prove,
+    verify.verify,
 )
 
 app = typer.Typer(
