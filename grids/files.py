@@ -35,6 +35,8 @@ def read_text(path: Path, what: str) -> str:
         raise InputError(f"{what} {path} is not UTF-8 text; save it as UTF-8.") from None
     except OSError as error:
         raise InputError(f"{what} {path} cannot be read: {error.strerror}.") from None
+    except ValueError:  # of the path: it has a character that no path can have
+        raise InputError(f"{what} {str(path)!r} is no name of a file; correct it.") from None
 
 
 def parse_toml(text: str) -> dict[str, Any]:

@@ -50,6 +50,8 @@ def main() -> None:
             answer = {"error": "it wants more memory than a file of its size can hold"}
         except Exception as error:
             answer = {"error": str(error) or type(error).__name__}
+        if "error" in answer:
+            arrays = []  # what was read until then: it would be taken for the answer about the next file
         answers.write(json.dumps(answer).encode() + b"\n")
         for array in arrays:
             answers.write(array.tobytes())
@@ -82,6 +84,8 @@ def _read(path: Path, most_bytes: int, arrays: list[np.ndarray]) -> dict[str, An
             }
             if isinstance(variable.dtype, np.dtype) and variable.dtype.kind in "fiu":
                 values = np.ma.filled(np.ma.asarray(variable[...], dtype=np.float64), np.nan)
+                if values.shape != variable.shape:  # the answer would hold more or fewer numbers than it says
+                    raise ValueError(f"{name} says that it is {variable.shape} and holds {values.shape}")
                 arrays.append(np.ascontiguousarray(values))
                 one["numbers"] = True
             elif variable.dtype is str:

@@ -43,8 +43,19 @@ class NetcdfFile:
     variables: Mapping[str, Variable]
 
 
+def check_name(path: Path) -> None:
+    """Raise InputError for a path that the netCDF library cannot open: a backslash is no letter to it."""
+    text = str(path.absolute())
+    if "\\" in text or text != text.encode("utf-8", "replace").decode("utf-8"):
+        shown = text.encode("utf-8", "replace").decode("utf-8")
+        raise InputError(
+            f"{shown}: the netCDF library takes no path with a backslash or with letters that are not UTF-8; rename it"
+        )
+
+
 def read_netcdf(path: Path) -> NetcdfFile:
     """Everything in a netCDF file. Raises InputError without the name of the file when it cannot be read."""
+    check_name(path)
     try:
         size = path.stat().st_size
     except OSError as error:

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 import study.accessor  # noqa: F401  (registers cube.rocking)
-from grids.netcdf_file import check_netcdf
+from grids.netcdf_file import check_name, check_netcdf
 from grids.netcdf_lock import NETCDF_LOCK
 from models.base import STATUS
 from models.errors import InputError
@@ -32,6 +32,7 @@ def open_study(folder: str | Path, outputs: Collection[str] | None = None) -> xr
         path = path / CUBE
     if not path.exists():
         raise InputError(f"{path} does not exist: run the study first, or correct the folder")
+    check_name(path)
     if not is_sealed(path):  # another program's, or an export: the library below may not survive what is wrong with it
         try:
             check_netcdf(path)

@@ -18,6 +18,7 @@ from itertools import islice
 from pathlib import Path
 
 from grids.grid import Rectangle
+from grids.netcdf_file import check_name
 from grids.plan import Plan, read_plan
 from models.errors import InputError
 from study.capacity import check_axes, check_capacity
@@ -107,6 +108,7 @@ def run(
     plan_folder = "" if isinstance(plan, Plan) else str(Path(plan).resolve().parent)
     plan = plan if isinstance(plan, Plan) else read_plan(plan)
     folder = Path(results).resolve() / plan.name
+    check_name(folder)
     check_axes(plan)
     setting = Setting.of(plan)
     with _alone(folder):

@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from grids.netcdf_file import check_name
 from grids.netcdf_lock import NETCDF_LOCK
 from models.errors import InputError
 from study.provenance import attribute
@@ -45,6 +46,8 @@ def write_whole(path: Path, write: Callable[[Path], None]) -> None:
 
     Raises OSError that names ``path`` for whatever the disk refuses, by way of the netCDF library too.
     """
+    if path.suffix == ".nc":
+        check_name(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(f".{path.stem}.{uuid.uuid4().hex}.tmp")
     try:

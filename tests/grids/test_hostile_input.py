@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import io
+import os
+import shutil
 import struct
 import time
 import zipfile
+from collections.abc import Callable
 from pathlib import Path
 
 import netCDF4
@@ -15,11 +18,16 @@ import pytest
 
 from grids.files import parse_toml
 from grids.motions import read_motion
+from grids.motions.locate import SHIPPED
 from grids.netcdf_file import read_netcdf
 from grids.recordings.read import read_recording
 from grids.units import to_si
 from models.errors import InputError
+from study.export import export
 from study.open import open_study
+from study.run import run
+from tests.study.plans import small_plan
+from tests.study.test_example_cube import EXAMPLE
 
 
 @pytest.mark.parametrize(
@@ -105,6 +113,28 @@ def test_a_cube_of_others_cannot_end_the_program(tmp_path: Path) -> None:
         open_study(path)
 
 
+@pytest.mark.parametrize("name", ["a\\b", os.fsdecode(b"\xff")])
+def test_folders_that_the_netcdf_library_cannot_open(name: str, tmp_path: Path) -> None:
+    """Refused with a sentence that can be printed, before anything is computed or written."""
+    folder = tmp_path / name
+    folder.mkdir()
+    shutil.copy(SHIPPED / "ridgecrest_2019_clc.nc", folder / "m.nc")
+    cube = open_study(EXAMPLE)
+    uses: tuple[Callable[[], object], ...] = (
+        lambda: read_motion(folder / "m.nc"),
+        lambda: open_study(folder / "m.nc"),
+        lambda: export(cube, folder / "e.nc"),
+        lambda: run(small_plan(), results=folder),
+    )
+    for use in uses:
+        with pytest.raises(InputError, match="takes no path with a backslash") as refused:
+            use()
+        str(refused.value).encode()
+    assert [path.name for path in folder.iterdir()] == ["m.nc"]
+    table = export(cube, folder / "e.csv")
+    assert table.stat().st_size > 1000
+
+
 def test_a_text_scale_factor(tmp_path: Path) -> None:
     path = tmp_path / "scale.nc"
     with netCDF4.Dataset(path, "w") as data:
@@ -116,6 +146,22 @@ def test_a_text_scale_factor(tmp_path: Path) -> None:
         read_netcdf(path)
     with pytest.raises(InputError):
         read_recording(path)
+
+
+def test_a_file_that_breaks_off_leaves_the_next_one_alone(tmp_path: Path) -> None:
+    """What had been read of it once stayed in the pipe, and was taken for the content of the next file."""
+    broken, whole = tmp_path / "broken.nc", tmp_path / "whole.nc"
+    for path in (broken, whole):
+        with netCDF4.Dataset(path, "w") as data:
+            data.createDimension("time", 20)
+            data.createVariable("time", "f8", ("time",))[:] = np.arange(20.0) + (path == broken)
+            data.createVariable("x", "i4", ("time",), fletcher32=True)[:] = 123456789
+    content = bytearray(broken.read_bytes())
+    content[content.index(struct.pack("<i", 123456789))] ^= 1
+    broken.write_bytes(content)
+    with pytest.raises(InputError):
+        read_netcdf(broken)
+    np.testing.assert_array_equal(read_netcdf(whole).variables["time"].values, np.arange(20.0))
 
 
 def test_time_over_two_dimensions(tmp_path: Path) -> None:

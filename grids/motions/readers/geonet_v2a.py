@@ -23,7 +23,7 @@ from grids.motions.readers.base import (
     fixed_width,
     read_text,
 )
-from grids.sampling import check_step
+from grids.sampling import check_step, parse_numbers
 from models.errors import InputError
 
 _TEXT, _HEADER, _WIDTH, _A_LINE = 16, 26, 8, 10
@@ -61,7 +61,7 @@ def _read_component(lines: list[str], path: Path, number: int) -> tuple[str, flo
             f"{where}: header says {counts[0]} samples, the file has {min(values.size, counts[0])} and "
             f"{len(lines)} of {used} lines: it is cut short or damaged"
         )
-    measured, said = float(np.max(np.abs(values))), abs(float(peak[1]))
+    measured, said = float(np.max(np.abs(values))), abs(float(parse_numbers([peak[1]], where)[0]))
     if abs(measured - said) > 0.11 + 1e-4 * said:
         raise InputError(
             f"{where}: header says a peak of {said:g} mm/s2, the samples reach {measured:g}: the file is damaged"

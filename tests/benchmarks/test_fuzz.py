@@ -1,0 +1,74 @@
+"""Inputs that once did harm, read again, and a few fresh ones for every reader; ``make fuzz`` reads 200 000."""
+
+from __future__ import annotations
+
+import random
+import signal
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from benchmarks.fuzz import campaign
+from benchmarks.fuzz.mutate import MOST_BYTES, mutate
+from benchmarks.fuzz.readers import Reader, readers
+
+CORPUS = Path(__file__).resolve().parents[1] / "corpus"
+"""A folder a reader, a file an input."""
+READERS = {reader.name: reader for reader in readers()}
+FEW = {"cube without its seal": 1}
+"""Inputs for those of which each takes a process."""
+
+
+@pytest.fixture(autouse=True)
+def alarm() -> Iterator[None]:
+    old = signal.signal(signal.SIGALRM, campaign._hang)
+    yield
+    signal.signal(signal.SIGALRM, old)
+
+
+@pytest.mark.parametrize("name", READERS)
+def test_a_mutated_file_is_content_or_a_sentence(name: str, tmp_path: Path) -> None:
+    reader, draw = READERS[name], random.Random(name)
+    campaign.prepare(reader, tmp_path)
+    assert all(campaign.attempt(reader, tmp_path, seed) == ("", "accepted") for seed in reader.seeds[:1])
+    kept = CORPUS / name.replace(" ", "_").replace(",", "")
+    once = [path.read_bytes() for path in sorted(kept.glob("*"))]
+    fresh = [mutate(draw.choice(reader.seeds), reader.seeds, draw, reader.binary) for _ in range(FEW.get(name, 60))]
+    for data in once + fresh:
+        wrong, where = campaign.attempt(reader, tmp_path, data)
+        assert not wrong, f"{where}\n{data[:500]!r}"
+
+
+@pytest.mark.parametrize("binary", [False, True])
+def test_mutations_differ_and_stay_small(binary: bool) -> None:
+    seeds, draw = (b"time_step = 0.01\n[columns]\nx = 1\n" * 20, b"a,b\n1,2\n"), random.Random(1)
+    found = {mutate(draw.choice(seeds), seeds, draw, binary) for _ in range(500)}
+    assert len(found) > 400 and max(map(len, found)) <= MOST_BYTES
+
+
+def harmful(read: Callable[[Path], Any]) -> Reader:
+    return Reader("harmful", "x", (b"x",), read)
+
+
+def test_the_harness_sees_harm(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(campaign, "LONGEST", 0.1)
+
+    def fails(folder: Path) -> Any:
+        raise KeyError("x")
+
+    def takes_memory(folder: Path) -> Any:
+        return len(b"x" * 400_000_000) and None
+
+    silent = replace(harmful(lambda folder: 1), check=lambda result: "accepted although it has changed")
+    for reader, wrong in (
+        (harmful(fails), "tracebacks"),
+        (harmful(lambda folder: time.sleep(5)), "hangs"),
+        (silent, "silent"),
+        (harmful(takes_memory), "over_memory"),
+    ):
+        assert campaign.attempt(reader, tmp_path, b"x")[0] == wrong
+    assert campaign.attempt(harmful(lambda folder: None), tmp_path, b"x") == ("", "accepted")
