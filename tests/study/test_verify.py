@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from dataclasses import replace
 from pathlib import Path
@@ -30,14 +31,13 @@ def test_digits_that_agree(found: float, expected: float, digits: float) -> None
     assert agreeing_digits(found, expected) == pytest.approx(digits, abs=0.01)
 
 
-@pytest.mark.parametrize(
-    "oracle",
-    [*one_block.oracles()[:4], *two_blocks.oracles()[:6], *rubber.oracles()[:16]],
-    ids=lambda o: f"{o.model} {o.what}",
-)
-def test_an_oracle_holds_and_fails_for_another_number(oracle) -> None:
-    assert _line(oracle).passed
-    assert not _line(replace(oracle, expected=oracle.expected * (1.0 + 3.0 * 10.0**-oracle.digits))).passed
+def test_oracles_hold_and_fail_for_another_number() -> None:
+    """Those that need the kernel of one block, or none."""
+    found = [*one_block.oracles()[:4], *two_blocks.oracles()[:6], *rubber.oracles()[:16]]
+    for oracle in found:
+        assert _line(oracle).passed, oracle
+        wrong = oracle.expected * (1.0 + 3.0 * 10.0**-oracle.digits)
+        assert not _line(replace(oracle, expected=wrong)).passed, oracle
 
 
 def test_what_raises_fails_its_line() -> None:
@@ -49,8 +49,6 @@ def test_what_raises_fails_its_line() -> None:
 
 
 def test_every_model_has_a_fingerprint_of_its_version() -> None:
-    import json
-
     stored = json.loads(fingerprint.FILE.read_text("utf-8"))
     assert {name: one["version"] for name, one in stored.items()} == {
         name: models.get(name).version for name in models.MODELS
