@@ -48,7 +48,8 @@ def full_while_writing(
     for _ in range(n):
         out = work / name
         out.unlink(missing_ok=True)
-        code, said = run(words[0], reference, *words[1:], "--out", out, largest_file=draw.randrange(most))
+        given = out if out.suffix in (".csv", ".nc") else out.parent  # figures are named by the command
+        code, said = run(words[0], reference, *words[1:], "--out", given, largest_file=draw.randrange(most))
         row.heard(code, said)
         row.injections += 1
         if code == 0 or out.exists() or name not in said:
@@ -149,7 +150,7 @@ KINDS = {
         20, partial(full_while_writing, words=("export",), name="part.nc", most=5000),
     ),
     "disk full in a map": (
-        10, partial(full_while_writing, words=("map", "--x", "aspect_ratio", "--y", "pga"), name="m.png", most=5000),
+        10, partial(full_while_writing, words=("map", "--x", "aspect_ratio", "--y", "pga"), name="maps/overturning_map.png", most=5000),
     ),
     "disk full in a diagnosis": (20, full_while_answering),
     "a folder that may not be written": (12, read_only),

@@ -65,6 +65,6 @@ def _lines(model: str) -> Iterator[Line]:
 def _line(oracle: Oracle) -> Line:
     try:
         digits, error = agreeing_digits(oracle.find(), oracle.expected), ""
-    except (ArithmeticError, InputError) as wrong:
+    except (ArithmeticError, LookupError, InputError) as wrong:
         digits, error = 0.0, str(wrong)
     return Line(oracle.model, oracle.what, oracle.source, digits, oracle.digits, error)

@@ -82,7 +82,7 @@ def impact_velocity() -> float:
 
 def peak_after(impacts: int) -> float:
     """theta_n/alpha of alpha = .2 let go at .8 alpha."""
-    run = MODEL.simulate(rectangle(0.2), Shaking.silence(5.0, 0.001), initial={"rotation_1": 0.16})
+    run = MODEL.simulate(rectangle(0.2), Shaking.silence(9.0, 0.001), initial={"rotation_1": 0.16})
     size = np.abs(run.channels["rotation_1"]) / 0.2
     top = np.flatnonzero((size[1:-1] > size[:-2]) & (size[1:-1] >= size[2:])) + 1
     return float(size[top][impacts - 1])
