@@ -52,8 +52,8 @@ def full_while_writing(
         code, said = run(words[0], reference, *words[1:], "--out", given, largest_file=draw.randrange(most))
         row.heard(code, said)
         row.injections += 1
-        if code == 0 or out.exists() or name not in said:
-            row.unclear_messages += code == 0 or name not in said
+        if code == 0 or out.exists() or out.name not in said:
+            row.unclear_messages += code == 0 or out.name not in said
             row.unreadable += out.exists()
             row.notes.append(
                 f"exit code {code}, file {'there' if out.exists() else 'not there'}: {said.strip()[-300:]}"
@@ -150,7 +150,11 @@ KINDS = {
         20, partial(full_while_writing, words=("export",), name="part.nc", most=5000),
     ),
     "disk full in a map": (
-        10, partial(full_while_writing, words=("map", "--x", "aspect_ratio", "--y", "pga"), name="maps/overturning_map.png", most=5000),
+        10,
+        partial(
+            full_while_writing, words=("map", "--x", "aspect_ratio", "--y", "pga"), name="maps/overturning_map.png",
+            most=5000,
+        ),
     ),
     "disk full in a diagnosis": (20, full_while_answering),
     "a folder that may not be written": (12, read_only),
