@@ -27,7 +27,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -145,6 +145,13 @@ def parse_specimen(text: str, folder: Path = Path()) -> Specimen:
         reference_peak=_reference_peak(file.instruments),
         stages=_stages(file),
     )
+
+
+def with_mechanism(specimen: Specimen, name: str, values: Mapping[str, float]) -> Specimen:
+    """The specimen with a mechanism or instrument at ``values``, in the place of its own. Raises InputError."""
+    targets = Targets(find_model(specimen.model, "model"), with_instruments=True)
+    checked = {p: targets.find(f"{name}.{p}", f"{name}.{p}").number(v, f"{name}.{p}") for p, v in values.items()}
+    return replace(specimen, mechanisms={**specimen.mechanisms, name: checked})
 
 
 def _reference_peak(table: InstrumentsTable) -> float | None:

@@ -106,6 +106,29 @@ class WindowLengths:
 
 
 @dataclass(frozen=True)
+class Stretches:
+    """How a model is compared that forgets how it started: it runs from rest through each recording, once.
+
+    Lengths in units of ``unit(derived)`` s, its slowest period. Means over ``mean`` are compared, in stretches of
+    ``length`` that are weighed one by one. ``smooth``: deviations of the Gaussian kernels of the model's own error,
+    which grows with the motion of a stretch. ``integrals``: channels of displacement and of acceleration that are one
+    measurement where the one was integrated from the other; the displacement is compared then.
+    """
+
+    unit: Callable[[Derived], FloatArray]
+    mean: float
+    length: float
+    smooth: tuple[float, ...]
+    integrals: tuple[tuple[str, str], ...] = ()
+
+    def in_seconds(self, derived: Derived) -> Stretches:
+        """The same in s, for a building with these constants."""
+        unit = float(np.min(self.unit(derived)))
+        smooth = tuple(unit * scale for scale in self.smooth)
+        return Stretches(lambda _: np.ones(1), unit * self.mean, unit * self.length, smooth, self.integrals)
+
+
+@dataclass(frozen=True)
 class Motion:
     """The fitted motion along all windows: leading coordinate, its rate and the base acceleration, arrays (W, N).
 
@@ -178,9 +201,11 @@ class Scatter:
 class Identification:
     """The declaration of one model.
 
-    ``chaotic``: neighbouring trajectories diverge quickly, so that runs from rest show little. ``windows`` None: each
-    recording is one window. ``forces`` empty: laws outside the library are not tested for. ``phases``: every phase
-    word in plain English. ``scatter`` None: events are taken to repeat exactly.
+    ``chaotic``: neighbouring trajectories diverge quickly, so that runs from rest show little. ``windows`` None: the
+    model runs through whole recordings (``stretches``). ``forces`` empty: laws outside the library are not tested for.
+    ``phases``: every phase word in plain English. ``scatter`` None: events are taken to repeat exactly.
+    ``most_effects``: how many a search adds at most; ``speed``: lane-steps a second of the model's kernel over those of
+    a wall's, with which a search's budget of work goes in proportion.
     ``coordinates``: parameters in whose place a fit within a range works with something that recordings tell better
     (`models.model.Model.declared`), as soon as a mechanism acts. ``whole``: whole-number parameters of mechanisms, with
     the values that are tried.
@@ -203,6 +228,9 @@ class Identification:
     whole: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     carrying: bool = False
     not_carried: tuple[str, ...] = ()
+    stretches: Stretches | None = None
+    most_effects: int = 3
+    speed: float = 1.0
 
     @property
     def free(self) -> tuple[State, ...]:
@@ -215,6 +243,8 @@ class Identification:
 
     def refusal(self) -> str:
         """Why recordings cannot be compared with this model; empty where they can."""
+        if self.stretches is not None:
+            return ""
         latent = [state.name for state in self.states if state.latent and not self.carrying]
         lacking = [f"{', '.join(latent)} at the start of a window, which no recording holds"] if latent else []
         return " and ".join([*lacking, *self.not_carried])

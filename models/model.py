@@ -275,6 +275,10 @@ class Model(ABC, Generic[C]):
             whole[name][able] = x
         return whole
 
+    def points(self, values: Values) -> Mapping[str, int]:
+        """How many points (levels) each observable has that is predicted at several; default: none is."""
+        return {}
+
     def declared(
         self, values: Values, names: Sequence[str], options: Mapping[str, str] | None = None
     ) -> Mapping[str, FloatArray]:

@@ -106,7 +106,7 @@ def visited(measured: Measured, action: Action) -> Visited:
     """
     size = _relative(measured, action).sum(axis=1)
     lead = measured.identification.leads[0].channel
-    unit = next(q.unit for q in measured.model.observables if q.name == lead)
+    unit = measured.unit_of(lead)
     inside = np.asarray(measured.mask.all(axis=1))
     inside[:, :-1] &= inside[:, 1:]
     inside[:, -1] = False
@@ -143,7 +143,7 @@ def _relative(measured: Measured, action: Action) -> FloatArray:
 
 
 def _unit(measured: Measured, action: Action, at_events: bool) -> str:
-    unit = next(q.unit for q in measured.model.observables if q.name == measured.identification.leads[0].channel)
+    unit = measured.unit_of(measured.identification.leads[0].channel)
     return unit if action.kind == "error" else f"{unit} s-1" if at_events else f"{unit} s-2"
 
 

@@ -11,7 +11,7 @@ from diagnosis.answer.heldout import frozen, relative_misfit
 from diagnosis.data.measured import Measured
 from diagnosis.errors.model import Errors, calibrated
 from diagnosis.fit.intervals import Estimate, correlation, estimates, profile_rise, settled
-from diagnosis.fit.setup import measure
+from diagnosis.fit.setup import as_recorded, measure
 from diagnosis.fit.solver import Fitted
 from diagnosis.progress import Progress, silent
 from diagnosis.search.refit import Explanation
@@ -75,6 +75,7 @@ def calibrate(
             f"nothing to calibrate in '{specimen.title}': no parameter has a [tolerance] or a range in [calibrate]; "
             "give one, for instance [tolerance] width = 0.005 (one sigma, relative)."
         )
+    specimen, _ = as_recorded(specimen, recordings)
     measured = measure(specimen, recordings)
     alone = list(recordings) if len(recordings) > 1 else []
     profiles = len(specimen.tolerance) + len(specimen.calibrate) if profile else 0

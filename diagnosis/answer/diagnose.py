@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from diagnosis.answer.experiment import next_experiment
+from diagnosis.answer.extrapolated import extrapolated
 from diagnosis.answer.heldout import Shown, compare, fit_figures, horizons, traces_of, windows_of, worsens
 from diagnosis.answer.judgement import explains, p_of_effects, p_of_missing, undecided, verdict_of
 from diagnosis.answer.located import located
@@ -23,18 +24,20 @@ from diagnosis.data.measured import Measured
 from diagnosis.errors.model import calibrated
 from diagnosis.errors.summary import summary
 from diagnosis.fit.intervals import Estimate, settled
-from diagnosis.fit.setup import measure
+from diagnosis.fit.setup import as_recorded, measure
 from diagnosis.forces.columns import Forces, forces
-from diagnosis.forces.constancy import Tested, flags, tests
+from diagnosis.forces.constancy import Constancy, Tested, flags, tests
 from diagnosis.progress import Progress, Stages, silent
 from diagnosis.search import bootstrap as bootstrapping
 from diagnosis.search.beginnings import beginnings
+from diagnosis.search.budget import MOST, Budget
 from diagnosis.search.candidates import absent, candidates
 from diagnosis.search.found import Search, misfit_per_sample, rivals
 from diagnosis.search.law import Law, estimate
 from diagnosis.search.refit import Explanation, gain_by_window
 from diagnosis.search.select import search, take_best_single
 from diagnosis.search.weighing import evidence
+from grids.instruments import INSTRUMENTS
 from grids.recordings.base import Recording
 from grids.specimen import Specimen
 
@@ -56,10 +59,12 @@ def diagnose(
     out what the answer can do without (``skipped``); a second one is raised. Raises InputError.
     """
     progress("calibrating the base model and the errors of the recordings", 0.02)
+    specimen, seen = as_recorded(specimen, [*training, *holdout])
     measured = measure(specimen, training)
     held = measure(specimen, holdout, measured.reference_peak) if holdout else None  # refused before the search
     fitted, errors = calibrated(specimen, measured, seed)
-    found = Search(Explanation((), fitted), candidates(measured, specimen), errors)
+    budget = Budget(int(MOST * measured.identification.speed))
+    found = Search(Explanation((), fitted), candidates(measured, specimen), errors, budget=budget)
     finished = True
     try:
         for stage in search(found, progress):
@@ -70,7 +75,9 @@ def diagnose(
         finished = False
         if found.best is None:
             take_best_single(found)
-    return _assemble(specimen, found, held, bootstrap, progress, seed, finished)
+    answer = _assemble(specimen, found, held, bootstrap, progress, seed, finished)
+    answer = replace(answer, seen=tuple(str(one) for one in seen), instruments=known_instruments(specimen))
+    return replace(answer, statement=statement(answer, measured.model))
 
 
 def _assemble(
@@ -96,9 +103,12 @@ def _assemble(
         tested = found.about is not None and found.about.fitted is chosen.fitted
         return found.about if found.about is not None and tested else forces(chosen.fitted)
 
-    about = stages.needed(of_chosen)
-    tested = stages.needed(lambda: tests(about, found.errors))
-    flagged = () if unexplained else flags(about, tested, found.more)
+    tested: list[Tested] = []
+    flagged: tuple[Constancy, ...] = ()
+    if measured.identification.forces:
+        about = stages.needed(of_chosen)
+        tested = stages.needed(lambda: tests(about, found.errors))
+        flagged = () if unexplained else flags(about, tested, found.more)
     if found.outside is not None:
         flagged = (found.outside, *(f for f in flagged if f.parameter != found.outside.parameter))
     near = rivals(found)
@@ -179,6 +189,7 @@ def _assemble(
             lambda: with_runs_from_rest(specimen, shown, found.base, final),
             lambda: tuple(t for k, s in enumerate(shown) for t in traces_of(s, k == 1)),
         ),
+        extrapolated=extrapolated(*shown) if held else (),
         prediction_horizon=stages.optional("prediction horizons", lambda: _horizons(shown, found.base, final), dict),
         missing_force=force,
         held_stages=held.held_stages if held else (),
@@ -191,8 +202,12 @@ def _assemble(
         unexplained=unexplained,
         suspicions={r.name: r.suspicions for s in shown for r in s.measured.recordings if r.suspicions},
     )
-    answer = replace(answer, skipped=tuple(stages.skipped) if finished else ())
-    return replace(answer, statement=statement(answer, measured.model))
+    return replace(answer, skipped=tuple(stages.skipped) if finished else ())
+
+
+def known_instruments(specimen: Specimen) -> dict[str, Mapping[str, float]]:
+    """What the instruments of the specimen do, as far as it is known."""
+    return {name: values for name, values in specimen.mechanisms.items() if name in INSTRUMENTS}
 
 
 def _estimates(
@@ -252,13 +267,14 @@ def not_tried(found: Search) -> dict[str, str]:
 
 
 def _horizons(shown: Sequence[Shown], before: Explanation, after: Explanation) -> dict[str, tuple[float, float]]:
+    if before.measured.stretches is not None:  # predicted from rest to the end
+        return {}
     predictors = (before.fitted.misfit.predictor, after.fitted.misfit.predictor)
     return {k: v for s in shown for k, v in horizons(s, *predictors).items()}
 
 
 def _provenance(specimen: Specimen, found: Search, tested: Sequence[Tested], seed: int) -> Mapping[str, Any]:
     measured = found.measured
-    units = {q.name: q.unit for q in measured.model.observables}
     gains, recordings = gain_by_window(found.base, found.chosen), list(enumerate(measured.recordings))
     return {
         "specimen": specimen.title,
@@ -268,7 +284,7 @@ def _provenance(specimen: Specimen, found: Search, tested: Sequence[Tested], see
         "windows": len(measured.windows),
         "channels": list(measured.channels),
         "noise": {
-            c: {"sigma": np.unique(measured.sigma[:, k]).tolist(), "unit": units[c]}
+            c: {"sigma": np.unique(measured.sigma[:, k]).tolist(), "unit": measured.unit_of(c)}
             for k, c in enumerate(measured.channels)
         },
         "misfit_per_sample": misfit_per_sample(found.chosen),

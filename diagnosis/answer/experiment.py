@@ -39,6 +39,8 @@ def next_experiment(found: Search, near: Sequence[tuple[Explanation, Candidate, 
     if other is None:
         return None
     measured = best.measured
+    if measured.stretches is not None:  # what a further run of a building would tell is not computed
+        return None
     bank = {}
     for recording in measured.recordings:
         for scale in SCALES:
@@ -93,6 +95,8 @@ def _expected(truth: Explanation, rival: Explanation, made: Recording, errors: E
     """Expected evidence for ``truth`` over ``rival`` from one more recording."""
     fitted = rival.fitted
     measured = fitted.measured
+    if measured.lengths is None:
+        return 0.0
     acts = measured.shakings[0].vertical is not None and measured.shakings[0].vertical_acts
     try:
         windows = arrange(measured.model, [made], acts, measured.lengths, measured.reference_peak)

@@ -55,6 +55,9 @@ def frozen(
     misfit = explanation.fitted.misfit
     fixed = {**misfit.fixed, **explanation.fitted.values}
     predictor = replace(with_held(misfit.predictor, held), measured=measured)
+    if not measured.free:
+        point = Point(fixed, measured.states, predictor.coordinates)
+        return point, predictor.predict([point])[0]
     states, whitening = measured.states, errors.of_sensors(measured)
     for _ in range(2):
         alone = Misfit(predictor, whitening, (), fixed)
@@ -144,7 +147,6 @@ def _over_noise(m: Measured, predicted: FloatArray, own: NDArray[np.intp], c: in
 def traces_of(shown: Shown, held_out: bool) -> list[Trace]:
     """Measured and predicted channels over time, nan outside windows."""
     m = shown.measured
-    units = {q.name: q.unit for q in m.model.observables}
     found = []
     for r, recording in enumerate(m.recordings):
         own = np.flatnonzero(m.recording_of == r)
@@ -157,7 +159,7 @@ def traces_of(shown: Shown, held_out: bool) -> list[Trace]:
                     trace[window.first : window.first + window.samples] = predicted[w, c, : window.samples]
                 pair.append(trace)
             found.append(
-                Trace(recording.name, channel, units[channel], held_out, recording.time,
+                Trace(recording.name, channel, m.unit_of(channel), held_out, recording.time,
                       recording.channels[channel], pair[0], pair[1])
             )  # fmt: skip
     return found

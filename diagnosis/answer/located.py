@@ -21,6 +21,8 @@ def located(
 
     ``explained``: an adequate model; without one there are no laws.
     """
+    if base.measured.stretches is not None:  # no run can be cut at a sample to see what acts there
+        return (), ()
     if explained is not None:
         fitted = explained.fitted
         actions = [action(fitted.misfit.predictor, fitted.point, name) for name in explained.names]

@@ -30,7 +30,7 @@ def true_peak(explanation: Explanation) -> float | None:
         return None
     m, fitted = explanation.measured, explanation.fitted
     without = {k: v for k, v in fitted.point.values.items() if k.partition(".")[0] not in names}
-    lead = m.channels.index(m.identification.leads[0].channel)
+    lead = m.lead
     motion = fitted.misfit.predictor.predict([Point(without, fitted.states)])[0][:, lead]
     first = m.recording_of == 0
     return float(np.max(np.abs(motion[first]) * m.mask[first, lead])) if first.any() else m.reference_peak

@@ -179,6 +179,18 @@ class Trace:
 
 
 @dataclass(frozen=True)
+class Extrapolated:
+    """A recording held out that goes beyond those learned from: peaks of ``channel`` in ``unit``, misfit ``after``."""
+
+    recording: str
+    channel: str
+    unit: str
+    peak: float
+    learned: float
+    after: float
+
+
+@dataclass(frozen=True)
 class Diagnosis:
     """The answer. Everything the report shows is here; nothing in the report is computed anew."""
 
@@ -226,5 +238,11 @@ class Diagnosis:
     """The best model leaves so much of the motion that a name would mean nothing; then there are no effects."""
     suspicions: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """By recording: what looked wrong with it when it was read."""
+    seen: tuple[str, ...] = ()
+    """What the recordings show of their instruments by themselves."""
+    instruments: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    """Of the specimen, those seen included."""
+    extrapolated: tuple[Extrapolated, ...] = ()
+    """Recordings held out that lie beyond the amplitudes learned from."""
     skipped: tuple[str, ...] = ()
     """What a Ctrl-C after the search has left out."""

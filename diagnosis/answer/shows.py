@@ -73,7 +73,7 @@ def _words(shown: Shown, explained: bool) -> tuple[str, ...]:
 
 def _measured_motion(m: Measured) -> Motion:
     """The leading channel along the windows as measured."""
-    lead = m.channels.index(m.identification.leads[0].channel)
+    lead = m.lead
     step = np.array([m.recordings[w.recording].time_step for w in m.windows])[:, None]
     coordinate = m.values[:, lead]
     return Motion(coordinate, np.gradient(coordinate, axis=1) / step, m.base, float(np.max(np.abs(coordinate))))

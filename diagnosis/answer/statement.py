@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from string import Formatter
 
 from diagnosis.answer.phases import words_of
-from diagnosis.answer.result import Diagnosis, Effect, Fit, Located
+from diagnosis.answer.result import Diagnosis, Effect, Extrapolated, Fit, Located
 from diagnosis.answer.when import held_text, when_text
 from diagnosis.data.measured import identification_of
 from diagnosis.fit.unknowns import library
@@ -25,6 +25,7 @@ def statement(found: Diagnosis, model: Model) -> str:
     known = library(model)
     declared = identification_of(model)
     parts = [_suspicion(name, what) for name, all_of in found.suspicions.items() for what in all_of]
+    parts += [f"Seen in the recordings: {what}." for what in found.seen]
     if not found.finished and not found.effects:
         parts.append(
             "The search was stopped before anything was found: the base model is calibrated, and whether something is "
@@ -59,6 +60,7 @@ def statement(found: Diagnosis, model: Model) -> str:
         names = ", ".join(r.name.replace("_", " ") for r in found.rivals)
         parts.append(f"{names[0].upper()}{names[1:]} would explain nearly as much.")
     parts.append(_fit(found.train, found.holdout))
+    parts += [_extrapolated(one) for one in found.extrapolated]
     parts += held_text(found.held_stages)
     parts += _untested(declared)
     if found.next_experiment and found.next_experiment.get("static_test"):
@@ -69,6 +71,14 @@ def statement(found: Diagnosis, model: Model) -> str:
             "the recordings as well."
         )
     return " ".join([*parts, *_skipped(found)])
+
+
+def _extrapolated(one: Extrapolated) -> str:
+    return (
+        f"{one.recording} reaches {one.peak:.3g} {one.unit}, {one.peak / one.learned:.1f} times the largest that was "
+        f"learned from ({one.learned:.3g} {one.unit}): its prediction extrapolates, with a misfit of {one.after:.3f} "
+        f"of {one.channel}."
+    )
 
 
 def _suspicion(recording: str, what: str) -> str:

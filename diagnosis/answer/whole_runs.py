@@ -25,6 +25,9 @@ def with_runs_from_rest(
     """The traces of all recordings with the runs from the specimen's initial state beside them."""
     found: list[Trace] = []
     for k, each in enumerate(shown):
+        if each.measured.stretches is not None:  # they are runs from rest
+            found += traces_of(each, held_out=k == 1)
+            continue
         runs: dict[str, list[dict[str, FloatArray]]] = {}
         for recording in each.measured.recordings:
             runs[recording.name] = [

@@ -14,12 +14,15 @@ from diagnosis.data.averaging import averaged, stride
 from diagnosis.data.noise import base_noise, response_noise, smooth
 from diagnosis.data.windows import ABOVE_NOISE, Window, cut, over_noise
 from grids.recordings.base import CHANNELS, REQUIRED, SHARE, FloatArray, Recording
+from grids.recordings.levels import stem
 from models import MODELS, get
 from models.errors import InputError
-from models.identification import Identification, Largest, State, WindowLengths
+from models.identification import Identification, Largest, State, Stretches, WindowLengths
 from models.model import Model
 from models.shaking import Shaking
 
+FIRST = 4.0
+"""Over the least errors that are assumed: what residuals are weighed with at first."""
 RATE_WIDTH = 0.04
 """s on either side of a window's start over which its rate is estimated."""
 
@@ -49,6 +52,30 @@ class Measured:
     memory: dict[str, FloatArray]
     reference_peak: float
     lengths: WindowLengths | None
+    stretches: Stretches | None = None
+    assumed: FloatArray | None = None
+    """Least errors (W, C) beside the noise, of a model that runs through whole recordings."""
+
+    @property
+    def first_errors(self) -> FloatArray:
+        """Deviations (W, C) that residuals are weighed with before the errors are estimated."""
+        return self.sigma if self.assumed is None else np.maximum(self.sigma, FIRST * self.assumed)
+
+    @property
+    def unit(self) -> FloatArray:
+        """Deviation of each channel (C,) in units of which errors are estimated."""
+        sigma = self.sigma if self.assumed is None else np.maximum(self.sigma, self.assumed)
+        return np.asarray(np.sqrt(np.mean(sigma**2, axis=0)))
+
+    @property
+    def lead(self) -> int:
+        """Index of the leading channel."""
+        name = self.identification.leads[0].channel
+        return next(k for k, channel in enumerate(self.channels) if stem(channel) == name)
+
+    def unit_of(self, channel: str) -> str:
+        """SI unit of a compared channel."""
+        return next(q.unit for q in self.model.observables if q.name == stem(channel))
 
     @property
     def identification(self) -> Identification:
@@ -70,6 +97,8 @@ class Measured:
     @cached_property
     def strides(self) -> NDArray[np.int64]:
         """Samples of each window (W,) that are averaged to one that is compared."""
+        if self.stretches is not None:  # of means already
+            return np.ones(len(self.windows), np.int64)
         return np.array([stride(self.recordings[w.recording].time_step) for w in self.windows], np.int64)
 
     def averaged(self, values: FloatArray) -> FloatArray:
@@ -91,6 +120,7 @@ class Measured:
         return replace(
             self,
             windows=tuple(self.windows[w] for w in windows),
+            assumed=None if self.assumed is None else self.assumed[windows],
             values=self.values[windows], mask=self.mask[windows], sigma=self.sigma[windows], base=self.base[windows],
             states=self.states[windows], memory={name: before[windows] for name, before in self.memory.items()},
         )  # fmt: skip
@@ -123,12 +153,12 @@ def arrange(
     model: Model,
     recordings: Sequence[Recording],
     vertical: bool,
-    lengths: WindowLengths | None,
+    lengths: WindowLengths,
     reference_peak: float | None = None,
 ) -> Measured:
     """Cut the recordings in windows; channels are compared that all of them hold (see `left_out`).
 
-    ``lengths`` in s; None: each recording is one window. Raises InputError when nothing can be compared.
+    ``lengths`` in s. Raises InputError when nothing can be compared.
     """
     declared = identification_of(model)
     observed = [q.name for q in model.observables if q.unit != SHARE]
@@ -143,9 +173,6 @@ def arrange(
     leads = [lead.channel for lead in declared.leads]
     windows: list[Window] = []
     for k, recording in enumerate(recordings):
-        if lengths is None:
-            windows.append(Window(k, 0, recording.time.size))
-            continue
         sizes = [
             over_noise(recording.channels[c], response_noise(recording, c), recording.time_step, lengths) for c in leads
         ]
@@ -219,16 +246,15 @@ def _start(recordings: Sequence[Recording], windows: Sequence[Window], state: St
     return found
 
 
-def _smoothed(recording: Recording, channel: str, lengths: WindowLengths | None) -> FloatArray:
-    values = recording.channels[channel]
-    return values if lengths is None else smooth(values, recording.time_step, lengths.smoothing)
+def _smoothed(recording: Recording, channel: str, lengths: WindowLengths) -> FloatArray:
+    return smooth(recording.channels[channel], recording.time_step, lengths.smoothing)
 
 
 def _memory(
     recordings: Sequence[Recording],
     windows: Sequence[Window],
     declared: Identification,
-    lengths: WindowLengths | None,
+    lengths: WindowLengths,
 ) -> dict[str, FloatArray]:
     """The declared memories before each window (W,), from the smoothed measurement."""
     memory = {}

@@ -75,8 +75,8 @@ def inadequacy(errors: Errors) -> Inadequacy:
         return Inadequacy((0.0,) * channels, 0.0, 0.0, False)
     variance = np.zeros(channels)
     for c, theta in zip(errors.components, errors.theta, strict=True):
-        if c.kind == "inadequacy" and c.channel is not None:
-            variance[c.channel] += theta
+        if c.kind == "inadequacy":
+            variance[slice(None) if c.channel is None else c.channel] += theta
     ratio = float(np.max(variance / np.maximum([below(errors, c) for c in range(channels)], 1e-300)))
     deviance = _without_most_influential(errors, acting) if variance.any() else 0.0
     size = tuple(float(x) for x in np.sqrt(variance) * errors.unit)
@@ -93,7 +93,8 @@ def density(errors: Errors, channel: int, frequency: FloatArray, moving: bool = 
     """One-sided density (units squared per Hz) of a sensor's noise, hum left out; with inadequacy if ``moving``."""
     found = np.zeros_like(frequency)
     for component, theta in zip(errors.components, errors.theta, strict=True):
-        if component.channel == channel and (moving or not component.moving):
+        of_all = component.kind == "inadequacy" and component.channel is None
+        if (of_all or component.channel == channel) and (moving or not component.moving):
             found += theta * component.density(frequency, errors.step)
     return found
 

@@ -153,7 +153,7 @@ def solve(piece: Piece, theta: FloatArray) -> Solved:
     inverse = np.tril(inverse) + np.tril(inverse, -1).T
     x = inverse @ piece.by_state
     gram = piece.by_state.T @ x
-    gram += SLACK * np.max(np.diagonal(gram)) * np.eye(gram.shape[0])
+    gram += SLACK * np.max(np.diagonal(gram), initial=0.0) * np.eye(gram.shape[0])
     projector = inverse - x @ np.linalg.solve(gram, x.T)
     on_residual = projector @ piece.residual
     return Solved(

@@ -13,6 +13,7 @@ from diagnosis.errors.drifts import columns, knots_of
 from diagnosis.errors.kicks import kicks
 from diagnosis.errors.likelihood import Piece, Prior, climbed, maximise, robust_deviance
 from diagnosis.errors.lines import lines
+from diagnosis.errors.own import own_error
 from diagnosis.errors.pieces import Scene, opened, peaks_of, prior_of, stills, windows
 from diagnosis.errors.sensors import of_sensors
 from diagnosis.fit.setup import base_fit
@@ -61,7 +62,9 @@ class Errors:
 
 def disturbance_about(fitted: Fitted) -> FloatArray:
     """What the noise of the base motion leaves in the windows: columns (W, C, N, K) of unit variance."""
-    predictor = fitted.misfit.predictor
+    predictor, m = fitted.misfit.predictor, fitted.measured
+    if m.stretches is not None:  # it goes on from stretch to stretch, and what the model gets wrong is far larger
+        return np.zeros((*m.values.shape, 0))
     return base_columns(predictor, responses(predictor, fitted.point))
 
 
@@ -86,8 +89,9 @@ def estimate(fitted: Fitted, base: FloatArray, start: Errors | None = None) -> E
     kicked = kicks(fitted.misfit.predictor, fitted.point)
     scene = opened(fitted, base, kicked)
     components = _components(scene) if start is None else start.components
+    own = fitted.measured.stretches is not None
     quiet = stills(scene, components)
-    if not quiet:
+    if not quiet and not own:
         components = tuple(c for c in components if c.kind != "inadequacy")
     theta = _start(components) if start is None else np.maximum(start.theta, 1e-4 * _start(components))
     pieces = (*windows(scene, components), *stills(scene, components))
@@ -96,7 +100,7 @@ def estimate(fitted: Fitted, base: FloatArray, start: Errors | None = None) -> E
     weights = np.ones(len(pieces))
     theta, weights = climbed(pieces, prior, theta, weights, moving, STEPS if start is None else AGAIN)
     if start is None:
-        heard = lines(pieces, scene.unit.size, theta, weights)
+        heard = () if own else lines(pieces, scene.unit.size, theta, weights)
         if heard:
             components = (*components, *heard)
             pieces = (*windows(scene, components), *stills(scene, components))
@@ -114,13 +118,19 @@ def estimate(fitted: Fitted, base: FloatArray, start: Errors | None = None) -> E
 
 def _components(scene: Scene) -> tuple[Component, ...]:
     found: list[Component] = []
+    stretches = scene.fitted.measured.stretches
     for c in range(len(scene.fitted.measured.channels)):
         found.append(Component("white", c))
-        found += [Component("low_pass", c, s) for s in LOW_PASS]
-        found += [Component("exponential", c, s) for s in DECAYS]
+        # what is faster than a mean is white among means
+        fastest = 0.0 if stretches is None else stretches.mean
+        found += [Component("low_pass", c, s) for s in LOW_PASS if s > fastest]
+        found += [Component("exponential", c, s) for s in DECAYS if s > fastest]
         found += [Component("slow_drift", c, s) for s in SLOW_DRIFTS]
         found.append(Component("growing", c))
-        found += [Component("inadequacy", c, s) for s in SMOOTH]
+        if stretches is None:
+            found += [Component("inadequacy", c, s) for s in SMOOTH]
+    if stretches is not None:
+        found += [Component("inadequacy", None, s) for s in stretches.smooth]
     if scene.kicks.shape[-1]:
         found.append(Component("scatter"))
     return tuple(found)
@@ -138,11 +148,16 @@ def _whitening(
     kicked: FloatArray,
     prior: Prior,
 ) -> Whitening:
-    """Of the sensors' errors, with base noise and events as columns and drifts as errors that windows share."""
+    """Of the sensors' errors; base noise, events and a model's own error as columns, drifts as errors windows share."""
     m = scene.fitted.measured
     scatter = float(np.sqrt(sum(t for c, t in zip(components, theta, strict=True) if c.kind == "scatter")))
     found = of_sensors(components, theta, scene.unit, m.channels, peaks_of(m), m)
-    found = found.with_columns(np.concatenate([base, scatter * kicked], axis=-1))
+    own = [
+        np.sqrt(t) * own_error(m, c.scale)
+        for c, t in zip(components, theta, strict=True)
+        if c.kind == "inadequacy" and c.channel is None and t > 0.0
+    ]
+    found = found.with_columns(np.concatenate([base, scatter * kicked, *own], axis=-1))
     knots, root = knots_of(m, components), prior.root(theta)
     root = root[:, np.sum(root**2, axis=0) > FAINT]
     return found.with_shared(columns(knots, root, m, scene.unit)) if knots and root.size else found

@@ -18,6 +18,7 @@ from diagnosis.data.noise import still
 from diagnosis.errors.components import Component, Diagonal, LowRank, Part, Stationary
 from diagnosis.errors.drifts import Knots, knots_of
 from diagnosis.errors.likelihood import Piece, Prior
+from diagnosis.errors.own import own_error
 from diagnosis.fit.misfit import Linear, Misfit
 from diagnosis.fit.solver import Fitted
 from diagnosis.fit.whitening import Whitening
@@ -46,7 +47,7 @@ class Scene:
 def opened(fitted: Fitted, base: FloatArray, kicks: FloatArray) -> Scene:
     """``base`` and ``kicks`` (W, C, N, K): columns of base noise and of events."""
     m = fitted.measured
-    unit = np.sqrt(np.mean(m.sigma**2, axis=0))
+    unit = m.unit
     whitening = Whitening(m, m.compared / unit[None, :, None])
     misfit = Misfit(fitted.misfit.predictor, whitening, fitted.misfit.unknowns, fitted.misfit.fixed)
 
@@ -70,6 +71,11 @@ def windows(scene: Scene, components: Sequence[Component]) -> list[Piece]:
     m = scene.fitted.measured
     found = []
     grown, knots = growth(m, peaks_of(m)), knots_of(m, components)
+    own_errors = {
+        c.scale: own_error(m, c.scale) / scene.unit[:, None, None]
+        for c in components
+        if c.kind == "inadequacy" and c.channel is None
+    }
     for w, window in enumerate(m.windows):
         keep = m.compared[w].ravel()
         channel = np.repeat(np.arange(len(m.channels)), m.compared.shape[2])[keep]
@@ -84,6 +90,10 @@ def windows(scene: Scene, components: Sequence[Component]) -> list[Piece]:
                 continue
             if component.kind == "scatter":
                 parts.append(LowRank(kicked) if kicked.shape[1] else None)
+                continue
+            if component.scale in own_errors and component.channel is None:
+                columns = own_errors[component.scale][w]
+                parts.append(LowRank(columns.reshape(keep.size, -1)[keep]))
                 continue
             own = np.flatnonzero(channel == component.channel)
             inside = slice(int(own[0]), int(own[-1]) + 1)

@@ -79,12 +79,13 @@ class ErrorModel:
 def summary(errors: Errors, measured: Measured) -> ErrorModel:
     """The errors in the units of the recordings."""
     declared = measured.identification.scatter
-    units = {q.name: q.unit for q in measured.model.observables}
     still = errors.pieces[len(measured.windows) :]
     seconds = sum(p.time.size * float(np.min(np.diff(p.time))) for p in still) / max(len(measured.channels), 1)
     longest = max(float(r.time[-1]) for r in measured.recordings)
     return ErrorModel(
-        channels=tuple(_channel(errors, c, name, units[name], longest) for c, name in enumerate(measured.channels)),
+        channels=tuple(
+            _channel(errors, c, name, measured.unit_of(name), longest) for c, name in enumerate(measured.channels)
+        ),
         scatter=repeatability(errors, declared.events) if declared else None,
         base_noise=measured.base_noise,
         inadequacy=inadequacy(errors),
@@ -123,7 +124,8 @@ def _colour(errors: Errors, channel: int) -> str:
 
 
 def _spectrum(errors: Errors, channel: int, scale: float) -> Spectrum:
-    moving = [p for p, w in zip(errors.pieces, errors.weights, strict=True) if p.by_state.shape[1] > 1 and w > 0.0]
+    windows = len(errors.whitening.measured.windows)
+    moving = [p for p, w in zip(errors.pieces[:windows], errors.weights[:windows], strict=True) if w > 0.0]
     frequency = np.arange(1.0, RATE / 2.0, 1.0)
     step = errors.step
     found, count = np.zeros_like(frequency), 0.0

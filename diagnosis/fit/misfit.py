@@ -157,6 +157,8 @@ class Misfit:
 
 def reduce(linear: Linear) -> Reduced:
     """Project residuals and derivatives off the states, window by window."""
+    if not linear.by_state.shape[-1]:
+        return Reduced(linear.residual, linear.by_unknown, np.swapaxes(linear.by_state, 1, 2), linear.by_state)
     q, r = np.linalg.qr(linear.by_state)
     diagonal = np.abs(np.diagonal(r, axis1=1, axis2=2))
     tiny = 1e-9 * np.max(diagonal, axis=1, keepdims=True) + 1e-300

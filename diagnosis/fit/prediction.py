@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from diagnosis.data.measured import Measured
 from diagnosis.fit.carrying import Carrying, Setting
+from diagnosis.fit.through import run_through
 from diagnosis.fit.unknowns import instruments_of, without_instruments
 from grids.instruments.base import Surroundings, Switched
 from grids.instruments.staged import moved_in_stages, recorded_in_stages
@@ -73,6 +74,10 @@ class Predictor:
                 continue
             for members in groups.values():
                 sets = self.sets(instruments[members[0]], recording)
+                if m.stretches is not None:
+                    plain = (m.shakings if shakings is None else shakings)[r]
+                    self._through(r, members, windows, moved_in_stages(plain, sets), complete, instruments, out)
+                    continue
                 shaking = moved_in_stages(m.shakings[r], sets, moved_in_windows)
                 carried = self._carried(members, windows, shaking, complete, recording, instruments)
                 if shakings is not None:
@@ -178,9 +183,30 @@ class Predictor:
             for c, channel in enumerate(m.channels):
                 out[p, windows, c, :compared] = recorded[channel][:, :compared]
 
+    def _through(
+        self,
+        r: int,
+        members: Sequence[int],
+        windows: NDArray[np.intp],
+        shaking: Shaking,
+        complete: Sequence[Mapping[str, float]],
+        instruments: Sequence[Switched],
+        out: FloatArray,
+    ) -> None:
+        """The windows as stretches of runs through a whole recording."""
+        m, recording = self.measured, self.measured.recordings[r]
+        parts = [self.parts(complete[p], recording) for p in members]
+        sets = [self.sets(instruments[p], recording) for p in members]
+        ran = run_through(m, r, parts, sets, shaking, self.options)
+        for w in windows:
+            first, samples = m.windows[w].first, m.windows[w].samples
+            out[members, w, :, :samples] = ran[:, :, first : first + samples]
+
     def _ways(self, recording: Recording) -> list[tuple[int, frozenset[str]]]:
-        """From which sample of a recording on which mechanisms with stages do not act."""
-        step = recording.time_step
+        """From which sample of a recording (of its base, where means are compared) on which stages do not act."""
+        m = self.measured
+        steps = {one.name: shaking.time_step for one, shaking in zip(m.recordings, m.shakings, strict=True)}
+        step = steps.get(recording.name, recording.time_step)
         found = changes(self.stages.keys(), self.stages, recording.name)
         return [(first_sample(time, step), frozenset(self.stages) - acting) for time, acting in found]
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import models
 from diagnosis.data.measured import Measured, arrange, identification_of
+from diagnosis.data.stretches import arrange_stretches
 from diagnosis.fit.memory import counted
 from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.prediction import Predictor
@@ -14,8 +15,10 @@ from diagnosis.fit.solver import Fitted, fit_thoroughly
 from diagnosis.fit.starts import calibrate_base
 from diagnosis.fit.unknowns import fixed_values, of_specimen, without_instruments
 from diagnosis.fit.whitening import responses, sensor_noise_only, with_base_noise
+from grids.instruments.integrated_displacement import MECHANISM as INTEGRATED
 from grids.recordings.base import Recording
-from grids.specimen import Specimen
+from grids.recordings.integration import Integrated, integrated
+from grids.specimen import Specimen, with_mechanism
 from models.errors import InputError
 from models.model import Model
 
@@ -36,13 +39,29 @@ def measure(specimen: Specimen, recordings: Sequence[Recording], reference_peak:
     if not recordings:
         raise InputError("no recording to learn from: name at least one.")
     model = models.get(specimen.model)
-    windows = identification_of(model).windows
-    lengths = None
-    if windows is not None:
-        values = {u.name: u.start for u in of_specimen(specimen, model)} | fixed_values(specimen)
-        lengths = windows.in_seconds(model.derive(without_instruments(values), specimen.options))
-    vertical = vertical_acts(specimen, model, recordings)
-    return arrange(model, recordings, vertical, lengths, specimen.reference_peak or reference_peak)
+    declared = identification_of(model)
+    values = {u.name: u.start for u in of_specimen(specimen, model)} | fixed_values(specimen)
+    derived = model.derive(without_instruments(values), specimen.options)
+    peak = specimen.reference_peak or reference_peak
+    if declared.windows is not None:
+        vertical = vertical_acts(specimen, model, recordings)
+        return arrange(model, recordings, vertical, declared.windows.in_seconds(derived), peak)
+    if declared.stretches is None:
+        raise InputError(f"model {model.name} declares neither windows nor stretches of whole runs.")
+    left = [acceleration for _, acceleration in declared.stretches.integrals if INTEGRATED.name in specimen.mechanisms]
+    stretches = declared.stretches.in_seconds(derived)
+    return arrange_stretches(model, recordings, stretches, model.points(values), left, peak)
+
+
+def as_recorded(specimen: Specimen, recordings: Sequence[Recording]) -> tuple[Specimen, tuple[Integrated, ...]]:
+    """The specimen with instruments that the recordings show and nobody has mentioned; and what was seen."""
+    stretches = identification_of(models.get(specimen.model)).stretches
+    if stretches is None or INTEGRATED.name in specimen.mechanisms:
+        return specimen, ()
+    found = tuple(one for one in (integrated(recordings, *pair) for pair in stretches.integrals) if one is not None)
+    for one in found:
+        specimen = with_mechanism(specimen, INTEGRATED.name, {"high_pass_hz": one.corner_hz})
+    return specimen, found
 
 
 def base_fit(specimen: Specimen, measured: Measured, seed: int = 0) -> Fitted:
@@ -53,6 +72,8 @@ def base_fit(specimen: Specimen, measured: Measured, seed: int = 0) -> Fitted:
     predictor = Predictor(measured, specimen.options, specimen.stages, coordinates)
     plain = Misfit(predictor, sensor_noise_only(predictor), unknowns, fixed_values(specimen))
     first = calibrate_base(plain, seed)
+    if measured.stretches is not None:  # what the noise of the base leaves goes on from stretch to stretch
+        return first
     point = plain.point(first.u, first.states)
     whitening = with_base_noise(predictor, responses(predictor, point))
     predictor = replace(predictor, measured=counted(predictor, point))

@@ -82,6 +82,8 @@ def fit_thoroughly(misfit: Misfit, u: FloatArray, states: FloatArray) -> Fitted:
 def scatter(found: Fitted, seed: int) -> FloatArray | None:
     """States (W, S) with better ones for windows that misfit badly; None if there are none."""
     misfit, m = found.misfit, found.measured
+    if not found.states.shape[1]:
+        return None
     each = np.expm1(found.window_losses / (NU * m.count)) * NU
     bad = each > BADLY * max(1.0, float(np.median(each)))
     if not bad.any():
@@ -104,6 +106,7 @@ def fit(misfit: Misfit, u: FloatArray, states: FloatArray, iterations: int = ITE
     loss = float(window.sum()) + misfit.prior(u)
     damping = 1.0
     small = 0
+    shares = STATE_STEPS if states.shape[1] else STATE_STEPS[:1]
     for _ in range(iterations):
         linear = misfit.linearise(u, states)
         reduced = reduce(linear)
@@ -118,9 +121,9 @@ def fit(misfit: Misfit, u: FloatArray, states: FloatArray, iterations: int = ITE
             shift = -np.einsum("wsm,wm->ws", reduced.solve_states, ahead)
             largest = np.maximum(np.abs(states), misfit.measured.state_size)
             shift = np.clip(shift, -largest, largest)
-            moved.append([states + share * shift for share in STATE_STEPS])
+            moved.append([states + share * shift for share in shares])
             points += [misfit.point(candidate, x) for x in moved[-1]]
-        residuals = misfit.residuals(points).reshape(len(steps), len(STATE_STEPS), *linear.residual.shape)
+        residuals = misfit.residuals(points).reshape(len(steps), len(shares), *linear.residual.shape)
         if misfit.level.size:
             residuals += np.stack([linear.by_unknown[..., u.size :] @ c[u.size :] for c in changes])[:, None]
         losses = misfit.losses(residuals)

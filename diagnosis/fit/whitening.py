@@ -73,6 +73,8 @@ class Whitening:
 
     def with_columns(self, columns: FloatArray) -> Whitening:
         """The whitening of the sensors' errors and of independent normal numbers times ``columns`` (W, C, N, K)."""
+        if not columns.shape[-1]:
+            return self
         each = self.of_sensors(self.measured.averaged(np.moveaxis(columns, -1, 0)))
         u, s, _ = np.linalg.svd(np.moveaxis(each, 0, -1), full_matrices=False)
         return replace(self, basis=u, shrink=1.0 - 1.0 / np.sqrt(1.0 + s**2))
@@ -85,7 +87,7 @@ class Whitening:
 
 def sensor_noise_only(predictor: Predictor) -> Whitening:
     m = predictor.measured
-    return Whitening(m, m.compared * np.sqrt(m.strides)[:, None, None] / m.sigma[:, :, None])
+    return Whitening(m, m.compared * np.sqrt(m.strides)[:, None, None] / m.first_errors[:, :, None])
 
 
 @dataclass(frozen=True)

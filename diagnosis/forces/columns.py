@@ -63,7 +63,7 @@ class Forces:
 def motion_of(fitted: Fitted) -> Motion:
     """The leading coordinate along the windows of a fit."""
     m = fitted.measured
-    lead = m.channels.index(m.identification.leads[0].channel)
+    lead = m.lead
     coordinate = fitted.misfit.predictor.predict([fitted.point])[0][:, lead]
     step = np.array([m.recordings[w.recording].time_step for w in m.windows])[:, None]
     reach = float(np.max(np.abs(coordinate) * m.mask[:, lead]))
@@ -73,7 +73,7 @@ def motion_of(fitted: Fitted) -> Motion:
 def forces(fitted: Fitted) -> Forces:
     """The force columns about a fit."""
     predictor, m = fitted.misfit.predictor, fitted.measured
-    mask = m.mask[:, m.channels.index(m.identification.leads[0].channel)]
+    mask = m.mask[:, m.lead]
     motion = motion_of(fitted)
     response = responses(predictor, fitted.point)
     step = np.array([m.recordings[w.recording].time_step for w in m.windows])[:, None]

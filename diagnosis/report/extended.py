@@ -19,7 +19,7 @@ def extend(specimen: Specimen, diagnosis: Diagnosis) -> Specimen:
     stands among the mechanisms.
     """
     parameters = dict(specimen.parameters)
-    mechanisms = {name: dict(values) for name, values in specimen.mechanisms.items()}
+    mechanisms = {name: dict(values) for name, values in {**specimen.mechanisms, **diagnosis.instruments}.items()}
     for name, value in diagnosis.base.items():
         mechanism, dot, parameter = name.partition(".")
         if dot:

@@ -43,7 +43,12 @@ def as_mapping(diagnosis: Diagnosis) -> dict[str, Any]:
         "next_experiment": None if diagnosis.next_experiment is None else dict(diagnosis.next_experiment),
         "errors": None if diagnosis.errors is None else asdict(diagnosis.errors),
         "not_tried": [{"name": name, "why": why} for name, why in diagnosis.not_tried.items()],
-        "provenance": {**diagnosis.provenance, "finished": diagnosis.finished, "skipped": list(diagnosis.skipped)},
+        "provenance": {
+            **diagnosis.provenance,
+            "seen": list(diagnosis.seen),
+            "finished": diagnosis.finished,
+            "skipped": list(diagnosis.skipped),
+        },
     }
 
 

@@ -52,7 +52,8 @@ def beginnings(found: Search, progress: Progress) -> Iterator[Search]:
     Alone if it can, else beside the one effect that was found.
     """
     few = len(found.measured.windows) < FEWEST_WINDOWS
-    if found.null is None or few or _settled(found):
+    through = found.measured.stretches is not None  # runs through whole recordings cannot be cut at an instant
+    if found.null is None or few or through or _settled(found):
         return
     progress("looking for effects that begin or end", 0.82)
     found.budget = Budget(RESERVED)

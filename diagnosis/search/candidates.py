@@ -11,6 +11,7 @@ import numpy as np
 from diagnosis.data.measured import Measured
 from diagnosis.fit.unknowns import Unknown, library, of_parameter
 from diagnosis.search.spells import Spell
+from grids.instruments.base import Surroundings
 from grids.specimen import Specimen
 from models.base import FloatArray, Mechanism, MechanismParameter
 
@@ -83,7 +84,7 @@ def candidates(measured: Measured, specimen: Specimen) -> tuple[Candidate, ...]:
     found: list[Candidate] = []
     refused = absent(measured)
     for name, mechanism in library(measured.model).items():
-        if name in specimen.mechanisms or name in refused or mechanism.tabulated:
+        if name in specimen.mechanisms or name in refused or mechanism.tabulated or not reads(mechanism, measured):
             continue
         if name in ("filter", "base_filter"):
             found += _filters(mechanism)
@@ -94,6 +95,21 @@ def candidates(measured: Measured, specimen: Specimen) -> tuple[Candidate, ...]:
             if parameters:
                 found += _with_whole_numbers_held(mechanism, parameters, measured)
     return tuple(found)
+
+
+def reads(mechanism: Mechanism, measured: Measured) -> bool:
+    """Whether an instrument does anything to the channels that are compared; mechanisms of the model always may."""
+    whole = mechanism.acts.keys() <= {"whole"}
+    if not whole and mechanism.acts.keys() != {"response"}:
+        return True
+    if whole and measured.stretches is None:
+        return False
+    count = 512
+    signals = {c: np.sin(np.arange(count) / 5.0) for c in measured.channels}
+    values = {p.name: p.low if p.high == p.null else p.high for p in mechanism.parameters}
+    around = Surroundings(0.01, np.cos(np.arange(count) / 5.0), 1.0)
+    found = mechanism.acts["whole" if whole else "response"](signals, values, around)
+    return any(not np.array_equal(found[c], signals[c]) for c in signals)
 
 
 def _with_whole_numbers_held(

@@ -23,6 +23,8 @@ MARGIN = 25.0
 
 def outside(single: Explanation, seconds: Sequence[Score], errors: Errors) -> Constancy | None:
     """The force outside the library that gains more than any second mechanism, and by how much; None if none does."""
+    if not single.measured.identification.forces:
+        return None
     about = forces(single.fitted)
     found = tests(about, errors)
     plain = {t.kind: t.statistic for t in found if not t.depends_on}

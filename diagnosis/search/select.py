@@ -50,7 +50,6 @@ FIRST_POOL = 3
 FEWEST_SECOND, SECOND_TRIES = 2, 6
 HEAVY = 5.0
 """Lane-steps of a trial, over those of most mechanisms, from which a mechanism counts as one of many short steps."""
-MOST_EFFECTS = 3
 POOL_SHARE = 0.25
 """Singles whose gain is this share of the best one's are tried as parts of a pair."""
 
@@ -64,6 +63,8 @@ def search(found: Search, progress: Progress) -> Iterator[Search]:
     if not found.singles:
         return
     take_best_single(found)
+    if found.best is None and found.measured.stretches is not None:
+        return
     if found.best is None:
         progress("looking for what the errors hide", 0.46)
         take_hidden(found)
@@ -214,9 +215,8 @@ def _extended(found: Search, explanation: Explanation, scores: Sequence[Score]) 
 
 def _more(found: Search, progress: Progress) -> None:
     """A third effect, by the same rule, unless a law outside the library explains more."""
-    while (
-        found.best is not None and 2 <= len(found.best.candidates) < MOST_EFFECTS and found.affordable("a third effect")
-    ):
+    most = found.measured.identification.most_effects
+    while found.best is not None and 2 <= len(found.best.candidates) < most and found.affordable("a third effect"):
         progress("looking for a further effect", 0.8)
         others = seconds(found, found.best)
         if not adequate(found.best):

@@ -6,7 +6,9 @@
 * ``clock``: values -> (rate, lag); recorded(t) = true((1 + rate) t - lag) for every response;
 * ``response``: (channels, values, surroundings) -> channels as the instrument records them;
 * ``lag`` and ``windowed``, for an instrument with a memory: values -> s by which it lags, and its
-  response advanced by this lag, as windows use it (they then need the motion for ``lag`` longer).
+  response advanced by this lag, as windows use it (they then need the motion for ``lag`` longer);
+* ``whole`` in place of ``response``: the same of an instrument that looks at all of a recording, and cannot be
+  applied to a window.
 """
 
 from __future__ import annotations
@@ -54,6 +56,11 @@ class Surroundings:
 
 class Level(MechanismParameter):
     """A parameter given over the reference peak of the recordings (`Surroundings.reference_peak`)."""
+
+
+def is_displacement(channel: str) -> bool:
+    """Whether a channel is the displacement of a body or a level as a laboratory records it, and not its state."""
+    return channel.startswith(("displacement_", "level_displacement_")) and "_z" not in channel
 
 
 def is_rotation(channel: str) -> bool:

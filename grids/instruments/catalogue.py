@@ -12,6 +12,7 @@ from grids.instruments import (
     drift,
     filter,
     gain,
+    integrated_displacement,
     offset,
     saturation,
 )  # fmt: skip
@@ -21,7 +22,8 @@ from models.base import Mechanism
 INSTRUMENTS: dict[str, Mechanism] = {
     module.MECHANISM.name: module.MECHANISM
     for module in (
-        accelerometer_offset, base_filter, base_gain, delay, clock, cross_axis, gain, offset, drift, filter, saturation
+        accelerometer_offset, base_filter, base_gain, delay, clock, cross_axis, gain, offset, drift, filter,
+        saturation, integrated_displacement,
     )
 }  # fmt: skip
 """In the order in which they act on a signal."""

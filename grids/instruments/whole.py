@@ -18,7 +18,7 @@ def moved(shaking: Shaking, mechanisms: Switched) -> Shaking:
 
 
 def recorded(channels: Channels, mechanisms: Switched, around: Surroundings) -> Channels:
-    """Channels ``(n_times,)`` as the instruments record them, from the true ones.
+    """Channels ``(..., n_times)`` as the instruments record them, from the true ones.
 
     Values before the first sample are those of the first sample, after the last those of the last.
     """
@@ -32,8 +32,10 @@ def recorded(channels: Channels, mechanisms: Switched, around: Surroundings) -> 
     if rate or lag:
         count = next(iter(found.values())).shape[-1]
         time = np.arange(count) * around.time_step
-        found = {k: np.interp((1.0 + rate) * time - lag, time, x) for k, x in found.items()}
+        at = (1.0 + rate) * time - lag
+        found = {k: np.apply_along_axis(lambda row: np.interp(at, time, row), -1, x) for k, x in found.items()}
     for sensor, values in switched:
-        if "response" in sensor.acts:
-            found = dict(sensor.acts["response"](found, values, around))
+        for where in ("response", "whole"):
+            if where in sensor.acts:
+                found = dict(sensor.acts[where](found, values, around))
     return found

@@ -9,25 +9,24 @@ level_acceleration_x_0 = { column = "slab", unit = "g" }      # levels end in _0
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import numpy as np
 
 from grids.columns import read_columns, read_layout
 from grids.recordings.base import CHANNELS, FloatArray, Raw, unknown_channel
+from grids.recordings.levels import BY_LEVEL, stem
 from grids.units import factor_to_si
 from models.errors import InputError
 
 SUFFIXES = (".csv", ".txt")
-BY_LEVEL = tuple(name for name, channel in CHANNELS.items() if channel.by_level)
 
 
 def read(path: Path) -> Raw:
     """The channels of a CSV file in SI; raises InputError."""
     layout = read_layout(path, {})
     for name in layout.columns:
-        if _stem(name) not in CHANNELS or (_stem(name) in BY_LEVEL) != (_stem(name) != name):
+        if stem(name) not in CHANNELS or (stem(name) in BY_LEVEL) != (stem(name) != name):
             cure = (
                 f"'{name}' is recorded level by level; name it {name}_0, {name}_1 ..."
                 if name in BY_LEVEL
@@ -35,19 +34,19 @@ def read(path: Path) -> Raw:
             )
             raise InputError(f"{path.with_suffix('.toml').name}: [columns] {cure}")
     table = read_columns(path, layout, _factor)
-    channels: dict[str, FloatArray] = {n: v for n, v in table.values.items() if _stem(n) == n}
+    channels: dict[str, FloatArray] = {n: v for n, v in table.values.items() if stem(n) == n}
     levels: tuple[str, ...] = ()
-    for stem in BY_LEVEL:
-        members = sorted((int(n[len(stem) + 1 :]), n) for n in table.values if _stem(n) == stem)
+    for channel in BY_LEVEL:
+        members = sorted((int(n[len(channel) + 1 :]), n) for n in table.values if stem(n) == channel)
         if not members:
             continue
         found = tuple(str(level) for level, _ in members)
         if levels and found != levels:
             raise InputError(
-                f"{stem} has levels {', '.join(found)}, {BY_LEVEL[0]} {', '.join(levels)}; map the same ones."
+                f"{channel} has levels {', '.join(found)}, {BY_LEVEL[0]} {', '.join(levels)}; map the same ones."
             )
         levels = found
-        channels[stem] = np.stack([table.values[name] for _, name in members])
+        channels[channel] = np.stack([table.values[name] for _, name in members])
     signs = [name for name, column in layout.columns.items() if column.sign == -1]
     notes = (f"sign turned as stated: {', '.join(signs)}",) if signs else ()
     source = {k: getattr(layout, k) for k in ("title", "source", "licence") if getattr(layout, k)}
@@ -55,10 +54,4 @@ def read(path: Path) -> Raw:
 
 
 def _factor(name: str, unit: str, where: str) -> float:
-    return factor_to_si(unit, CHANNELS[_stem(name)].unit, where)
-
-
-def _stem(name: str) -> str:
-    """The channel of a level's column."""
-    match = re.fullmatch(rf"({'|'.join(BY_LEVEL)})_(\d+)", name)
-    return match[1] if match else name
+    return factor_to_si(unit, CHANNELS[stem(name)].unit, where)

@@ -105,5 +105,6 @@ OBSERVABLES = (
     Quantity("bearing_velocity", "x_1'", "m s-1", "rate of the bearings' displacement"),
     Quantity("bearing_force", "F_1", "N", "force of all bearings, against a displacement to the right"),
 )
+BY_LEVEL = ("level_acceleration_x", "level_displacement_x")
 STATES = ("bearing_displacement", "bearing_velocity")
 """A state at t = 0, all levels alike; the rubber has been held there for a long time."""

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+import numpy as np
+
 from models.base import FloatArray, Values
 from models.errors import InputError
 from models.isolated import declaration, modes
@@ -68,6 +70,10 @@ class Isolated(Model[Chain]):
         from models.isolated.reference.run import run
 
         return run(coefficients, request)
+
+    def points(self, values: Values) -> Mapping[str, int]:
+        levels = int(np.max(values.get("levels", 1.0)))
+        return dict.fromkeys(declaration.BY_LEVEL, levels)
 
     def observe(self, coefficients: Chain, samples: FloatArray) -> dict[str, FloatArray]:
         return observe(coefficients, samples)

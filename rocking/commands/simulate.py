@@ -21,12 +21,16 @@ def simulate(
     integrator: Annotated[str, typer.Option(help="lanes, reference or newmark.")] = "lanes",
     component: Annotated[str | None, typer.Option(help="Horizontal component of the motion.")] = None,
     scale: Annotated[float, typer.Option(help="Factor on the motion.")] = 1.0,
+    displacement_high_pass: Annotated[
+        float | None,
+        typer.Option(help="Write displacements as integrated from accelerations, high-passed at this corner in Hz."),
+    ] = None,
     figure: Annotated[Path | None, typer.Option(help="Draw the rotation over time (.png, .pdf).")] = None,
     strict: Annotated[bool, typer.Option("--strict", help=STRICT)] = False,
 ) -> None:
     """Simulate a specimen and write every observable over time, and the events."""
     from grids.plausibility import suspicions_of_specimen
-    from grids.specimen import read_specimen
+    from grids.specimen import read_specimen, with_mechanism
     from rocking.simulation import simulate as simulate_history
     from study.figures.save import check_suffix
     from study.history import write_history
@@ -36,6 +40,8 @@ def simulate(
     if figure is not None:
         check_suffix(figure)
     wall = read_specimen(specimen)
+    if displacement_high_pass is not None:
+        wall = with_mechanism(wall, "integrated_displacement", {"high_pass_hz": displacement_high_pass})
     warn(suspicions_of_specimen(wall), strict)
     history = simulate_history(wall, motion, duration=duration, integrator=integrator, component=component, scale=scale)
     typer.echo(f"written: {write_history(history, out)} ({history.sizes['event']} events)")

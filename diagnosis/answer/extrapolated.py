@@ -1,0 +1,28 @@
+"""Which predictions extrapolate: recordings held out with larger motion than any that was learned from."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from diagnosis.answer.heldout import Shown
+from diagnosis.answer.result import Extrapolated
+
+BEYOND = 1.1
+"""Peak over the largest learned from, from which a prediction extrapolates."""
+
+
+def extrapolated(learned: Shown, held: Shown) -> tuple[Extrapolated, ...]:
+    """By the leading channel, with the misfit of the final model there: rms error over rms of the recording."""
+    name = learned.measured.channels[learned.measured.lead]
+    largest = max(float(np.max(np.abs(r.channels[name]))) for r in learned.measured.recordings)
+    m, found = held.measured, []
+    for r, recording in enumerate(m.recordings):
+        peak = float(np.max(np.abs(recording.channels[name])))
+        own = np.flatnonzero(m.recording_of == r)
+        if peak <= BEYOND * largest or not own.size:
+            continue
+        inside = m.mask[own, m.lead]
+        error = (held.after - m.values)[own, m.lead][inside]
+        after = float(np.sqrt(np.mean(error**2) / np.mean(m.values[own, m.lead][inside] ** 2)))
+        found.append(Extrapolated(recording.name, name, m.unit_of(name), peak, largest, after))
+    return tuple(found)

@@ -1,0 +1,60 @@
+"""Predictions of a model that runs from rest through whole recordings, cut in the stretches that are compared.
+
+What instruments do is done to the whole run, so that a filter that looks ahead and one that remembers need no lead-in.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from diagnosis.data.measured import Measured
+from diagnosis.data.stretches import averages
+from grids.instruments.base import Surroundings
+from grids.instruments.staged import Sets, recorded_in_stages
+from grids.recordings.levels import stem
+from models.base import FloatArray
+from models.piecewise import Part, trajectories
+from models.shaking import Shaking
+
+LANES = 16
+"""Runs at once: long histories are large."""
+
+
+def run_through(
+    measured: Measured,
+    recording: int,
+    parts: Sequence[Sequence[Part]],
+    sets: Sequence[Sets],
+    shaking: Shaking,
+    options: Mapping[str, str],
+) -> FloatArray:
+    """Channels (P, C, n) of P settings as means along one recording; ``sets``: what instruments do."""
+    m = measured
+    samples = m.shakings[recording].horizontal.size
+    size = round(m.recordings[recording].time_step / m.shakings[recording].time_step)
+    found = np.zeros((len(parts), len(m.channels), samples // size))
+    around = Surroundings(m.shakings[recording].time_step, m.shakings[recording].horizontal, m.reference_peak)
+    for low in range(0, len(parts), LANES):
+        some = parts[low : low + LANES]
+        values = [
+            {name: np.array([one[j].values[name] for one in some]) for name in some[0][j].values}
+            for j in range(len(some[0]))
+        ]
+        instants = np.tile(np.array([part.first for part in some[0][1:]], np.int64), (len(some), 1))
+        ran = trajectories(
+            m.model, values, instants, shaking, first=np.zeros(len(some), np.int64), samples=samples, initial={},
+            options=options,
+        )  # fmt: skip
+        for k in range(len(some)):
+            true = {c: _of_point(ran[stem(c)][k], c) for c in m.channels}
+            recorded = recorded_in_stages(true, sets[low + k], around)
+            for c, name in enumerate(m.channels):
+                found[low + k, c] = averages(recorded[name], size)
+    return found
+
+
+def _of_point(values: FloatArray, channel: str) -> FloatArray:
+    """The row of an observable that a channel's number names, or all of it."""
+    return values if values.ndim == 1 else values[int(channel.rpartition("_")[2])]

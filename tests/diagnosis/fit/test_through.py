@@ -1,0 +1,110 @@
+"""Models that run from rest through whole recordings: predictions, fits, errors in proportion to the motion."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import models
+from diagnosis.answer.calibration import calibrate
+from diagnosis.data.stretches import averages
+from diagnosis.errors.own import own_error
+from diagnosis.fit.misfit import Misfit
+from diagnosis.fit.prediction import Point, Predictor
+from diagnosis.fit.setup import as_recorded, measure
+from diagnosis.fit.unknowns import fixed_values
+from diagnosis.fit.whitening import sensor_noise_only
+from grids.instruments.integrated_displacement import high_passed
+from grids.recordings.base import Recording
+from grids.specimen import Specimen
+from models.errors import InputError
+from models.shaking import Shaking
+
+STEP, COUNT, CORNER = 0.01, 4000, 0.12
+TRUE = {"levels": 2.0, "total_mass": 2.0, "storey_stiffness": 900.0, "storey_damping": 2.0, "rubber_thickness": 0.2}
+BEARINGS = {"bearing_stiffness": 14.0, "bearing_damping": 0.9}
+SPECIMEN = Specimen(
+    title="two levels", model="isolated", parameters=TRUE,
+    calibrate={"bearing_stiffness": (4.0, 40.0), "bearing_damping": (0.1, 4.0)},
+)  # fmt: skip
+
+
+def made(noise: float, integrated: bool, seed: int = 1) -> Recording:
+    """A simulated test: a base with energy up to 5 Hz, displacements measured or integrated."""
+    rng = np.random.default_rng(seed)
+    time = STEP * np.arange(COUNT)
+    spectrum = np.fft.rfft(rng.normal(size=COUNT))
+    frequency = np.fft.rfftfreq(COUNT, STEP)
+    spectrum *= (frequency > 0.15) * np.exp(-0.5 * (frequency / 2.5) ** 2)
+    envelope = np.clip(time - 3.0, 0.0, 4.0) / 4.0 * np.exp(-np.clip(time - 22.0, 0.0, None) / 4.0)
+    base = np.fft.irfft(spectrum, COUNT) * envelope
+    base *= 2.0 / np.max(np.abs(base))
+    ran = models.get("isolated").simulate({**TRUE, **BEARINGS}, Shaking(STEP, base), duration=time[-1])
+    x, a = (np.asarray(ran.channels[f"level_{what}_x"]) for what in ("displacement", "acceleration"))
+    if integrated:
+        x = high_passed(high_passed(x, CORNER, STEP), CORNER, STEP)
+    x = x + noise * np.std(x) * rng.normal(size=x.shape)
+    channels = {"base_acceleration_x": base, "level_displacement_x": x, "level_acceleration_x": a}
+    return Recording("made", STEP, time, channels, ("0", "1"))
+
+
+@pytest.mark.parametrize("integrated", [False, True])
+def test_stretches_are_cut_from_one_run_and_means_of_it(integrated: bool) -> None:
+    recording = made(0.0, integrated)
+    specimen, seen = as_recorded(SPECIMEN, [recording])
+    assert bool(seen) == integrated
+    m = measure(specimen, [recording])
+    channels = [f"level_displacement_x_{k}" for k in range(2)]
+    assert list(m.channels) == (channels if integrated else [f"level_acceleration_x_{k}" for k in range(2)] + channels)
+    assert m.states.shape == (len(m.windows), 0) and m.mask.all(axis=1).sum() == m.recordings[0].time.size
+    predictor = Predictor(m)
+    found = predictor.predict([Point({**fixed_values(specimen), **BEARINGS}, m.states)])[0]
+    shown = [m.channels.index(c) for c in channels]
+    error = np.where(m.mask, found - m.values, 0.0)[:, shown]
+    assert np.sqrt(np.mean(error**2)) < 0.01 * np.sqrt(np.mean(m.values[:, shown] ** 2))
+
+
+def test_means_are_those_of_the_samples() -> None:
+    np.testing.assert_allclose(averages(np.arange(11.0), 4), [1.5, 5.5])
+
+
+def test_calibration_recovers_bearings_through_the_filter_within_the_intervals() -> None:
+    found = calibrate(SPECIMEN, [made(0.01, integrated=True)], profile=False)
+    for name, true in BEARINGS.items():
+        estimate = found.parameters[name]
+        rounding = 1e-3 * true  # of runs on means
+        assert estimate.low95 - rounding < true < estimate.high95 + rounding, (name, estimate)
+        assert estimate.high95 - estimate.low95 < 0.1 * true
+    assert found.misfit < 0.04
+
+
+def test_a_model_s_own_error_goes_with_the_recording_and_is_shared_by_its_levels() -> None:
+    small = made(0.0, integrated=False)
+    large = replace(small, name="large", channels={name: 3.0 * x for name, x in small.channels.items()})
+    m = measure(SPECIMEN, [small, large])
+    columns = own_error(m, 0.3)
+    of = [np.flatnonzero(m.recording_of == r)[0] for r in range(2)]
+    np.testing.assert_allclose(columns[of[1]], 3.0 * columns[of[0]], atol=1e-12)
+    variance = np.sum(columns[of[0]] ** 2, axis=-1)[m.mask[of[0]]].reshape(len(m.channels), -1)
+    np.testing.assert_allclose(variance, np.repeat(variance[:, :1], variance.shape[1], axis=1), rtol=2e-3)
+    one, other = (columns[of[0], m.channels.index(f"level_displacement_x_{k}")] for k in range(2))
+    correlation = np.sum(one * other) / np.sqrt(np.sum(one**2) * np.sum(other**2))
+    assert correlation == pytest.approx(1.0, abs=1e-9)
+
+
+def test_a_loss_without_free_states_is_the_squared_misfit_at_first() -> None:
+    specimen, _ = as_recorded(SPECIMEN, [made(0.01, integrated=True)])
+    m = measure(specimen, [made(0.01, integrated=True)])
+    predictor = Predictor(m)
+    misfit = Misfit(predictor, sensor_noise_only(predictor), (), {**fixed_values(specimen), **BEARINGS})
+    residual = misfit.residuals([misfit.point(np.zeros(0), m.states)])[0]
+    assert np.mean(residual[m.compared.reshape(residual.shape)] ** 2) < 0.2
+
+
+def test_without_the_leading_channel_nothing_is_compared() -> None:
+    bare = made(0.0, integrated=False)
+    channels = {name: x for name, x in bare.channels.items() if name != "level_displacement_x"}
+    with pytest.raises(InputError, match="level_displacement_x is missing in made: model isolated is compared by it"):
+        measure(SPECIMEN, [replace(bare, channels=channels)])
