@@ -79,7 +79,7 @@ class _Fit:
             m for m in self.model.mechanisms.values()
             if m.name != "vertical_acceleration" or (measured and not self.specimen.vertical)
         ]  # fmt: skip
-        return [*found, *INSTRUMENTS.values()]
+        return [*found, *(one for one in INSTRUMENTS.values() if "whole" not in one.acts)]
 
     def best(self, mechanism: Mechanism | None) -> dict[str, Any]:
         """The best fit of the base, with ``mechanism`` if given: BIC and the mechanism's parameters."""

@@ -44,6 +44,11 @@ def measure(specimen: Specimen, recordings: Sequence[Recording], reference_peak:
     derived = model.derive(without_instruments(values), specimen.options)
     peak = specimen.reference_peak or reference_peak
     if declared.windows is not None:
+        if INTEGRATED.name in specimen.mechanisms:
+            raise InputError(
+                f"[mechanisms.{INTEGRATED.name}] acts on whole recordings, and model {model.name} is compared in "
+                "windows: leave it out, and the displacements too."
+            )
         vertical = vertical_acts(specimen, model, recordings)
         return arrange(model, recordings, vertical, declared.windows.in_seconds(derived), peak)
     if declared.stretches is None:

@@ -20,6 +20,8 @@ from models.shaking import Shaking
 
 LANES = 16
 """Runs at once: long histories are large."""
+FARTHEST = 30.0
+"""Over the largest value recorded, beyond which a run has diverged and is no prediction."""
 
 
 def run_through(
@@ -36,6 +38,7 @@ def run_through(
     size = round(m.recordings[recording].time_step / m.shakings[recording].time_step)
     found = np.zeros((len(parts), len(m.channels), samples // size))
     around = Surroundings(m.shakings[recording].time_step, m.shakings[recording].horizontal, m.reference_peak)
+    largest = {c: float(np.max(np.abs(m.recordings[recording].channels[c]))) for c in m.channels}
     for low in range(0, len(parts), LANES):
         some = parts[low : low + LANES]
         values = [
@@ -49,6 +52,9 @@ def run_through(
         )  # fmt: skip
         for k in range(len(some)):
             true = {c: _of_point(ran[stem(c)][k], c) for c in m.channels}
+            if any(not np.max(np.abs(x)) < FARTHEST * largest[c] for c, x in true.items()):
+                found[low + k] = np.nan
+                continue
             recorded = recorded_in_stages(true, sets[low + k], around)
             for c, name in enumerate(m.channels):
                 found[low + k, c] = averages(recorded[name], size)

@@ -19,6 +19,7 @@ from diagnosis.errors.words import error_lines
 from diagnosis.fit.unknowns import library
 from diagnosis.report import words
 from grids.recordings import CHANNELS, Recording, noise_levels
+from grids.recordings.levels import stem
 from grids.specimen import Specimen
 from models.base import Mechanism
 
@@ -62,6 +63,7 @@ def report_page(
     meanings = {name: channel.meaning for name, channel in CHANNELS.items()} | {
         quantity.name: quantity.meaning for quantity in model.observables
     }
+    meanings |= {trace.channel: meanings[stem(trace.channel)] for trace in diagnosis.traces}
     return (
         environment()
         .get_template("report.html.j2")

@@ -21,6 +21,6 @@ IDENTIFICATION = Identification(
         smooth=(0.1, 0.3),
         integrals=(("level_displacement_x", "level_acceleration_x"),),
     ),
-    most_effects=8,
+    most_effects=4,
     speed=10.0,
 )

@@ -31,7 +31,8 @@ def gain_case():
 
 
 def test_catalogue_is_the_one_that_models_and_sensors_declare() -> None:
-    declared = {**get("housner").mechanisms, **INSTRUMENTS}
+    in_windows = {name: one for name, one in INSTRUMENTS.items() if "whole" not in one.acts}
+    declared = {**get("housner").mechanisms, **in_windows}
     assert set(CATALOGUE) == {name for name, one in declared.items() if not one.tabulated}
     for name, row in CATALOGUE.items():
         first = declared[name].parameters[0]

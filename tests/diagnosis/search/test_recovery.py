@@ -50,6 +50,7 @@ EFFECTS: dict[str, dict[str, float]] = {
 """One value of each, some times what the recordings can tell."""
 NOT_HERE = {
     "vertical_acceleration": "the recordings of these tests have no vertical channel",
+    "integrated_displacement": "it acts on whole recordings, and a block is compared in windows",
     "bounce": "it moves the response of slender blocks by less than the noise",
 }
 
