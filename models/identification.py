@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from models.base import FloatArray
+from models.base import FloatArray, Mechanism, MechanismParameter
 
 Derived = Mapping[str, FloatArray]
 """Auxiliary constants of a model, by the names of its `derived`."""
@@ -197,6 +197,55 @@ class Scatter:
     rate: str
 
 
+Numbers = Mapping[str, float]
+"""Parameters of a model in SI, by name."""
+
+
+@dataclass(frozen=True)
+class Rung:
+    """Another base model that recordings may ask for in the place of this one: the next rung of a ladder.
+
+    ``name``: as an effect of an answer, and its class. ``model`` with ``options``: the other model. ``parameters``:
+    what this model has no number for, the one that tells most first, each searched in its ``ranges`` for the specimen.
+    ``carried_over(specimen's parameters, these)``: the parameters of the other model. ``without``: parameters of this
+    model that mean nothing to the other. ``recorded``, ``not_recorded``: channels that decide whether this rung is the
+    one to try. ``alike``: states of the other model that begin a window as another one does where their channel is not
+    recorded; ``bonded``: and stay so. ``refusal``: why a specimen cannot be carried over; empty where it can.
+    ``sentence``: what a report prints, with the names of ``parameters`` in braces.
+    """
+
+    name: str
+    model: str
+    equation: str
+    sentence: str
+    parameters: tuple[MechanismParameter, ...]
+    ranges: Callable[[Numbers], Mapping[str, tuple[float, float]]]
+    carried_over: Callable[[Numbers, Numbers], dict[str, float]]
+    options: Mapping[str, str] = field(default_factory=dict)
+    without: tuple[str, ...] = ()
+    recorded: tuple[str, ...] = ()
+    not_recorded: tuple[str, ...] = ()
+    alike: Mapping[str, str] = field(default_factory=dict)
+    bonded: bool = False
+    refusal: Callable[[Numbers], str] = lambda values: ""
+
+    @property
+    def mechanism(self) -> Mechanism:
+        """The rung as an effect."""
+        return Mechanism(
+            self.name, self.name, self.parameters, self.equation, signature="the base model is another one",
+            sentence=self.sentence,
+        )  # fmt: skip
+
+    def values(self, given: Numbers) -> dict[str, float]:
+        """Values of the other model, of those of this one and ``name.parameter``; other mechanisms' stay."""
+        mine = f"{self.name}."
+        own = {key.removeprefix(mine): value for key, value in given.items() if key.startswith(mine)}
+        plain = {key: value for key, value in given.items() if "." not in key}
+        rest = {key: value for key, value in given.items() if "." in key and not key.startswith(mine)}
+        return {**self.carried_over(plain, own), **rest}
+
+
 @dataclass(frozen=True)
 class Identification:
     """The declaration of one model.
@@ -212,6 +261,8 @@ class Identification:
     ``carrying``: whether the model runs along the measured motion (`models.model.Model.carry`) and gives the latent
     states, and whatever else it remembers, at every window's start. ``not_carried``: what else a window would have to
     inherit; with it, or with a latent state that is not carried, calibration and diagnosis are refused.
+    ``same``: channels of parts that move as one here, by the observable that predicts them. ``ladder``: base models
+    that may be the right ones where this one is not, in the order in which they are tried.
     """
 
     leads: tuple[Lead, ...]
@@ -231,6 +282,12 @@ class Identification:
     stretches: Stretches | None = None
     most_effects: int = 3
     speed: float = 1.0
+    same: Mapping[str, str] = field(default_factory=dict)
+    ladder: tuple[Rung, ...] = ()
+
+    def seen(self, observed: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+        """The observables of a run, with those that `same` makes of them."""
+        return {**observed, **{name: observed[of] for name, of in self.same.items()}}
 
     @property
     def free(self) -> tuple[State, ...]:

@@ -12,9 +12,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.diagnosis", description=__doc__)
     parser.add_argument(
         "what", nargs="?", default="diagnosis",
-        choices=("diagnosis", "laboratory", "beginnings", "walls", "methods", "same"),
-        help="cases with white noise (default), with a laboratory's errors, with effects that begin or of walls on "
-        "rubber, what other methods say of the first, or whether two runs over them answer the same",
+        choices=("diagnosis", "laboratory", "beginnings", "walls", "bases", "methods", "same"),
+        help="cases with white noise (default), with a laboratory's errors, with effects that begin, of walls on "
+        "rubber or of wrong base models, what other methods say of the first, or whether two runs over them agree",
     )  # fmt: skip
     parser.add_argument("--out", type=Path, default=Path("results/bench"), help="folder of the results")
     parser.add_argument("--jobs", type=int, default=2, help="processes")

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from typing import Any
 
+from benchmarks.diagnosis.bases import WRONG
 from benchmarks.diagnosis.suite import GROUPS
 from diagnosis.prove.report import FIGURES, OF_PLACES, provenance, summary, table
-from diagnosis.prove.scores import Scored
+from diagnosis.prove.scores import Scored, Share
 
 
 def grouped(cases: Sequence[Scored]) -> dict[str, Any]:
@@ -63,6 +65,18 @@ def by_beginning(cases: Sequence[Scored]) -> dict[str, Any]:
     return {**summary(cases), "by_beginning": parts, **provenance(cases)}
 
 
+def by_base(cases: Sequence[Scored]) -> dict[str, Any]:
+    """By what a specimen is and is taken for: how often the right base model comes first, or one is called wrong."""
+    parts = {}
+    for name in sorted({str(case.key["group"]) for case in cases}):
+        own = [case for case in cases if case.key["group"] == name]
+        right = [case.first_class in case.truth for case in own if case.truth]
+        wrong = [bool({*WRONG.values()} & {effect["name"] for effect in case.answer["effects"]}) for case in own]
+        parts[name] = {"right_first": asdict(Share.of_flags(right))} if right else {}
+        parts[name]["called_wrong"] = asdict(Share.of_flags(wrong))
+    return {**summary(cases), "by_base": parts, **provenance(cases)}
+
+
 def _counts(cases: Sequence[Scored]) -> dict[str, Any]:
     found = summary(cases)
     counts = {key: [part["count"], part["of"]] for key, part in found["intervals"].items() if part["of"]}
@@ -70,7 +84,14 @@ def _counts(cases: Sequence[Scored]) -> dict[str, Any]:
 
 
 def tables(figures: Mapping[str, Any]) -> str:
-    """All tables of `grouped`, `by_imperfection` or `by_beginning`."""
+    """All tables of `grouped`, `by_imperfection`, `by_beginning` or `by_base`."""
+    if "by_base" in figures:
+        lines = [table(figures, "wrong base models")]
+        for name, part in figures["by_base"].items():
+            for what, one in part.items():
+                interval = f"({one['low95']:.3f}-{one['high95']:.3f})"
+                lines.append(f"  {name:18s} {what.replace('_', ' ')} {one['count']} of {one['of']} {interval}")
+        return "\n".join(lines)
     for key, title in (("by_imperfection", "with a laboratory's errors"), ("by_beginning", "effects that begin")):
         if key in figures:
             lines = [table(figures, title)]

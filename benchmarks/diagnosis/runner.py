@@ -8,8 +8,8 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from pathlib import Path
 
+from benchmarks.diagnosis import bases, walls
 from benchmarks.diagnosis import cases as blocks
-from benchmarks.diagnosis import walls
 from benchmarks.diagnosis.files import write_case
 from benchmarks.diagnosis.suite import CaseDesign
 from diagnosis.prove.answers import Answering, answer, diagnosed, read_json
@@ -21,8 +21,8 @@ def run_case(design: CaseDesign, seed: int, cases: Path, answers: Path, answerin
     """Make the case unless it is there, answer it unless that is done; the answer's verdict."""
     folder, key = cases / design.label, cases / "keys" / f"{design.label}.json"
     if not key.is_file():
-        maker = walls.make if isinstance(design, walls.WallDesign) else blocks.make
-        write_case(maker(design, seed), folder, key)
+        makers = {walls.WallDesign: walls.make, bases.BaseDesign: bases.make}
+        write_case(makers.get(type(design), blocks.make)(design, seed), folder, key)
     return str(answer(folder, answers / f"{design.label}.json", answering)["verdict"])
 
 

@@ -12,6 +12,7 @@ from diagnosis.answer.experiment import next_experiment
 from diagnosis.answer.extrapolated import extrapolated
 from diagnosis.answer.heldout import Shown, compare, fit_figures, horizons, traces_of, windows_of, worsens
 from diagnosis.answer.judgement import explains, p_of_effects, p_of_missing, undecided, verdict_of
+from diagnosis.answer.ladder import confirmed, other_model
 from diagnosis.answer.located import located
 from diagnosis.answer.missing_force import missing_force
 from diagnosis.answer.rescale import over_peak, true_peak
@@ -33,9 +34,10 @@ from diagnosis.search.beginnings import beginnings
 from diagnosis.search.budget import MOST, Budget
 from diagnosis.search.candidates import absent, candidates
 from diagnosis.search.found import Search, misfit_per_sample, rivals
+from diagnosis.search.ladder import Climbed, climb, rungs
 from diagnosis.search.law import Law, estimate
 from diagnosis.search.refit import Explanation, gain_by_window
-from diagnosis.search.select import search, take_best_single
+from diagnosis.search.select import first_effect, further_effects, take_best_single
 from diagnosis.search.weighing import evidence
 from grids.instruments import INSTRUMENTS
 from grids.recordings.base import Recording
@@ -65,17 +67,25 @@ def diagnose(
     fitted, errors = calibrated(specimen, measured, seed)
     budget = Budget(int(MOST * measured.identification.speed))
     found = Search(Explanation((), fitted), candidates(measured, specimen), errors, budget=budget)
+    climbed: Climbed | None = None
     finished = True
     try:
-        for stage in search(found, progress):
+        for stage in first_effect(found, progress):
             found = stage
-        for stage in beginnings(found, progress):
-            found = stage
+        tried = rungs(found, specimen, holdout, seed, progress)
+        climbed = confirmed(climb(found, tried, decisive=True), held)
+        if climbed is None:
+            for more in (further_effects, beginnings):
+                for stage in more(found, progress):
+                    found = stage
+            climbed = confirmed(climb(found, tried, decisive=False), held)
+        if climbed is not None:
+            found = climbed.after
     except KeyboardInterrupt:
         finished = False
         if found.best is None:
             take_best_single(found)
-    answer = _assemble(specimen, found, held, bootstrap, progress, seed, finished)
+    answer = _assemble(specimen, found, climbed, held, bootstrap, progress, seed, finished)
     answer = replace(answer, seen=tuple(str(one) for one in seen), instruments=known_instruments(specimen))
     return replace(answer, statement=statement(answer, measured.model))
 
@@ -83,6 +93,7 @@ def diagnose(
 def _assemble(
     specimen: Specimen,
     found: Search,
+    climbed: Climbed | None,
     to_show: Measured | None,
     draws: int,
     progress: Progress,
@@ -94,7 +105,7 @@ def _assemble(
     shown = [stages.needed(lambda: compare(found.base, found.chosen, measured, found.errors))]
     unexplained = not explains(shown[0])
     if unexplained:  # what a model says that explains nothing is no name
-        found = replace(found, best=None, outside=None)
+        found, climbed = replace(found, best=None, outside=None), None
         shown = [replace(shown[0], after=shown[0].before, point_after=shown[0].point_before)]
     chosen = found.chosen
 
@@ -117,7 +128,7 @@ def _assemble(
     verdict = verdict_of(found, near, bool(flagged) or errors.inadequacy.large, not unexplained, finished)
     gains = stages.needed(lambda: evidence(found))
     p_value = p_of_missing(found, gains, errors.inadequacy, finished)
-    if draws and finished:
+    if draws and finished and climbed is None:
         score_p = p_value
         p_value = stages.optional(
             "the bootstrap (the p-value is that of the score)",
@@ -158,6 +169,8 @@ def _assemble(
     explained = found.best is not None and verdict != "not_in_library"
 
     def places() -> tuple[tuple[Located, ...], tuple[Visited, ...]]:
+        if climbed is not None:  # another base model acts everywhere
+            return (), ()
         progress("where it acts", 0.97)
         return located(found.base, chosen if explained else None, seed) if missing else ((), ())
 
@@ -193,6 +206,7 @@ def _assemble(
         prediction_horizon=stages.optional("prediction horizons", lambda: _horizons(shown, found.base, final), dict),
         missing_force=force,
         held_stages=held.held_stages if held else (),
+        other_model=other_model(climbed, final) if climbed else None,
         errors=errors,
         not_tried=not_tried(found),
         reference_peak=true_peak(chosen),

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from diagnosis.answer.result import Fit, HeldStage, Trace, Windows
 from diagnosis.answer.when import as_stages, held_stages
-from diagnosis.data.measured import Measured
+from diagnosis.data.measured import Measured, seen_as
 from diagnosis.data.noise import RELATIVE_FLOOR
 from diagnosis.errors.model import Errors
 from diagnosis.fit.memory import counted
@@ -54,6 +54,7 @@ def frozen(
     """
     misfit = explanation.fitted.misfit
     fixed = {**misfit.fixed, **explanation.fitted.values}
+    measured = seen_as(measured, explanation.measured)
     predictor = replace(with_held(misfit.predictor, held), measured=measured)
     if not measured.free:
         point = Point(fixed, measured.states, predictor.coordinates)
@@ -73,9 +74,10 @@ def compare(before: Explanation, after: Explanation, measured: Measured, errors:
     held: tuple[HeldStage, ...] = ()
     if not any(r.name in learned for r in measured.recordings):
         misfit = after.fitted.misfit
-        predictor = replace(misfit.predictor, measured=measured)
+        seen = seen_as(measured, after.measured)
+        predictor = replace(misfit.predictor, measured=seen)
         fixed = {**misfit.fixed, **after.fitted.values}
-        held = held_stages(after, Misfit(predictor, errors.of_sensors(measured), (), fixed), measured.states)
+        held = held_stages(after, Misfit(predictor, errors.of_sensors(seen), (), fixed), seen.states)
     one, other = frozen(before, measured, errors), frozen(after, measured, errors, held)
     return Shown(measured, one[1], other[1], one[0], other[0], held)
 
@@ -175,7 +177,7 @@ def horizons(shown: Shown, before: Predictor, after: Predictor) -> dict[str, tup
     longer = lengthened(m)
     times = []
     for predictor, point in ((before, shown.point_before), (with_held(after, shown.held_stages), shown.point_after)):
-        predicted = replace(predictor, measured=longer).predict([point])[0]
+        predicted = replace(predictor, measured=seen_as(longer, predictor.measured)).predict([point])[0]
         rest = np.where(longer.mask, predicted - longer.values, 0.0) / longer.sigma[..., None]
         smooth = uniform_filter1d(rest, AVERAGED, axis=-1)
         out = np.any(np.abs(smooth) > LEAVES, axis=1)

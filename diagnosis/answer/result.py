@@ -191,6 +191,25 @@ class Extrapolated:
 
 
 @dataclass(frozen=True)
+class OtherModel:
+    """The base model that the recordings ask for in the place of the one given, named as the ``effect``.
+
+    ``evidence``: its gain in 2 log likelihood over the one given with the effects ``instead`` (all that its mechanisms
+    could do), prices of parameters and states paid; ``inadequate``: with them that one errs clearly all the same.
+    ``vertical``: whether the vertical motion of the base acts.
+    """
+
+    effect: str
+    model: str
+    options: Mapping[str, str]
+    parameters: Mapping[str, float]
+    evidence: float
+    instead: tuple[str, ...]
+    inadequate: bool
+    vertical: bool
+
+
+@dataclass(frozen=True)
 class Diagnosis:
     """The answer. Everything the report shows is here; nothing in the report is computed anew."""
 
@@ -219,6 +238,8 @@ class Diagnosis:
     """By recording: seconds until the prediction from a window's start leaves the noise, before and after."""
     missing_force: Mapping[str, Any] | None = None
     """The force that is not in the library, as a law in a table (`diagnosis.answer.missing_force`)."""
+    other_model: OtherModel | None = None
+    """Another base model than the specimen's, where that is the answer."""
     held_stages: tuple[HeldStage, ...] = ()
     """In which state recordings held out were predicted, of effects that do not always act."""
     visited: tuple[Visited, ...] = ()

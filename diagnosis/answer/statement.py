@@ -9,7 +9,7 @@ from diagnosis.answer.phases import words_of
 from diagnosis.answer.result import Diagnosis, Effect, Extrapolated, Fit, Located
 from diagnosis.answer.when import held_text, when_text
 from diagnosis.data.measured import identification_of
-from diagnosis.fit.unknowns import library
+from diagnosis.fit.unknowns import effects
 from diagnosis.forces.constancy import FOR_A_WHILE, Constancy
 from diagnosis.search.null import LEAST_P
 from models.base import Mechanism
@@ -22,7 +22,7 @@ CONFIRMED = 0.5
 
 def statement(found: Diagnosis, model: Model) -> str:
     """The paragraph; every number in it is in another field of the answer too."""
-    known = library(model)
+    known = effects(model)
     declared = identification_of(model)
     parts = [_suspicion(name, what) for name, all_of in found.suspicions.items() for what in all_of]
     parts += [f"Seen in the recordings: {what}." for what in found.seen]
@@ -46,6 +46,7 @@ def statement(found: Diagnosis, model: Model) -> str:
         said = [effect_text(effect, known[effect.name]) for effect in found.effects]
         opening = "What the library can say" if found.verdict == "not_in_library" else "Best explanation"
         parts.append(f"{opening}: {'; and '.join(said)}.")
+    parts += _another(found)
     parts += _acts(found.located, words_of(declared))
     if found.verdict == "not_in_library" and not found.unexplained:
         parts.append("That does not settle it: what is missing is not in the library of mechanisms.")
@@ -79,6 +80,21 @@ def _extrapolated(one: Extrapolated) -> str:
         f"learned from ({one.learned:.3g} {one.unit}): its prediction extrapolates, with a misfit of {one.after:.3f} "
         f"of {one.channel}."
     )
+
+
+def _another(found: Diagnosis) -> list[str]:
+    """That the answer is another base model, by how much, and over what."""
+    other = found.other_model
+    if other is None:
+        return []
+    named = " and ".join(name.replace("_", " ") for name in other.instead)
+    with_all = f"this one even with {named}" if named else "this one, which no mechanism of the library improves"
+    errs = ", which errs clearly all the same" if other.inadequate else ""
+    return [
+        f"That is another base model, {other.model}: it explains the recordings better than {with_all}{errs} "
+        f"(evidence {other.evidence:.0f} over that, its parameters and states paid for). extended.toml is a specimen "
+        "of it: diagnose again with it to look for what is left."
+    ]
 
 
 def _suspicion(recording: str, what: str) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 
 from diagnosis.answer.heldout import Shown, traces_of, with_held
 from diagnosis.answer.result import HeldStage, Trace
-from diagnosis.data.measured import Measured
+from diagnosis.data.measured import Measured, seen_as
 from diagnosis.fit.unknowns import instruments_of
 from diagnosis.search.refit import Explanation
 from grids.instruments.base import Surroundings
@@ -49,19 +49,23 @@ def sensed_run(
     held: Sequence[HeldStage] = (),
 ) -> dict[str, FloatArray]:
     """Channels of one run under the recording's base motion, as the instruments would record them."""
+    measured = seen_as(measured, explanation.measured)
     misfit, values = explanation.fitted.misfit, explanation.fitted.point.values
     like = measured.shakings[0]
     shaking = recording.shaking(like.vertical is not None, vertical_acts=like.vertical_acts)
     predictor = with_held(misfit.predictor, held)
     sets = predictor.sets(instruments_of(values), recording)
+    begins = dict(initial or {})
+    begins |= {name: begins[of] for name, of in measured.alike.items() if of in begins}
     history = simulate(
         measured.model,
         predictor.parts(values, recording),
         moved_in_stages(shaking, sets),
-        initial=dict(initial or {}) or None,
+        initial=begins or None,
         duration=shaking.duration,
         options=predictor.options,
     )
-    found = {c: np.asarray(history.channels[c]).reshape(-1) for c in channels}
+    seen = measured.identification.seen(history.channels)
+    found = {c: np.asarray(seen[c]).reshape(-1) for c in channels}
     around = Surroundings(shaking.time_step, recording.channels[REQUIRED], measured.reference_peak)
     return dict(recorded_in_stages(found, sets, around))

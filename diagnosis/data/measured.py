@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -17,7 +17,7 @@ from grids.recordings.base import CHANNELS, REQUIRED, SHARE, FloatArray, Recordi
 from grids.recordings.levels import stem
 from models import MODELS, get
 from models.errors import InputError
-from models.identification import Identification, Largest, State, Stretches, WindowLengths
+from models.identification import NARROWEST, Identification, Largest, State, Stretches, WindowLengths
 from models.model import Model
 from models.shaking import Shaking
 
@@ -35,6 +35,7 @@ class Measured:
     ``states`` (W, S), the model's free states at the windows' starts as the measurement suggests, ``state_size`` (S,)
     their scatter; ``memory``: what happened before each window (W,), for laws with a memory.
     ``reference_peak``: largest value of the leading channel of the first recording; ``lengths`` of windows in s.
+    ``alike``: states that begin as another one where their channel is not recorded; ``bonded``: and stay so.
     """
 
     model: Model
@@ -53,6 +54,8 @@ class Measured:
     reference_peak: float
     lengths: WindowLengths | None
     stretches: Stretches | None = None
+    alike: Mapping[str, str] = field(default_factory=dict)
+    bonded: bool = False
     assumed: FloatArray | None = None
     """Least errors (W, C) beside the noise, of a model that runs through whole recordings."""
 
@@ -75,7 +78,8 @@ class Measured:
 
     def unit_of(self, channel: str) -> str:
         """SI unit of a compared channel."""
-        return next(q.unit for q in self.model.observables if q.name == stem(channel))
+        name = self.identification.same.get(channel, stem(channel))
+        return next(q.unit for q in self.model.observables if q.name == name)
 
     @property
     def identification(self) -> Identification:
@@ -84,7 +88,8 @@ class Measured:
     @property
     def free(self) -> tuple[str, ...]:
         """Names of the states (S,) that every window has its own of; the model carries the others to its start."""
-        return tuple(state.name for state in self.identification.free)
+        following = self.alike if self.bonded else ()
+        return tuple(state.name for state in self.identification.free if state.name not in following)
 
     @property
     def recording_of(self) -> NDArray[np.int64]:
@@ -161,7 +166,7 @@ def arrange(
     ``lengths`` in s. Raises InputError when nothing can be compared.
     """
     declared = identification_of(model)
-    observed = [q.name for q in model.observables if q.unit != SHARE]
+    observed = [*(q.name for q in model.observables if q.unit != SHARE), *declared.same]
     channels = tuple(c for c in observed if all(c in r.channels for r in recordings))
     for state in declared.free:
         lacking = [r.name for r in recordings if state.channel not in r.channels]
@@ -199,6 +204,29 @@ def arrange(
         memory=_memory(recordings, windows, declared, lengths),
         reference_peak=reference_peak,
         lengths=lengths,
+    )
+
+
+def seen_as(measured: Measured, other: Measured) -> Measured:
+    """The same windows, recordings and channels for the model of ``other``."""
+    if measured.model is other.model:
+        return measured
+    return for_model(measured, other.model, other.alike, other.bonded)
+
+
+def for_model(measured: Measured, model: Model, alike: Mapping[str, str], bonded: bool) -> Measured:
+    """The same windows, recordings and channels for another ``model``; the others: see `Measured`."""
+    declared = identification_of(model)
+    lengths = measured.lengths and replace(measured.lengths, carrying=max(NARROWEST, measured.lengths.carrying))
+    found = replace(measured, model=model, alike=alike, bonded=bonded, lengths=lengths)
+    states = {state.name: state for state in declared.free}
+    used = [states[alike.get(name, name)] for name in found.free]
+    start = np.stack([_start(measured.recordings, measured.windows, state) for state in used], axis=1)
+    return replace(
+        found,
+        states=start,
+        state_size=np.maximum(np.std(start, axis=0), 1e-12),
+        memory=_memory(measured.recordings, measured.windows, declared, lengths) if lengths else {},
     )
 
 

@@ -52,10 +52,11 @@ def kicks(predictor: Predictor, point: Point) -> FloatArray:
             initial = dict(zip(m.model.states, states.T, strict=True)) | {k: v[windows] for k, v in m.memory.items()}
             first = m.first[windows] + after
             instants = np.tile(np.array([part.first for part in parts[1:]], np.int64), (first.size, 1))
-            return trajectories(
+            ran = trajectories(
                 m.model, [part.values for part in parts], instants, shaking, first=first, samples=samples,
                 initial=initial, options=predictor.options,
             )  # fmt: skip
+            return m.identification.seen(ran)
 
         plain = run(own, np.zeros(own.size, np.int64), point.states[own])
         sign = np.sign(plain[declared.coordinate])

@@ -125,12 +125,14 @@ def _motion(
     width = measured.lengths.carrying if measured.lengths else NARROWEST
     found = {}
     for state in measured.identification.free:
+        if state.name not in measured.free:
+            continue
         slope = state.rate and state.name not in recording.channels
         name = state.channel if slope or not state.rate else state.name
         rows = [smooth(channels[name], recording.time_step, width, slope) for channels in each]
         # per sample of the recording: the clock of the responses may run on another step
         found[state.name] = np.stack(rows) * (recording.time_step / time_step if slope else 1.0)
-    return found
+    return found | {name: found[of] for name, of in measured.alike.items() if name not in found}
 
 
 def _freed(measured: Measured, recording: Recording, sets: Sets) -> dict[str, FloatArray]:

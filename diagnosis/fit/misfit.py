@@ -68,7 +68,8 @@ class Misfit:
         return self.predictor.measured
 
     def point(self, u: FloatArray, states: FloatArray) -> Point:
-        return Point({**self.fixed, **values_of(self.unknowns, u)}, states, self.predictor.coordinates)
+        values = {**self.fixed, **values_of(self.unknowns, u)}
+        return Point(values, states, self.predictor.coordinates, self.predictor.rung)
 
     def residuals(self, points: Sequence[Point], only: NDArray[np.bool_] | None = None) -> FloatArray:
         """Whitened residuals (P, W, M), predicted minus measured, at the level of the shared errors.

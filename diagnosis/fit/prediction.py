@@ -24,6 +24,7 @@ from grids.instruments.windowed import moved_in_windows, recorded_in_windows, sa
 from grids.recordings.base import Recording
 from grids.stages import Stage, changes, first_sample
 from models.base import FloatArray
+from models.identification import Rung
 from models.piecewise import Part, trajectories
 from models.shaking import Shaking
 
@@ -32,25 +33,29 @@ from models.shaking import Shaking
 class Point:
     """One parameter setting (``mechanism.parameter`` for mechanisms) with the states (W, S) it starts from.
 
-    ``coordinates``: names of values that are those of a fit (`Identification.coordinates`), not of the model.
+    ``coordinates``: names of values that are those of a fit (`Identification.coordinates`), not of the model; with a
+    ``rung`` all are those of the model under it.
     """
 
     values: Mapping[str, float]
     states: FloatArray
     coordinates: tuple[str, ...] = ()
+    rung: Rung | None = None
 
 
 @dataclass(frozen=True)
 class Predictor:
     """Predictions for the windows of ``measured``; ``stages`` by mechanism, of those that do not always act.
 
-    ``coordinates``: which parameters a fit gives its points by what recordings tell better.
+    ``coordinates``: which parameters a fit gives its points by what recordings tell better; ``rung``: the one on which
+    the model stands where a fit gives the parameters of the model under it.
     """
 
     measured: Measured
     options: Mapping[str, str] = field(default_factory=dict)
     stages: Mapping[str, Sequence[Stage]] = field(default_factory=dict)
     coordinates: tuple[str, ...] = ()
+    rung: Rung | None = None
     carrying: Carrying = field(default_factory=Carrying, repr=False, compare=False)
 
     def predict(
@@ -87,7 +92,8 @@ class Predictor:
 
     def declared(self, points: Sequence[Point]) -> list[Point]:
         """The points with the model's own parameters in the place of a fit's coordinates."""
-        found = list(points)
+        found = [p if p.rung is None else replace(p, values=p.rung.values(p.values), rung=None) for p in points]
+        points = list(found)
         given = [k for k, point in enumerate(points) if point.coordinates]
         complete = self._complete([points[k] for k in given])
         if not any("." in name for values in complete[:1] for name in values):
@@ -167,13 +173,15 @@ class Predictor:
         instants = np.tile(np.array([first for first, _ in ways[1:]], np.int64), (n * count, 1))
         states = np.stack([points[p].states[windows] for p in members])
         initial = {s: states[:, :, k].ravel() for k, s in enumerate(m.free)}
+        initial |= {s: initial[of] for s, of in m.alike.items() if s not in initial}
         initial |= {k: np.tile(v[windows], count) for k, v in m.memory.items()}
         initial |= {k: v.reshape(n * count, *v.shape[2:]) for k, v in carried.items()}
         first = np.tile(m.first[windows], count)
         ran = trajectories(
             m.model, parts, instants, shaking, first=first, samples=samples, initial=initial, options=self.options
         )
-        found = {c: _held(ran[c].reshape(count, n, samples), shaking, m.first[windows]) for c in m.channels}
+        seen = m.identification.seen(ran)
+        found = {c: _held(seen[c].reshape(count, n, samples), shaking, m.first[windows]) for c in m.channels}
         base = np.pad(m.base[windows][:, :compared], ((0, 0), (0, samples - compared)))
         start = np.asarray(time_step * m.first[windows, None], float)
         around = Surroundings(time_step, base, m.reference_peak, start)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import models
@@ -13,7 +13,7 @@ from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.prediction import Predictor
 from diagnosis.fit.solver import Fitted, fit_thoroughly
 from diagnosis.fit.starts import calibrate_base
-from diagnosis.fit.unknowns import fixed_values, of_specimen, without_instruments
+from diagnosis.fit.unknowns import Unknown, fixed_values, of_specimen, without_instruments
 from diagnosis.fit.whitening import responses, sensor_noise_only, with_base_noise
 from grids.instruments.integrated_displacement import MECHANISM as INTEGRATED
 from grids.recordings.base import Recording
@@ -70,16 +70,23 @@ def as_recorded(specimen: Specimen, recordings: Sequence[Recording]) -> tuple[Sp
 
 
 def base_fit(specimen: Specimen, measured: Measured, seed: int = 0) -> Fitted:
-    """The calibrated base: first against sensor noise alone, then with the noise of the base motion."""
+    """The calibrated base."""
     unknowns = of_specimen(specimen, measured.model)
     ranged = {u.name for u in unknowns if u.prior is None}
     coordinates = tuple(name for name in measured.identification.coordinates if name in ranged)
     predictor = Predictor(measured, specimen.options, specimen.stages, coordinates)
-    plain = Misfit(predictor, sensor_noise_only(predictor), unknowns, fixed_values(specimen))
+    return fit_from_nothing(predictor, unknowns, fixed_values(specimen), seed)
+
+
+def fit_from_nothing(
+    predictor: Predictor, unknowns: tuple[Unknown, ...], fixed: Mapping[str, float], seed: int
+) -> Fitted:
+    """The global minimum, first against sensor noise alone, then with the noise of the base motion."""
+    plain = Misfit(predictor, sensor_noise_only(predictor), unknowns, fixed)
     first = calibrate_base(plain, seed)
-    if measured.stretches is not None:  # what the noise of the base leaves goes on from stretch to stretch
+    if predictor.measured.stretches is not None:  # what the noise of the base leaves goes on from stretch to stretch
         return first
     point = plain.point(first.u, first.states)
     whitening = with_base_noise(predictor, responses(predictor, point))
     predictor = replace(predictor, measured=counted(predictor, point))
-    return fit_thoroughly(Misfit(predictor, whitening, unknowns, plain.fixed), first.u, first.states)
+    return fit_thoroughly(Misfit(predictor, whitening, unknowns, fixed), first.u, first.states)

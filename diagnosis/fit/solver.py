@@ -54,7 +54,7 @@ class Fitted:
     @property
     def frozen(self) -> Misfit:
         """The misfit with nothing unknown but the windows' states, at the model's own parameters."""
-        predictor = replace(self.misfit.predictor, coordinates=())
+        predictor = replace(self.misfit.predictor, coordinates=(), rung=None)
         return replace(self.misfit, predictor=predictor, unknowns=(), fixed=self.point.values, smooth=None)
 
     @property

@@ -75,6 +75,12 @@ def library(model: Model) -> dict[str, Mechanism]:
     return {**model.mechanisms, **INSTRUMENTS}
 
 
+def effects(model: Model) -> dict[str, Mechanism]:
+    """Everything that an answer may name: the library, and other base models."""
+    ladder = model.identification.ladder if model.identification else ()
+    return {**library(model), **{rung.name: rung.mechanism for rung in ladder}}
+
+
 def of_specimen(specimen: Specimen, model: Model) -> tuple[Unknown, ...]:
     """Toleranced parameters with their priors, and those to calibrate within their ranges."""
     units = {p.name: p.unit for p in model.parameters}
@@ -86,13 +92,15 @@ def of_specimen(specimen: Specimen, model: Model) -> tuple[Unknown, ...]:
         sd = abs(relative * nominal)
         reach = WIDEST_PRIOR * sd
         found.append(Unknown(name, units[name], nominal - reach, nominal + reach, nominal, sd, prior=(nominal, sd)))
-    for name, (low, high) in specimen.calibrate.items():
-        unit = units[name]
-        if low > 0.0 and high / low > LOG_SPAN:
-            found.append(Unknown(name, unit, low, high, float(np.sqrt(low * high)), 0.1, "log"))
-        else:
-            found.append(Unknown(name, unit, low, high, (low + high) / 2.0, (high - low) / STEPS_OF_RANGE))
+    found += [in_range(name, units[name], low, high) for name, (low, high) in specimen.calibrate.items()]
     return tuple(found)
+
+
+def in_range(name: str, unit: str, low: float, high: float) -> Unknown:
+    """A number of which only the range is known."""
+    if low > 0.0 and high / low > LOG_SPAN:
+        return Unknown(name, unit, low, high, float(np.sqrt(low * high)), 0.1, "log")
+    return Unknown(name, unit, low, high, (low + high) / 2.0, (high - low) / STEPS_OF_RANGE)
 
 
 def of_parameter(mechanism: Mechanism, parameter: MechanismParameter) -> Unknown:

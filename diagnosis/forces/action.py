@@ -135,10 +135,11 @@ def _run(
     shaking = moved_in_stages(m.shakings[r], predictor.sets(instruments_of(values), recording), moved_in_windows)
     parts = predictor.parts(values, recording)
     instants = np.tile(np.array([part.first for part in parts[1:]], np.int64), (first.size, 1))
-    return trajectories(
+    ran = trajectories(
         m.model, [part.values for part in parts], instants, shaking, first=first, samples=samples, initial=initial,
         options=predictor.options,
     )  # fmt: skip
+    return m.identification.seen(ran)
 
 
 def _carried(predictor: Predictor, point: Point, states: Mapping[str, FloatArray]) -> dict[str, FloatArray]:

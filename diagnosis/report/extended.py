@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 import models
-from diagnosis.answer.result import Diagnosis
+from diagnosis.answer.result import Diagnosis, OtherModel
+from diagnosis.data.measured import identification_of
 from diagnosis.fit.unknowns import library
 from grids.specimen import Specimen
 from grids.stages import Stage
@@ -16,8 +17,11 @@ def extend(specimen: Specimen, diagnosis: Diagnosis) -> Specimen:
 
     What was to be calibrated has its value now; tolerances stay for parameters that keep a name in
     [parameters]. Where a mechanism was calibrated (``mechanism.parameter`` in [calibrate]), its value
-    stands among the mechanisms.
+    stands among the mechanisms. Where the answer is another base model it is a specimen of that one, all its
+    parameters as fitted.
     """
+    if diagnosis.other_model is not None:
+        return _of_another_model(specimen, diagnosis.other_model)
     parameters = dict(specimen.parameters)
     mechanisms = {name: dict(values) for name, values in {**specimen.mechanisms, **diagnosis.instruments}.items()}
     for name, value in diagnosis.base.items():
@@ -49,4 +53,21 @@ def extend(specimen: Specimen, diagnosis: Diagnosis) -> Specimen:
         mechanisms=mechanisms,
         stages=stages,
         reference_peak=diagnosis.reference_peak or specimen.reference_peak,
+    )
+
+
+def _of_another_model(specimen: Specimen, other: OtherModel) -> Specimen:
+    rung = next(r for r in identification_of(models.get(specimen.model)).ladder if r.name == other.effect)
+    initial = dict(specimen.initial)
+    initial |= {name: initial[of] for name, of in rung.alike.items() if of in initial}
+    return replace(
+        specimen,
+        title=f"{specimen.title}, extended",
+        model=other.model,
+        parameters=other.parameters,
+        tolerance={},
+        calibrate={},
+        options=other.options,
+        vertical=other.vertical,
+        initial=initial,
     )

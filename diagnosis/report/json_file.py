@@ -41,6 +41,7 @@ def as_mapping(diagnosis: Diagnosis) -> dict[str, Any]:
         },
         "statement": diagnosis.statement,
         "next_experiment": None if diagnosis.next_experiment is None else dict(diagnosis.next_experiment),
+        "other_model": None if diagnosis.other_model is None else entry(asdict(diagnosis.other_model)),
         "errors": None if diagnosis.errors is None else asdict(diagnosis.errors),
         "not_tried": [{"name": name, "why": why} for name, why in diagnosis.not_tried.items()],
         "provenance": {

@@ -11,12 +11,12 @@ import numpy as np
 import models
 from diagnosis.answer.heldout import HORIZON
 from diagnosis.answer.phases import words_of
-from diagnosis.answer.result import Diagnosis, Rival, Windows
+from diagnosis.answer.result import Diagnosis, OtherModel, Rival, Windows
 from diagnosis.answer.when import when_text
 from diagnosis.data.measured import identification_of
 from diagnosis.data.windows import ABOVE_NOISE
 from diagnosis.errors.words import error_lines
-from diagnosis.fit.unknowns import library
+from diagnosis.fit.unknowns import effects
 from diagnosis.report import words
 from grids.recordings import CHANNELS, Recording, noise_levels
 from grids.recordings.levels import stem
@@ -59,7 +59,7 @@ def report_page(
 ) -> str:
     """The page as text, with the pictures ``drawn``. What it says of the fit stands in ``diagnosis``."""
     model = models.get(specimen.model)
-    known, declared = library(model), identification_of(model)
+    known, declared = effects(model), identification_of(model)
     meanings = {name: channel.meaning for name, channel in CHANNELS.items()} | {
         quantity.name: quantity.meaning for quantity in model.observables
     }
@@ -81,6 +81,8 @@ def report_page(
                 )
                 for effect in diagnosis.effects
             ],
+            other_title=models.get(diagnosis.other_model.model).title if diagnosis.other_model else "",
+            other_parameters=_other_parameters(diagnosis.other_model),
             rivals=_rivals(diagnosis, known),
             channels={name: meaning.partition(",")[0] for name, meaning in meanings.items()},
             phases=words_of(declared),
@@ -136,6 +138,14 @@ def _read_row(recording: Recording, held_out: bool) -> dict[str, Any]:
     return {"recording": recording, "held_out": held_out, "channels": channels}
 
 
+def _other_parameters(other: OtherModel | None) -> list[tuple[str, str, str]]:
+    """Name, meaning and value of every parameter of another base model."""
+    if other is None:
+        return []
+    declared = {p.name: p for p in models.get(other.model).parameters}
+    return [(n, declared[n].meaning, words.stated(v, declared[n].unit)) for n, v in other.parameters.items()]
+
+
 def _rivals(diagnosis: Diagnosis, known: Mapping[str, Mechanism]) -> list[tuple[Rival, Mechanism, str]]:
     """Each rival with its mechanism and what it would mean by its own refit; the equation without one."""
     refitted = {tried.name: tried.estimate or {} for tried in diagnosis.screen}
@@ -183,7 +193,7 @@ def _horizon(seconds: float) -> str:
 def _parameters(diagnosis: Diagnosis, specimen: Specimen) -> list[Mapping[str, Any]]:
     """Effects first, then the base: estimate and interval as texts, what was stated, bounds hit."""
     rows: list[Mapping[str, Any]] = []
-    known = library(models.get(specimen.model))
+    known = effects(models.get(specimen.model))
     for effect in diagnosis.effects:
         declared = {p.name: p.meaning for p in known[effect.name].addressable(specimen.model)}
         for name, value in effect.parameters.items():

@@ -10,6 +10,8 @@ MOST = 150_000_000
 """Lane-steps of a search: one to two and a half minutes of one core, by what each of them costs."""
 RESERVED = 60_000_000
 """Lane-steps for effects that begin or end, whatever was spent before: they come last and may explain everything."""
+LADDER = 60_000_000
+"""Lane-steps after which no further base model is tried."""
 ENDED = "the search's budget of work ended before it"
 
 

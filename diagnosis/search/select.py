@@ -54,8 +54,8 @@ POOL_SHARE = 0.25
 """Singles whose gain is this share of the best one's are tried as parts of a pair."""
 
 
-def search(found: Search, progress: Progress) -> Iterator[Search]:
-    """Yields the growing search after each stage; the last one is the answer."""
+def first_effect(found: Search, progress: Progress) -> Iterator[Search]:
+    """Yields the growing search after each stage, up to the best single mechanism under its own errors."""
     yield found
     progress("screening the mechanisms", 0.1)
     _singles(found, progress)
@@ -75,6 +75,12 @@ def search(found: Search, progress: Progress) -> Iterator[Search]:
         progress("estimating the errors with what was found", 0.46)
         weigh_again(found)
     yield found
+
+
+def further_effects(found: Search, progress: Progress) -> Iterator[Search]:
+    """The same with a second and a third mechanism beside the first; the last one is the answer."""
+    if found.best is None:
+        return
     _pairs(found, progress)
     yield found
     if found.outside is None:

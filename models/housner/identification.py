@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from models.base import FloatArray
+from models.housner.ladder import LADDER
 from models.identification import (
     Count,
     Dependence,
@@ -74,4 +75,6 @@ IDENTIFICATION = Identification(
         "left": "while rocking to the left",
         "right": "while rocking to the right",
     },
+    same={"rotation_2": "rotation_1"},
+    ladder=LADDER,
 )  # fmt: skip

@@ -7,6 +7,7 @@ window is not known to the diagnosis.
 from __future__ import annotations
 
 from models.identification import Identification, Lead, State, WindowLengths
+from models.stacked.ladder import LADDER
 
 IDENTIFICATION = Identification(
     leads=(Lead("rotation_1", 1, "base"), Lead("rotation_2", 2, "top")),
@@ -20,4 +21,5 @@ IDENTIFICATION = Identification(
         shortest=1.0, aim=2.0, longest=2.8, quiet=1.2, smoothing=0.17, unit=lambda d: 1.0 / d["frequency_parameter"]
     ),
     chaotic=True,
+    ladder=LADDER,
 )

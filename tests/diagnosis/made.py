@@ -9,6 +9,9 @@ import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
 import models
+from diagnosis.progress import silent
+from diagnosis.search.found import Search
+from diagnosis.search.select import first_effect, further_effects
 from grids.instruments import moved, recorded
 from grids.instruments.base import Surroundings
 from grids.recordings.base import Recording
@@ -28,6 +31,14 @@ SPECIMEN = Specimen(
     parameters={"width": 0.25, "height": 1.8, "mass": 540.0},
     tolerance={"width": 0.005, "height": 0.005},
 )
+
+
+def searched(found: Search) -> Search:
+    """A search gone through all its stages."""
+    for stages in (first_effect, further_effects):
+        for stage in stages(found, silent):
+            found = stage
+    return found
 
 
 def motion(seed: int, duration: float = 9.0, pga: float = 3.0) -> Shaking:

@@ -22,9 +22,9 @@ from diagnosis.search.found import Search
 from diagnosis.search.null import null_distribution
 from diagnosis.search.refit import Explanation
 from diagnosis.search.screen import score
-from diagnosis.search.select import search
 from diagnosis.search.weighing import evidence
 from tests.diagnosis.made import SPECIMEN, scattered
+from tests.diagnosis.made import searched as searched_to_the_end
 
 
 def autoregressive(rng: np.random.Generator, n: int) -> np.ndarray:
@@ -139,8 +139,7 @@ def searched(errors: Callable[[np.random.Generator, int], np.ndarray], names: tu
     measured = measure(SPECIMEN, [scattered(f"train_{k}", k, errors=errors) for k in (1, 6)])
     fitted, found = calibrated(SPECIMEN, measured)
     tried = tuple(c for c in candidates(measured, SPECIMEN) if c.name in names)
-    *_, last = search(Search(Explanation((), fitted), tried, found), lambda text, share: None)
-    return last
+    return searched_to_the_end(Search(Explanation((), fitted), tried, found))
 
 
 LEANING = ("offset", "tilt", "accelerometer_offset", "drift", "gain")

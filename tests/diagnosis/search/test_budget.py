@@ -8,9 +8,8 @@ from diagnosis.search.budget import ENDED, Budget
 from diagnosis.search.candidates import candidates
 from diagnosis.search.found import Search
 from diagnosis.search.refit import Explanation
-from diagnosis.search.select import search
 from models.runs import DONE
-from tests.diagnosis.made import SPECIMEN, recording
+from tests.diagnosis.made import SPECIMEN, recording, searched
 
 TRIED = ("viscous_damping", "restitution")
 
@@ -21,8 +20,8 @@ def test_what_a_spent_budget_leaves_out_is_said() -> None:
     fitted, errors = calibrated(SPECIMEN, measured)
     assert DONE.steps - before > 10 * measured.mask.sum()
     tried = tuple(c for c in candidates(measured, SPECIMEN) if c.name in TRIED)
-    *_, ended = search(Search(Explanation((), fitted), tried, errors, budget=Budget(0)), lambda text, share: None)
+    ended = searched(Search(Explanation((), fitted), tried, errors, budget=Budget(0)))
     assert ended.best is None and ended.not_tried == dict.fromkeys(TRIED, ENDED)
-    *_, whole = search(Search(Explanation((), fitted), tried, errors), lambda text, share: None)
+    whole = searched(Search(Explanation((), fitted), tried, errors))
     assert whole.best is not None and whole.best.names == ("viscous_damping",)
     assert ENDED not in whole.not_tried.values()

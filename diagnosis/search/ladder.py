@@ -1,0 +1,192 @@
+"""The base model itself may be the wrong one: other base models, compared with the best that this one can do.
+
+A model declares which ones (`models.identification.Rung`). Each is fitted to the same windows and channels, the
+specimen's parameters with their tolerances carried over and what it has more searched in its ranges. It is tried where
+a mechanism was found or the model errs, never where the base model explains the recordings. It is named where it
+explains clearly more than the base model with all mechanisms found, each under the errors estimated with itself
+(`diagnosis.errors.comparison`): twice the log likelihood rises by what a further effect must bring, after the other
+model has paid for its parameters and for every state more that it starts a window from, and still does without the
+window that weighs most.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diagnosis.data.measured import Measured, for_model, identification_of
+from diagnosis.errors.adequacy import inadequacy
+from diagnosis.errors.comparison import by_window, deviance
+from diagnosis.errors.model import Errors, disturbance_about, refitted
+from diagnosis.fit.prediction import Predictor
+from diagnosis.fit.setup import fit_from_nothing
+from diagnosis.fit.unknowns import fixed_values, in_range, of_specimen
+from diagnosis.progress import Progress
+from diagnosis.search.budget import ENDED, LADDER, Budget
+from diagnosis.search.candidates import Candidate
+from diagnosis.search.found import Search, adjusted
+from diagnosis.search.refit import Explanation
+from diagnosis.search.weighing import reweighed
+from grids.recordings.base import Recording
+from grids.specimen import Specimen
+from models import get
+from models.base import FloatArray
+from models.errors import InputError
+from models.identification import Rung
+from models.runs import DONE
+
+DECISIVE = 2.0
+PER_STATE = 2.0
+"""What every state that a window starts from beyond those of the base model costs."""
+
+
+@dataclass(frozen=True)
+class Climbed:
+    """Another base model in the place of the one given: the search ``before`` it, and ``after``.
+
+    ``evidence``: gain in 2 log likelihood over all that the one given could do, prices paid; ``inadequate``: with that
+    it errs clearly.
+    """
+
+    rung: Rung
+    before: Search
+    after: Search
+    evidence: float
+    inadequate: bool
+
+
+@dataclass(frozen=True)
+class Weighed:
+    """A fit converged together with its own errors: ``deviance`` and its parts ``by_window`` (W,), prices paid."""
+
+    explanation: Explanation
+    errors: Errors
+    deviance: float
+    by_window: FloatArray
+
+    def over(self, other: Weighed) -> tuple[float, float]:
+        """Gain over another fit, and the same without the window that weighs most."""
+        gain = other.deviance - self.deviance
+        return gain, gain - float(np.max(other.by_window - self.by_window))
+
+
+def rungs(
+    found: Search, specimen: Specimen, held: Sequence[Recording], seed: int, progress: Progress
+) -> list[tuple[Rung, Weighed]]:
+    """Other base models fitted to the recordings, if the search so far asks for one; `Search.not_tried`: which are not.
+
+    ``held``: recordings held out, which have to hold what the other model starts a window from.
+    """
+    if found.best is None and not inadequacy(found.errors).large:
+        return []
+    budget = Budget(LADDER)
+    recordings = [*found.measured.recordings, *held]
+    tried = []
+    for rung in found.measured.identification.ladder:
+        if not _meant_for(rung, recordings):
+            continue
+        why = ENDED if budget.spent else _refusal(rung, specimen)
+        if not why:
+            progress(f"another base model: {rung.name.replace('_', ' ')}", 0.48)
+            try:
+                tried.append((rung, _weighed(_fitted(rung, specimen, found.measured, recordings, seed))))
+            except InputError as error:
+                why = str(error)
+        if why:
+            found.not_tried[rung.name] = why
+    found.budget = replace(found.budget, begin=found.budget.begin + DONE.steps - budget.begin)
+    return tried
+
+
+def climb(found: Search, tried: Sequence[tuple[Rung, Weighed]], *, decisive: bool) -> Climbed | None:
+    """The search with the best of the other base models, if the recordings ask for it.
+
+    ``decisive``: only if it errs nowhere and gains `DECISIVE` times as much as the best single mechanism, so that no
+    further mechanism need be looked for.
+    """
+    if not tried:
+        return None
+    before = _as_found(found)
+    rung, best = min(tried, key=lambda entry: entry[1].deviance)
+    evidence, rest = best.over(before)
+    if rest < found.more:
+        return None
+    if decisive:
+        start = _as_found(found.at_null or found, base=True)
+        if inadequacy(best.errors).large or best.over(start)[0] < DECISIVE * before.over(start)[0]:
+            return None
+    others = [one.explanation for _, one in tried if one is not best]
+    errs = found.outside is not None or inadequacy(found.errors).large
+    return Climbed(rung, found, _on(found, best, others, evidence), evidence, errs)
+
+
+def _meant_for(rung: Rung, recordings: Sequence[Recording]) -> bool:
+    held = [all(c in r.channels for r in recordings) for c in rung.recorded]
+    return all(held) and not any(all(c in r.channels for r in recordings) for c in rung.not_recorded)
+
+
+def _refusal(rung: Rung, specimen: Specimen) -> str:
+    acting = get(rung.model).mechanisms
+    own = [n for n in specimen.mechanisms if n in get(specimen.model).mechanisms and n not in acting]
+    if own:
+        return f"{', '.join(own)} does not act on model {rung.model}"
+    return rung.refusal(_nominal(specimen))
+
+
+def _nominal(specimen: Specimen) -> dict[str, float]:
+    """The specimen's own parameters, those to be calibrated at where their search starts."""
+    unknown = {x.name: x.start for x in of_specimen(specimen, get(specimen.model)) if "." not in x.name}
+    return {**unknown, **specimen.parameters}
+
+
+def _fitted(
+    rung: Rung, specimen: Specimen, measured: Measured, recordings: Sequence[Recording], seed: int
+) -> Explanation:
+    """The other model on the same windows, as an explanation with one effect: the rung."""
+    other = get(rung.model)
+    channel = {state.name: state.channel for state in identification_of(other).free}
+    alike = {s: of for s, of in rung.alike.items() if not all(channel[s] in r.channels for r in recordings)}
+    seen = for_model(measured, other, alike, rung.bonded)
+    ranges = rung.ranges(_nominal(specimen))
+    own = tuple(in_range(f"{rung.name}.{p.name}", p.unit, *ranges[p.name]) for p in rung.parameters)
+    base = tuple(x for x in of_specimen(specimen, measured.model) if x.name not in rung.without)
+    predictor = Predictor(seen, options_of(rung, specimen.options), specimen.stages, rung=rung)
+    fitted = fit_from_nothing(predictor, (*base, *own), fixed_values(specimen), seed)
+    states = len(seen.free) - len(measured.free)
+    price = PER_STATE * (states * len(measured.windows) + 1)
+    return Explanation((Candidate(rung.mechanism, own, {}, price=price),), fitted)
+
+
+def options_of(rung: Rung, given: Mapping[str, str]) -> dict[str, str]:
+    """Options of the other model: the rung's own, and those of the specimen that it knows too."""
+    known = get(rung.model).options
+    return {name: word for name, word in given.items() if word in known.get(name, ())} | dict(rung.options)
+
+
+def _weighed(explanation: Explanation) -> Weighed:
+    """The explanation and its errors, each estimated under the other in turn."""
+    fitted, errors = refitted(explanation.fitted, disturbance_about(explanation.fitted))
+    return _judged(replace(explanation, fitted=fitted), errors)
+
+
+def _as_found(found: Search, base: bool = False) -> Weighed:
+    """What the search has found, or its ``base`` model, with the errors estimated there."""
+    return _judged(found.base if base else found.chosen, found.errors)
+
+
+def _judged(explanation: Explanation, errors: Errors) -> Weighed:
+    price = adjusted(explanation) - explanation.loss
+    return Weighed(explanation, errors, deviance(explanation.fitted, errors) + price, by_window(errors))
+
+
+def _on(found: Search, best: Weighed, others: Sequence[Explanation], evidence: float) -> Search:
+    """The search with the other model, under the errors estimated with it."""
+    on = reweighed(best.explanation, best.errors)
+    before = replace(found, base=found.chosen, tried=[reweighed(on, found.errors)])
+    tried = [on, *(reweighed(other, best.errors) for other in others)]
+    return replace(
+        found, base=reweighed(found.base, best.errors), best=on, errors=best.errors, tried=tried, singles=[],
+        at_null=before, marginal=evidence, weighed=on.candidates, outside=None, about=None,
+    )  # fmt: skip

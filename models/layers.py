@@ -1,0 +1,52 @@
+"""Rubber layers as the next rung of a ladder of models: what a rigid base, or joint, may have to be replaced by."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from models.base import MechanismParameter
+from models.identification import Rung
+
+LAYER_THICKNESS = 0.01
+"""m, taken where nobody has measured a layer: with linear rubber only the height of what stands on it depends on it."""
+COMPRESSIONS = (5e-5, 1e-2)
+"""m, static compression of a layer between which its stiffness is looked for."""
+DAMPING_RATIOS = (0.005, 0.4)
+GRAVITY = 9.80665
+
+BASE_STIFFNESS, TOP_STIFFNESS = (
+    MechanismParameter(
+        f"{joint}_stiffness", f"k_{joint[0]}", "N m-2", f"force per metre of contact and compression, {joint}",
+        0.0, low_open=True,
+    )
+    for joint in ("base", "top")
+)  # fmt: skip
+BASE_DAMPING_RATIO, TOP_DAMPING_RATIO = (
+    MechanismParameter(
+        f"{joint}_damping_ratio",
+        f"xi_{joint[0]}",
+        "1",
+        f"damping ratio at the lowest frequency, {joint} layer",
+        0.0,
+        1.0,
+    )
+    for joint in ("base", "top")
+)
+
+
+def stiffness_range(mass: float, length: float, gravity: float | None = None) -> tuple[float, float]:
+    """Stiffness (N m-2) of a layer of some ``length`` (m) that ``mass`` (kg) compresses by the least and the most."""
+    weight = mass * (GRAVITY if gravity is None else gravity)
+    least, most = COMPRESSIONS
+    return weight / (length * most), weight / (length * least)
+
+
+def compliant(**given: Any) -> Rung:
+    """The rung "the base is compliant": walls on rubber layers that lift."""
+    return Rung(
+        name="compliant_base",
+        model="interface",
+        equation="N = k times the compression, integrated over the share of the joint in contact; a dashpot beside it",
+        sentence="the base is compliant, a layer of {base_stiffness:.3g} N/m² with {base_damping_ratio:.1%} damping",
+        **given,
+    )

@@ -1,0 +1,96 @@
+"""Another base model is named where it is the right one, and nowhere else."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+import models
+from diagnosis.answer.ladder import confirmed, other_model
+from diagnosis.errors.model import Errors, calibrated
+from diagnosis.fit.setup import measure
+from diagnosis.fit.solver import Fitted
+from diagnosis.progress import silent
+from diagnosis.report import extend
+from diagnosis.search import ladder
+from diagnosis.search.found import Search
+from diagnosis.search.refit import Explanation
+from grids.recordings.base import Recording
+from grids.specimen import Specimen, parse_specimen
+from grids.write_specimen import specimen_text
+from tests.diagnosis.made import TIME_STEP, motion
+from tests.diagnosis.report.example import diagnosis
+
+PIER = Specimen(
+    "pier", "housner", {"width": 0.5, "height": 2.3, "mass": 1380.0}, {"width": 0.005, "height": 0.005, "mass": 0.01}
+)
+MAT = {
+    "wall_length": 0.5, "wall_height": 1.15, "wall_mass": 690.0, "top_mass": 690.0, "top_length": 0.5,
+    "top_height": 1.15, "layer_thickness": 0.01, "base_stiffness": 2e7, "base_damping_ratio": 0.06,
+}  # fmt: skip
+
+
+@cache
+def recorded(model: str, rotations: int) -> Recording:
+    base = motion(1, pga=4.0)
+    values, options = (MAT, {"joints": "base"}) if model == "interface" else (PIER.parameters, {})
+    ran = models.get(model).simulate(values, base, duration=base.duration, options=options)
+    rng = np.random.default_rng(3)
+    rotation = np.asarray(ran.channels["rotation_1"])
+    channels = {"base_acceleration_x": base.horizontal}
+    for body in range(1, 1 + rotations):
+        noise = rng.normal(size=rotation.size)
+        channels[f"rotation_{body}"] = rotation + 0.01 * np.max(np.abs(rotation)) * noise
+    return Recording("run", TIME_STEP, base.time, channels)
+
+
+@cache
+def base_fit(model: str, rotations: int) -> tuple[Fitted, Errors]:
+    return calibrated(PIER, measure(PIER, [recorded(model, rotations)]))
+
+
+def test_rubber_under_a_pier_is_named_with_its_stiffness_and_the_answer_is_a_specimen() -> None:
+    fitted, errors = base_fit("interface", 1)
+    found = Search(Explanation((), fitted), (), errors)
+    pier = PIER.parameters
+    rung = next(r for r in fitted.measured.identification.ladder if r.bonded)
+    tried = [(rung, ladder._weighed(ladder._fitted(rung, PIER, fitted.measured, fitted.measured.recordings, 0)))]
+    climbed = confirmed(ladder.climb(found, tried, decisive=False), fitted.measured)
+    assert climbed is not None and climbed.evidence > 100.0 and not climbed.inadequate | (climbed.rung is not rung)
+    other = other_model(climbed, climbed.after.chosen)
+    assert other.parameters["base_stiffness"] == pytest.approx(MAT["base_stiffness"], rel=0.15)
+    assert other.parameters["base_damping_ratio"] == pytest.approx(MAT["base_damping_ratio"], rel=0.4)
+    assert other.parameters["wall_mass"] + other.parameters["top_mass"] == pytest.approx(pier["mass"], rel=0.03)
+    extended = extend(PIER, replace(diagnosis(), other_model=other))
+    read = parse_specimen(specimen_text(extended))
+    assert read.model == rung.model and read.options == rung.options and read.parameters == extended.parameters
+
+
+def test_a_block_that_is_one_stays_one_whatever_is_tried() -> None:
+    """Both rotations of one body are alike: a joint in it, which may open, explains no more."""
+    fitted, errors = base_fit("housner", 2)
+    assert fitted.measured.channels == ("rotation_1", "rotation_2")
+    found = Search(Explanation((), fitted), (), errors)
+    rung = fitted.measured.identification.ladder[0]
+    tried = [(rung, ladder._weighed(ladder._fitted(rung, PIER, fitted.measured, fitted.measured.recordings, 0)))]
+    assert ladder.climb(found, tried, decisive=False) is None
+    evidence, _ = tried[0][1].over(ladder._as_found(found))
+    assert evidence < 0.0
+
+
+def test_nothing_is_tried_where_the_base_model_explains_the_recordings() -> None:
+    fitted, errors = base_fit("housner", 2)
+    found = Search(Explanation((), fitted), (), errors)
+    assert ladder.rungs(found, PIER, [], 0, silent) == [] and not found.not_tried
+
+
+def test_rungs_that_cannot_be_tried_say_why() -> None:
+    switched_on = replace(PIER, mechanisms={"bounce": {"contact_restitution": 0.1}})
+    for rung in models.get("housner").identification.ladder:  # type: ignore[union-attr]
+        assert "bounce does not act on model" in ladder._refusal(rung, switched_on)
+        assert not ladder._refusal(rung, PIER)
+        fits = ladder._meant_for(rung, [recorded("housner", 1)]), ladder._meant_for(rung, [recorded("housner", 2)])
+        assert fits in [(True, True), (True, False), (False, True)]
