@@ -197,6 +197,21 @@ class Scatter:
     rate: str
 
 
+@dataclass(frozen=True)
+class Exposure:
+    """What properties of a specimen may have changed with over a sequence of tests.
+
+    ``name``: of the quantity; ``meaning``: what has happened up to the end of a test; ``output``: of a run, the largest
+    value so far counts, or where ``summed`` all together. ``of``: the parameters that it may change.
+    """
+
+    name: str
+    meaning: str
+    output: str
+    of: tuple[str, ...]
+    summed: bool = False
+
+
 Numbers = Mapping[str, float]
 """Parameters of a model in SI, by name."""
 
@@ -262,7 +277,8 @@ class Identification:
     states, and whatever else it remembers, at every window's start. ``not_carried``: what else a window would have to
     inherit; with it, or with a latent state that is not carried, calibration and diagnosis are refused.
     ``same``: channels of parts that move as one here, by the observable that predicts them. ``ladder``: base models
-    that may be the right ones where this one is not, in the order in which they are tried.
+    that may be the right ones where this one is not, in the order in which they are tried. ``exposures``: what may have
+    changed the specimen from test to test.
     """
 
     leads: tuple[Lead, ...]
@@ -284,6 +300,7 @@ class Identification:
     speed: float = 1.0
     same: Mapping[str, str] = field(default_factory=dict)
     ladder: tuple[Rung, ...] = ()
+    exposures: tuple[Exposure, ...] = ()
 
     def seen(self, observed: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
         """The observables of a run, with those that `same` makes of them."""

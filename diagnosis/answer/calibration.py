@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from diagnosis.answer.drift import FEWEST, Drift, drift_of, value_at
 from diagnosis.answer.heldout import frozen, relative_misfit
 from diagnosis.data.measured import Measured
 from diagnosis.errors.model import Errors, calibrated
 from diagnosis.fit.intervals import Estimate, correlation, estimates, profile_rise, settled
 from diagnosis.fit.setup import as_recorded, measure
 from diagnosis.fit.solver import Fitted
+from diagnosis.fit.unknowns import instruments_of
 from diagnosis.progress import Progress, silent
 from diagnosis.search.refit import Explanation
+from grids.instruments.staged import moved_in_stages
 from grids.recordings.base import Recording
 from grids.specimen import Specimen
 from models.base import FloatArray
 from models.errors import InputError
+from models.piecewise import simulate
 
 PROFILE_POINTS = (-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0)
 """Half widths of the interval at which a profile is evaluated, over 1.96."""
@@ -31,7 +35,8 @@ class Calibration:
     ``correlation`` (k, k) in the order of ``parameters``; ``misfit`` relative rms, states estimated as
     `diagnose` does for its "before", ``noise_floor`` the same of the noise; ``profiles``: by parameter,
     values and the rise of the loss (-2 log likelihood) over the optimum; ``by_recording``: the same
-    estimates from each recording alone (the drift), with several recordings.
+    estimates from each recording alone, with several recordings; ``drifts``: whether they stay the same over the
+    recordings as a sequence of tests, of the parameters that the model says may change, and with what.
     """
 
     parameters: Mapping[str, Estimate]
@@ -42,6 +47,7 @@ class Calibration:
     windows: int
     profiles: Mapping[str, tuple[FloatArray, FloatArray]] = field(default_factory=dict)
     by_recording: Mapping[str, Mapping[str, Estimate]] = field(default_factory=dict)
+    drifts: tuple[Drift, ...] = ()
 
     def __repr__(self) -> str:
         lines = [f"{'parameter':<24}{'estimate':>12}{'low 95 %':>12}{'high 95 %':>12}  unit"]
@@ -82,13 +88,76 @@ def calibrate(
     steps = _steps(progress, 2 + len(alone) + profiles)
     steps("fitting all recordings together")
     fitted, errors = calibrated(specimen, measured, seed)
-    by_recording = {}
+    each = {}
     for recording in alone:
         steps(f"fitting {recording.name} alone")
-        by_recording[recording.name] = estimates(
-            calibrated(specimen, measure(specimen, [recording], measured.reference_peak), seed)[0]
+        each[recording.name] = calibrated(specimen, measure(specimen, [recording], measured.reference_peak), seed)[0]
+    by_recording = {name: estimates(one) for name, one in each.items()}
+    found = _summary(fitted, errors, measured, profile, by_recording, steps)
+    return replace(found, drifts=_drifts(by_recording, list(each.values())))
+
+
+def specimen_of(specimen: Specimen, found: Calibration) -> Specimen:
+    """The specimen with the fitted values in the place of nominal ones and ranges."""
+    parameters = dict(specimen.parameters)
+    mechanisms = {name: dict(values) for name, values in specimen.mechanisms.items()}
+    for name, value in found.parameters.items():
+        mechanism, dot, parameter = name.partition(".")
+        if dot:
+            mechanisms.setdefault(mechanism, {})[parameter] = value.estimate
+        else:
+            parameters[name] = value.estimate
+    return replace(
+        specimen, title=f"{specimen.title}, calibrated", parameters=parameters, mechanisms=mechanisms, calibrate={}
+    )
+
+
+def specimen_at(specimen: Specimen, found: Calibration, exposure: str, level: float) -> Specimen:
+    """The same as the tests left it when the ``exposure`` of that name had reached a ``level``.
+
+    Raises InputError where no property may change with it, beyond the tests, or where one changes with something else.
+    """
+    known = [d for d in found.drifts if any(c.exposure.name == exposure for c in d.curves)]
+    if not known:
+        raise InputError(
+            f"no calibrated parameter can be told at a {exposure}: give {FEWEST} tests or more, of a specimen whose "
+            "layers are calibrated."
         )
-    return _summary(fitted, errors, measured, profile, by_recording, steps)
+    whole = specimen_of(specimen, found)
+    values = {d.parameter: value_at(d, exposure, level) for d in known}
+    title = f"{specimen.title}, at a {exposure} of {level:g}"
+    return replace(whole, title=title, parameters={**whole.parameters, **values})
+
+
+def _drifts(by_recording: Mapping[str, Mapping[str, Estimate]], each: Sequence[Fitted]) -> tuple[Drift, ...]:
+    """Of the parameters that the model says may change from test to test."""
+    if not each:
+        return ()
+    exposures = each[0].measured.identification.exposures
+    names = [n for n in next(iter(by_recording.values())) if any(n in e.of for e in exposures)]
+    if not names:
+        return ()
+    ran = [_from_rest(fitted) for fitted in each]
+    found = []
+    for name in names:
+        exposed = []
+        for one in exposures:
+            if name in one.of:
+                values = np.array([outputs[one.output] for outputs in ran], np.float64)
+                exposed.append((one, np.cumsum(values) if one.summed else np.maximum.accumulate(values)))
+        found.append(drift_of(name, {r: own[name] for r, own in by_recording.items()}, exposed, len(names)))
+    return tuple(one for one in found if one is not None)
+
+
+def _from_rest(fitted: Fitted) -> Mapping[str, float]:
+    """Outputs of the run of a fit's recording from rest."""
+    predictor, m = fitted.misfit.predictor, fitted.measured
+    shaking = moved_in_stages(m.shakings[0], predictor.sets(instruments_of(fitted.point.values), m.recordings[0]))
+    ran = simulate(
+        m.model, predictor.parts(fitted.point.values, m.recordings[0]), shaking, duration=shaking.duration,
+        options=predictor.options,
+    )  # fmt: skip
+    return ran.outputs
 
 
 def _steps(progress: Progress, count: int) -> Callable[[str], None]:

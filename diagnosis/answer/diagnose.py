@@ -126,7 +126,7 @@ def _assemble(
     progress("stating the errors", 0.87)
     errors = stages.needed(lambda: summary(found.errors, measured))
     verdict = verdict_of(found, near, bool(flagged) or errors.inadequacy.large, not unexplained, finished)
-    gains = stages.needed(lambda: evidence(found))
+    gains = [climbed.gain] if climbed else stages.needed(lambda: evidence(found))
     p_value = p_of_missing(found, gains, errors.inadequacy, finished)
     if draws and finished and climbed is None:
         score_p = p_value
@@ -192,7 +192,7 @@ def _assemble(
         train=train,
         holdout=held_fit,
         base=base,
-        screen=_screened(found),
+        screen=_screened(climbed.before if climbed else found),
         null_band=found.null.band if found.null else 0.0,
         p_value=p_value,
         next_experiment=experiment,

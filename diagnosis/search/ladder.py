@@ -26,7 +26,7 @@ from diagnosis.fit.unknowns import fixed_values, in_range, of_specimen
 from diagnosis.progress import Progress
 from diagnosis.search.budget import ENDED, LADDER, Budget
 from diagnosis.search.candidates import Candidate
-from diagnosis.search.found import Search, adjusted
+from diagnosis.search.found import Search, adjusted, price
 from diagnosis.search.refit import Explanation
 from diagnosis.search.weighing import reweighed
 from grids.recordings.base import Recording
@@ -55,6 +55,11 @@ class Climbed:
     after: Search
     evidence: float
     inadequate: bool
+
+    @property
+    def gain(self) -> float:
+        """The same before prices, as the evidence of mechanisms is given."""
+        return self.evidence + price(self.after.chosen.candidates[0])
 
 
 @dataclass(frozen=True)
@@ -119,7 +124,7 @@ def climb(found: Search, tried: Sequence[tuple[Rung, Weighed]], *, decisive: boo
             return None
     others = [one.explanation for _, one in tried if one is not best]
     errs = found.outside is not None or inadequacy(found.errors).large
-    return Climbed(rung, found, _on(found, best, others, evidence), evidence, errs)
+    return Climbed(rung, found, _on(found, best, others), evidence, errs)
 
 
 def _meant_for(rung: Rung, recordings: Sequence[Recording]) -> bool:
@@ -155,8 +160,9 @@ def _fitted(
     predictor = Predictor(seen, options_of(rung, specimen.options), specimen.stages, rung=rung)
     fitted = fit_from_nothing(predictor, (*base, *own), fixed_values(specimen), seed)
     states = len(seen.free) - len(measured.free)
-    price = PER_STATE * (states * len(measured.windows) + 1)
-    return Explanation((Candidate(rung.mechanism, own, {}, price=price),), fitted)
+    return Explanation(
+        (Candidate(rung.mechanism, own, {}, price=PER_STATE * (states * len(measured.windows) + 1)),), fitted
+    )
 
 
 def options_of(rung: Rung, given: Mapping[str, str]) -> dict[str, str]:
@@ -177,16 +183,15 @@ def _as_found(found: Search, base: bool = False) -> Weighed:
 
 
 def _judged(explanation: Explanation, errors: Errors) -> Weighed:
-    price = adjusted(explanation) - explanation.loss
-    return Weighed(explanation, errors, deviance(explanation.fitted, errors) + price, by_window(errors))
+    paid = deviance(explanation.fitted, errors) + adjusted(explanation) - explanation.loss
+    return Weighed(explanation, errors, paid, by_window(errors))
 
 
-def _on(found: Search, best: Weighed, others: Sequence[Explanation], evidence: float) -> Search:
+def _on(found: Search, best: Weighed, others: Sequence[Explanation]) -> Search:
     """The search with the other model, under the errors estimated with it."""
     on = reweighed(best.explanation, best.errors)
-    before = replace(found, base=found.chosen, tried=[reweighed(on, found.errors)])
     tried = [on, *(reweighed(other, best.errors) for other in others)]
     return replace(
         found, base=reweighed(found.base, best.errors), best=on, errors=best.errors, tried=tried, singles=[],
-        at_null=before, marginal=evidence, weighed=on.candidates, outside=None, about=None,
+        weighed=on.candidates, outside=None, about=None,
     )  # fmt: skip

@@ -2,7 +2,21 @@
 
 from __future__ import annotations
 
-from models.identification import Identification, Lead, State, WindowLengths
+from models.identification import Exposure, Identification, Lead, State, WindowLengths
+
+PROPERTIES = ("stiffness", "layer_modulus", "damping", "damping_ratio")
+
+
+def _of_layer(joint: str) -> tuple[Exposure, Exposure]:
+    """What may have changed the layer of a joint, both layers where ``joint`` is empty."""
+    before, after = (f"{joint}_", f"_{joint}") if joint else ("", "")
+    of = tuple(f"{before}{name}" for name in PROPERTIES)
+    which = f"the {joint} layer" if joint else "either layer"
+    return (
+        Exposure("strain", f"largest strain of {which} so far", f"peak_strain{after}", of),
+        Exposure("cycles", f"closings of {which} so far", f"impacts{after}", of, summed=True),
+    )
+
 
 IDENTIFICATION = Identification(
     leads=(Lead("rotation_1", 1, "base"), Lead("rotation_2", 2, "top")),
@@ -29,4 +43,5 @@ IDENTIFICATION = Identification(
     coordinates=("base_stiffness", "top_stiffness", "layer_modulus", "base_layer_modulus", "top_layer_modulus"),
     whole={"bouc_wen.exponent": (1.0, 2.0)},
     carrying=True,
+    exposures=(*_of_layer("base"), *_of_layer("top"), *_of_layer("")),
 )

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from models.errors import InputError
 from rocking.commands.base import STRICT, warn
 from rocking.commands.recordings import read_recordings, stages
 
@@ -15,18 +16,29 @@ if TYPE_CHECKING:
 
     from diagnosis.answer.calibration import Calibration
     from diagnosis.fit.intervals import Estimate
+    from grids.specimen import Specimen
 
 
 def calibrate(
     specimen: Annotated[Path, typer.Argument(help="Specimen file (TOML).")],
-    recordings: Annotated[list[Path], typer.Argument(help="Recordings (.nc, or .csv with .toml).")],
+    recordings: Annotated[
+        list[Path], typer.Argument(help="Recordings (.nc, or .csv with .toml), in the order of the tests.")
+    ],
+    out: Annotated[Path | None, typer.Option(help="Specimen file to write, with the fitted values.")] = None,
+    at_strain: Annotated[
+        float | None,
+        typer.Option(help="With --out: layers as they were when their largest strain so far was this (0.1 for 10 %)."),
+    ] = None,
     strict: Annotated[bool, typer.Option("--strict", help=STRICT)] = False,
 ) -> None:
     """Fit the specimen's uncertain parameters to recordings; nothing missing is looked for.
 
     Prints estimates, 95 % intervals (by profile likelihood), bounds hit, correlations and the profiles; with
-    several recordings also what each of them says alone (the drift).
+    several recordings, in the order of the tests, also what each of them says alone, and of rubber layers whether
+    they stay the same over the tests or drift with their largest strain or the number of cycles so far.
     """
+    if at_strain is not None and out is None:
+        raise InputError("--at-strain says which specimen to write: name its file with --out.")
     from rich.console import Console
 
     from grids.plausibility import suspicions_of_specimen
@@ -45,12 +57,27 @@ def calibrate(
         console.print(correlation_table(found))
     if found.by_recording:
         console.print(drift_table(found))
+    for drift in found.drifts:
+        console.print(f"{drift}.", highlight=False)
     console.print(profile_table(found))
     console.print(
         f"misfit {100 * found.misfit:.3g} % of the signal, noise {100 * found.noise_floor:.3g} %, "
         f"{found.windows} windows",
         highlight=False,
     )
+    if out is not None:
+        write(wall, found, out, at_strain)
+
+
+def write(wall: Specimen, found: Calibration, out: Path, at_strain: float | None) -> None:
+    """The calibrated specimen as a file."""
+    from diagnosis.answer.calibration import specimen_at, specimen_of
+    from grids.write_specimen import specimen_text
+    from study.store import write_text
+
+    chosen = specimen_of(wall, found) if at_strain is None else specimen_at(wall, found, "strain", at_strain)
+    write_text(out, specimen_text(chosen))
+    typer.echo(f"written: {out}", err=True)
 
 
 def parameter_table(title: str, found: Calibration) -> Table:

@@ -188,6 +188,17 @@ class MissingForcePart(Part):
     parameters: dict[str, float]
 
 
+class OtherModelPart(Part):
+    effect: str
+    model: str
+    options: dict[str, str]
+    parameters: dict[str, float]
+    evidence: float
+    instead: list[str]
+    inadequate: bool
+    vertical: bool
+
+
 class AnswerFile(Part):
     verdict: Literal["missing", "nothing_missing", "not_in_library", "cannot_tell_apart"]
     effects: list[EffectPart]
@@ -208,4 +219,5 @@ class AnswerFile(Part):
     next_experiment: dict[str, Any] | None
     errors: ErrorsPart | None
     not_tried: list[NotTriedPart]
+    other_model: OtherModelPart | None
     provenance: dict[str, Any]
