@@ -72,8 +72,7 @@ def by_base(cases: Sequence[Scored]) -> dict[str, Any]:
         own = [case for case in cases if case.key["group"] == name]
         right = [case.first_class in case.truth for case in own if case.truth]
         wrong = [bool({*WRONG.values()} & {effect["name"] for effect in case.answer["effects"]}) for case in own]
-        parts[name] = {"right_first": asdict(Share.of_flags(right))} if right else {}
-        parts[name]["called_wrong"] = asdict(Share.of_flags(wrong))
+        parts[name] = {"right_first" if right else "called_wrong": asdict(Share.of_flags(right or wrong))}
     return {**summary(cases), "by_base": parts, **provenance(cases)}
 
 

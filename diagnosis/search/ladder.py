@@ -2,8 +2,8 @@
 
 A model declares which ones (`models.identification.Rung`). Each is fitted to the same windows and channels, the
 specimen's parameters with their tolerances carried over and what it has more searched in its ranges. It is tried where
-a mechanism was found or the model errs, never where the base model explains the recordings. It is named where it
-explains clearly more than the base model with all mechanisms found, each under the errors estimated with itself
+the base model with the best mechanism leaves more than the sensors' noise. It is named where it explains clearly more
+than the base model with all mechanisms found, each under the errors estimated with itself
 (`diagnosis.errors.comparison`): twice the log likelihood rises by what a further effect must bring, after the other
 model has paid for its parameters and for every state more that it starts a window from, and still does without the
 window that weighs most.
@@ -23,10 +23,11 @@ from diagnosis.errors.model import Errors, disturbance_about, refitted
 from diagnosis.fit.prediction import Predictor
 from diagnosis.fit.setup import fit_from_nothing
 from diagnosis.fit.unknowns import fixed_values, in_range, of_specimen
+from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.progress import Progress
 from diagnosis.search.budget import ENDED, LADDER, Budget
 from diagnosis.search.candidates import Candidate
-from diagnosis.search.found import Search, adjusted, price
+from diagnosis.search.found import Search, adjusted, misfit_per_sample, price
 from diagnosis.search.refit import Explanation
 from diagnosis.search.weighing import reweighed
 from grids.recordings.base import Recording
@@ -37,7 +38,10 @@ from models.errors import InputError
 from models.identification import Rung
 from models.runs import DONE
 
+LEFT = 1.5
+"""Misfit per sample, over the sensors' noise, from which on other base models are tried."""
 DECISIVE = 2.0
+"""Gain over that of the best single mechanism with which another base model that errs nowhere ends the search."""
 PER_STATE = 2.0
 """What every state that a window starts from beyond those of the base model costs."""
 
@@ -74,7 +78,7 @@ class Weighed:
     def over(self, other: Weighed) -> tuple[float, float]:
         """Gain over another fit, and the same without the window that weighs most."""
         gain = other.deviance - self.deviance
-        return gain, gain - float(np.max(other.by_window - self.by_window))
+        return gain, gain - max(float(np.max(other.by_window - self.by_window)), 0.0)
 
 
 def rungs(
@@ -84,12 +88,13 @@ def rungs(
 
     ``held``: recordings held out, which have to hold what the other model starts a window from.
     """
-    if found.best is None and not inadequacy(found.errors).large:
+    ladder = found.measured.identification.ladder
+    if not ladder or (_left(found) < LEFT and not inadequacy(found.errors).large):
         return []
     budget = Budget(LADDER)
     recordings = [*found.measured.recordings, *held]
     tried = []
-    for rung in found.measured.identification.ladder:
+    for rung in ladder:
         if not _meant_for(rung, recordings):
             continue
         why = ENDED if budget.spent else _refusal(rung, specimen)
@@ -101,8 +106,17 @@ def rungs(
                 why = str(error)
         if why:
             found.not_tried[rung.name] = why
+    # the search's own work goes on where it was
     found.budget = replace(found.budget, begin=found.budget.begin + DONE.steps - budget.begin)
     return tried
+
+
+def _left(found: Search) -> float:
+    """Misfit per sample of what was found, over the noise of the sensors and of the base motion alone."""
+    fitted = found.chosen.fitted
+    plain = sensor_noise_only(fitted.misfit.predictor).with_columns(found.errors.base)
+    seen = replace(fitted, misfit=replace(fitted.misfit, whitening=plain))
+    return misfit_per_sample(replace(found.chosen, fitted=seen))
 
 
 def climb(found: Search, tried: Sequence[tuple[Rung, Weighed]], *, decisive: bool) -> Climbed | None:
@@ -157,7 +171,7 @@ def _fitted(
     ranges = rung.ranges(_nominal(specimen))
     own = tuple(in_range(f"{rung.name}.{p.name}", p.unit, *ranges[p.name]) for p in rung.parameters)
     base = tuple(x for x in of_specimen(specimen, measured.model) if x.name not in rung.without)
-    predictor = Predictor(seen, options_of(rung, specimen.options), specimen.stages, rung=rung)
+    predictor = Predictor(seen, _options(rung, specimen.options), specimen.stages, rung=rung)
     fitted = fit_from_nothing(predictor, (*base, *own), fixed_values(specimen), seed)
     states = len(seen.free) - len(measured.free)
     return Explanation(
@@ -165,7 +179,7 @@ def _fitted(
     )
 
 
-def options_of(rung: Rung, given: Mapping[str, str]) -> dict[str, str]:
+def _options(rung: Rung, given: Mapping[str, str]) -> dict[str, str]:
     """Options of the other model: the rung's own, and those of the specimen that it knows too."""
     known = get(rung.model).options
     return {name: word for name, word in given.items() if word in known.get(name, ())} | dict(rung.options)

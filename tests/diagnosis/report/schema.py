@@ -217,7 +217,7 @@ class AnswerFile(Part):
     fit: FitPart
     statement: str = Field(min_length=1)
     next_experiment: dict[str, Any] | None
+    other_model: OtherModelPart | None
     errors: ErrorsPart | None
     not_tried: list[NotTriedPart]
-    other_model: OtherModelPart | None
     provenance: dict[str, Any]
