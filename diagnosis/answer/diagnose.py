@@ -30,7 +30,7 @@ from diagnosis.forces.columns import Forces, forces
 from diagnosis.forces.constancy import Constancy, Tested, flags, tests
 from diagnosis.progress import Progress, Stages, silent
 from diagnosis.search import bootstrap as bootstrapping
-from diagnosis.search.beginnings import beginnings
+from diagnosis.search.beginnings import alone, beside
 from diagnosis.search.budget import MOST, Budget
 from diagnosis.search.candidates import absent, candidates
 from diagnosis.search.found import Search, misfit_per_sample, rivals
@@ -75,7 +75,7 @@ def diagnose(
         tried = rungs(found, specimen, holdout, seed, progress)
         climbed = confirmed(climb(found, tried, decisive=True), held)
         if climbed is None:
-            for more in (further_effects, beginnings):
+            for more in (alone, further_effects, beside):
                 for stage in more(found, progress):
                     found = stage
             climbed = confirmed(climb(found, tried, decisive=False), held)

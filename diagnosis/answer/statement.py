@@ -11,6 +11,7 @@ from diagnosis.answer.when import held_text, when_text
 from diagnosis.data.measured import identification_of
 from diagnosis.fit.unknowns import effects
 from diagnosis.forces.constancy import FOR_A_WHILE, Constancy
+from diagnosis.search.found import MISSING
 from diagnosis.search.null import LEAST_P
 from models.base import Mechanism
 from models.identification import Identification
@@ -18,6 +19,8 @@ from models.model import Model
 
 CONFIRMED = 0.5
 """Share of the achievable on held-out recordings under which the reader is warned."""
+MOST_NAMED = 4
+"""Recordings whose gain is printed; of more, the largest and the smallest."""
 
 
 def statement(found: Diagnosis, model: Model) -> str:
@@ -47,6 +50,7 @@ def statement(found: Diagnosis, model: Model) -> str:
         opening = "What the library can say" if found.verdict == "not_in_library" else "Best explanation"
         parts.append(f"{opening}: {'; and '.join(said)}.")
     parts += _another(found)
+    parts += _by_recording(found.provenance.get("gain_by_recording", {})) if found.effects else []
     parts += _acts(found.located, words_of(declared))
     if found.verdict == "not_in_library" and not found.unexplained:
         parts.append("That does not settle it: what is missing is not in the library of mechanisms.")
@@ -136,6 +140,18 @@ def _beyond_chance(p_value: float | None) -> str:
 
 def _untested(declared: Identification) -> list[str]:
     return [] if declared.forces else ["Laws outside the library are not tested for with this model."]
+
+
+def _by_recording(gains: Mapping[str, float]) -> list[str]:
+    """What each recording says of the effects, and whether one of them alone decides."""
+    if len(gains) < 2:
+        return []
+    strongest, *others = sorted(gains, key=lambda name: -gains[name])
+    named = [strongest, *others] if len(gains) <= MOST_NAMED else [strongest, others[-1]]
+    said = ", ".join(f"{gains[name]:.0f} in {name}" for name in named)
+    rest = sum(gains[name] for name in others)
+    alone = f"; without {strongest} it would not have been named" if rest < MISSING else ""
+    return [f"By recording the gain in 2 log likelihood is {said}{alone}."]
 
 
 def _skipped(found: Diagnosis) -> list[str]:

@@ -24,7 +24,7 @@ from diagnosis.fit.solver import fit
 from diagnosis.forces.columns import forces
 from diagnosis.forces.constancy import flags, tests
 from diagnosis.progress import Progress
-from diagnosis.search.budget import RESERVED, Budget
+from diagnosis.search.budget import RESERVED
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.found import MISSING, Search, adjusted, explains_all, price, survives
 from diagnosis.search.instants import NO_UNKNOWNS, WHOLE, ends_of
@@ -46,29 +46,44 @@ TURNS = 3
 FEWEST_WINDOWS = 4
 
 
-def beginnings(found: Search, progress: Progress) -> Iterator[Search]:
-    """Yields the search with an effect in a spell, if one explains the recordings better than what was found.
+def alone(found: Search, progress: Progress) -> Iterator[Search]:
+    """Yields the search with one effect in a spell, if that explains everything and the strongest effect does not.
 
-    Alone if it can, else beside the one effect that was found.
+    One that leaves something is kept, to be held against further effects that always act.
     """
-    few = len(found.measured.windows) < FEWEST_WINDOWS
-    through = found.measured.stretches is not None  # runs through whole recordings cannot be cut at an instant
-    if found.null is None or few or through or _settled(found):
+    if found.null is None or _settled(found):
         return
-    progress("looking for effects that begin or end", 0.82)
-    found.budget = Budget(RESERVED)
-    starts = [found.base]
-    if found.best is not None and len(found.best.candidates) == 1:
-        starts.append(found.best)
-    for start in starts:
-        if not found.affordable("effects that begin or end beside the one that was found"):
-            return
-        fits = _in_spells(found, start)
-        if fits and _needed(found, start, fits[0]):
-            trial = _weighed(found, fits)
-            if trial is not None:
-                yield trial
-                return
+    progress("looking for an effect that begins or ends", 0.48)
+    with found.work_of_its_own(RESERVED):
+        found.begun = _begun(found, found.base)
+    if found.begun is not None and found.begun.best is not None and explains_all(found.begun.best):
+        yield found.begun
+
+
+def beside(found: Search, progress: Progress) -> Iterator[Search]:
+    """Yields the search with an effect in a spell alone or beside the one found, if that is likelier than what stands.
+
+    Comes after the search for further effects that always act.
+    """
+    if found.null is None or (found.best is not None and found.best.in_spell) or _settled(found):
+        return
+    if found.begun is not None and _likelihood(found.begun) < _likelihood(found):
+        yield found.begun
+    elif found.best is not None and len(found.best.candidates) == 1:
+        progress("looking for effects that begin or end", 0.82)
+        with found.work_of_its_own(RESERVED):
+            begun = _begun(found, found.best)
+        if begun is not None:
+            yield begun
+
+
+def _begun(found: Search, start: Explanation) -> Search | None:
+    """The search with one more effect in a spell beside those of ``start``, if it counts."""
+    through = found.measured.stretches is not None  # runs through whole recordings cannot be cut at an instant
+    if through or len(found.measured.windows) < FEWEST_WINDOWS:
+        return None
+    fits = _in_spells(found, start)
+    return _weighed(found, fits) if fits and _needed(found, start, fits[0]) else None
 
 
 def _in_spells(found: Search, start: Explanation) -> list[Explanation]:
@@ -235,7 +250,7 @@ def _weighed(found: Search, fits: Sequence[Explanation]) -> Search | None:
         return None
     trial = replace(found, best=fits[0], tried=[*fits, *([before] if before is not None else [])], outside=None)
     weigh_again(trial)
-    if trial.best is None or trial.best.candidates[-1].spell is None:
+    if trial.best is None or not trial.best.in_spell:
         return None
     if before is not None and _likelihood(trial) >= _likelihood(found):
         return None

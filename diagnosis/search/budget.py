@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from models.runs import DONE
 
@@ -25,3 +25,7 @@ class Budget:
     @property
     def spent(self) -> bool:
         return DONE.steps - self.begin > self.most
+
+    def after(self, other: Budget) -> Budget:
+        """This budget once ``other``, begun later, has been worked on."""
+        return replace(self, begin=self.begin + DONE.steps - other.begin)

@@ -7,6 +7,8 @@ or when it alone makes that window fit (`settles`).
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -60,6 +62,8 @@ class Search:
     budget: Budget = field(default_factory=Budget)
     outside: Constancy | None = None
     """A force outside the library that explains what the best single leaves."""
+    begun: Search | None = None
+    """This search with one effect that begins or ends, that leaves something unexplained."""
     about: Forces | None = None
     """The force columns about an explanation that was tested for constancy."""
 
@@ -82,6 +86,15 @@ class Search:
             for name in names:
                 self.not_tried.setdefault(name, ENDED)
         return not self.budget.spent
+
+    @contextmanager
+    def work_of_its_own(self, most: int) -> Iterator[None]:
+        """Within, the budget is ``most`` lane-steps; what they cost is not taken off the budget outside."""
+        outer, self.budget = self.budget, Budget(most)
+        try:
+            yield
+        finally:
+            self.budget = outer.after(self.budget)
 
     def gain(self, explanation: Explanation) -> float:
         """Gain over the base, less what shape parameters cost."""
@@ -107,10 +120,14 @@ def survives(before: Explanation, after: Explanation, threshold: float = MISSING
     total = before.loss - adjusted(after) + (adjusted(before) - before.loss)
     largest = float(gains.max(initial=0.0))
     if total - largest < threshold:
-        always = all(c.spell is None for c in after.candidates)
-        return always and largest >= ALONE * threshold and total - largest > -threshold and settles(before, after)
+        return (
+            not after.in_spell
+            and largest >= ALONE * threshold
+            and total - largest > -threshold
+            and settles(before, after)
+        )
     measured = after.measured
-    if len(measured.recordings) > 2 and all(c.spell is None for c in after.candidates):
+    if len(measured.recordings) > 2 and not after.in_spell:
         each = [float(gains[measured.recording_of == r].sum()) for r in range(len(measured.recordings))]
         return total - max(each) >= 0.3 * threshold
     return True

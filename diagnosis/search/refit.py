@@ -42,6 +42,11 @@ class Explanation:
     def classes(self) -> tuple[str, ...]:
         return tuple(c.effect_class for c in self.candidates)
 
+    @property
+    def in_spell(self) -> bool:
+        """Whether an effect does not act always."""
+        return any(c.spell is not None for c in self.candidates)
+
     def part(self, candidate: Candidate) -> FloatArray:
         """Fitted coordinates of one of the candidates."""
         names = [x.name for x in self.fitted.misfit.unknowns]

@@ -68,8 +68,6 @@ def first_effect(found: Search, progress: Progress) -> Iterator[Search]:
     if found.best is None:
         progress("looking for what the errors hide", 0.46)
         take_hidden(found)
-        if found.best is None:
-            return
     else:
         yield found
         progress("estimating the errors with what was found", 0.46)
@@ -79,7 +77,7 @@ def first_effect(found: Search, progress: Progress) -> Iterator[Search]:
 
 def further_effects(found: Search, progress: Progress) -> Iterator[Search]:
     """The same with a second and a third mechanism beside the first; the last one is the answer."""
-    if found.best is None:
+    if found.best is None or found.best.in_spell:
         return
     _pairs(found, progress)
     yield found

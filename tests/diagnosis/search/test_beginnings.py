@@ -14,7 +14,7 @@ from diagnosis.errors.model import calibrated
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.setup import measure
 from diagnosis.progress import silent
-from diagnosis.search.beginnings import beginnings
+from diagnosis.search.beginnings import alone
 from diagnosis.search.candidates import candidates
 from diagnosis.search.found import Search
 from diagnosis.search.null import null_distribution
@@ -56,7 +56,7 @@ def searched(recordings: Sequence[Recording]) -> tuple[Search, list[Search]]:
     opened = linearise_about(fitted)
     found.scores = score(opened, some)
     found.null = null_distribution(opened, found.scores)
-    return found, list(beginnings(found, silent))
+    return found, list(alone(found, silent))
 
 
 @pytest.mark.parametrize(
