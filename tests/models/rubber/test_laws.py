@@ -73,27 +73,27 @@ def laden(name: str, rng: np.random.Generator, count: int) -> dict[str, np.ndarr
 
 @pytest.mark.parametrize("name", LAWS)
 def test_lanes_agree_with_the_reference_on_random_walls_and_values(name: str) -> None:
-    """Forty walls with fine steps, of which three with the reference too."""
+    """Sixteen walls with fine steps, of which two with the reference too."""
     rng = np.random.default_rng([7, list(LAWS).index(name)])
-    values, shaking = laden(name, rng, 40), random_motion(rng, duration=0.8)
+    values, shaking = laden(name, rng, 16), random_motion(rng, duration=0.8)
     many = wall(values)
-    scale = 9.81 * values["aspect_ratio"] * rng.uniform(0.5, 1.2, 40)
+    scale = 9.81 * values["aspect_ratio"] * rng.uniform(0.5, 1.2, 16)
     coarse, fine, near = (
         lanes.run(many, asked(shaking, scale * more, samples=81), n).samples[:, :, :4]
         for n, more in ((1, 1.0), (8, 1.0), (8, 1.0 + 1e-5))
     )
     size = np.max(np.abs(fine), axis=1)
-    assert np.sum(size[:, 0] > 1e-3) > 10  # they open
+    assert np.sum(size[:, 0] > 1e-3) > 4  # they open
     apart, error = (np.max(np.max(np.abs(run - fine), axis=1) / size, axis=1) for run in (near, coarse))
     # a wall that amplifies a change of the motion by 1e-5 amplifies what the step leaves
     assert np.mean(error < 1e-2 + 100 * apart) > 0.85
     calm = apart < 1e-4
     assert np.median(error[calm]) < 2e-3
-    open_too = np.flatnonzero(calm & (size[:, 0] > 1e-3))[:3]
+    open_too = np.flatnonzero(calm & (size[:, 0] > 1e-3))[:2]
     for k in open_too:
         slow = reference.run(many.take([k]), asked(shaking, scale[k], duration=0.8), 1e-6).samples[0, :, :4]
         assert np.max(np.max(np.abs(fine[k] - slow), axis=0) / size[k]) < 1e-3
-    assert open_too.size == 3
+    assert open_too.size == 2
 
 
 @pytest.mark.parametrize("name", LAWS)
