@@ -50,7 +50,8 @@ def statement(found: Diagnosis, model: Model) -> str:
         opening = "What the library can say" if found.verdict == "not_in_library" else "Best explanation"
         parts.append(f"{opening}: {'; and '.join(said)}.")
     parts += _another(found)
-    parts += _by_recording(found.provenance.get("gain_by_recording", {})) if found.effects else []
+    if found.effects and not any(effect.stages for effect in found.effects):
+        parts += _by_recording(found.provenance.get("gain_by_recording", {}))
     parts += _acts(found.located, words_of(declared))
     if found.verdict == "not_in_library" and not found.unexplained:
         parts.append("That does not settle it: what is missing is not in the library of mechanisms.")
@@ -148,10 +149,11 @@ def _by_recording(gains: Mapping[str, float]) -> list[str]:
         return []
     strongest, *others = sorted(gains, key=lambda name: -gains[name])
     named = [strongest, *others] if len(gains) <= MOST_NAMED else [strongest, others[-1]]
-    said = ", ".join(f"{gains[name]:.0f} in {name}" for name in named)
+    whole = sum(max(gain, 0.0) for gain in gains.values())
+    said = ", ".join(f"{name} {max(gains[name], 0.0) / whole:.0%}" for name in named)
     rest = sum(gains[name] for name in others)
     alone = f"; without {strongest} it would not have been named" if rest < MISSING else ""
-    return [f"By recording the gain in 2 log likelihood is {said}{alone}."]
+    return [f"Of the gain in likelihood the recordings give: {said}{alone}."] if whole > 0.0 else []
 
 
 def _skipped(found: Diagnosis) -> list[str]:

@@ -124,12 +124,12 @@ def test_a_dependence_says_on_which_side() -> None:
 @pytest.mark.parametrize(
     ("gains", "expected"),
     [
-        ({"a": 40.2, "b": 23.1}, "gain in 2 log likelihood is 40 in a, 23 in b."),
-        ({"a": 3.0, "b": 60.0}, "is 60 in b, 3 in a; without b it would not have been named."),
-        ({name: float(k) for k, name in enumerate("abcdef", 10)}, "is 15 in f, 10 in a."),
+        ({"a": 40.0, "b": 22.5}, "the recordings give: a 64%, b 36%."),
+        ({"a": 3.0, "b": 57.0}, "give: b 95%, a 5%; without b it would not have been named."),
+        ({name: float(k) for k, name in enumerate("abcdef", 10)}, "give: f 20%, a 13%."),
     ],
 )
 def test_what_every_recording_says_is_stated(gains: dict[str, float], expected: str) -> None:
     assert expected in said(provenance={"gain_by_recording": gains})
-    assert "By recording" not in said(provenance={"gain_by_recording": dict(list(gains.items())[:1])})
-    assert "By recording" not in said("nothing_missing", provenance={"gain_by_recording": gains})
+    assert "the recordings give" not in said(provenance={"gain_by_recording": dict(list(gains.items())[:1])})
+    assert "the recordings give" not in said("nothing_missing", provenance={"gain_by_recording": gains})
