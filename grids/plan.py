@@ -19,6 +19,8 @@ names = ["peak_rotation"]         # all without this table
 block_seconds = 5
 tail = "10 s"
 integrator = "lanes"
+[refine]                          # compute the borders of onset and overturning, infer the rest
+budget = 0.1
 """
 
 from __future__ import annotations
@@ -39,7 +41,7 @@ from grids.files import Schema, check, parse_toml, read_text
 from grids.grid import Grid
 from grids.instruments import INSTRUMENTS
 from grids.motions import Motion
-from grids.plan_checks import check_cells, check_scales, check_size
+from grids.plan_checks import check_cells, check_refinable, check_scales, check_size
 from grids.plan_motions import MotionTable, read_motions
 from grids.specimen import Specimen, read_specimen
 from grids.stages import after_the_last
@@ -65,6 +67,14 @@ class RunTable(Schema):
     integrator: str | None = None
 
 
+class RefineTable(Schema):
+    """``budget``: largest share of cells to compute; ``guard``: cells of a guard sample and of the audit."""
+
+    budget: float = Field(default=0.1, gt=0.0, le=1.0)
+    guard: int = Field(default=1000, ge=1)
+    seed: int = Field(default=1, ge=0)
+
+
 class PlanFile(Schema):
     study: StudyTable
     motion: MotionTable = MotionTable()
@@ -73,6 +83,7 @@ class PlanFile(Schema):
     axes: dict[str, Any] = Field(default_factory=dict)
     outputs: OutputsTable | None = None
     run: RunTable = RunTable()
+    refine: RefineTable | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,6 +108,7 @@ class Plan:
     specimen: Specimen | None = None
     notes: tuple[str, ...] = field(default=())
     given_in_run: frozenset[str] = frozenset()
+    refine: RefineTable | None = None
 
     @cached_property
     def grid(self) -> Grid:
@@ -152,6 +164,8 @@ def parse_plan(text: str, folder: Path) -> Plan:
     check_scales(named, motions)
     check_size(axes)
     check_cells(model, fixed, axes, options)
+    if file.refine is not None:
+        check_refinable(model, axes)
     return Plan(
         name=file.study.name,
         model=model.name,
@@ -167,6 +181,7 @@ def parse_plan(text: str, folder: Path) -> Plan:
         specimen=specimen,
         notes=notes,
         given_in_run=frozenset(file.run.model_fields_set),
+        refine=file.refine,
     )
 
 

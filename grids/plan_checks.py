@@ -17,6 +17,7 @@ from models.model import Model
 
 MOST_CELLS = 2_000_000_000
 MOST_CHECKED = 200_000
+MOST_REFINED = 5
 
 
 def check_size(axes: Sequence[Axis]) -> None:
@@ -74,6 +75,21 @@ def check_cells(model: Model, fixed: Mapping[str, float], axes: Sequence[Axis], 
             sentences = model.check(values, {**options, **words})
         for sentence in sentences:
             raise InputError(sentence)
+
+
+def check_refinable(model: Model, axes: Sequence[Axis]) -> None:
+    """Raise InputError where cells have no neighbours between which a border of outcomes could run."""
+    if all(output.name != "overturned" for output in model.outputs):
+        raise InputError(f"[refine] follows onset and overturning, which model '{model.name}' has not; leave it out.")
+    if not 2 <= sum(axis.size > 1 for axis in axes) <= MOST_REFINED:
+        raise InputError(f"[refine] needs 2 to {MOST_REFINED} axes with several values; leave it out or change [axes].")
+    for axis in axes:
+        numbers = axis.points is None and axis.values.dtype.kind in "iuf"
+        if not numbers or not np.all(np.diff(axis.values) > 0.0):
+            raise InputError(
+                f"[refine] needs axes of ascending numbers, '{axis.name}' is none: no border runs between its values; "
+                "make a study of each, or leave [refine] out."
+            )
 
 
 def _picks(sizes: list[int], whole: list[bool]) -> list[NDArray[np.int64]]:

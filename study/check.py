@@ -51,7 +51,8 @@ def check(
     folder = Path(folder)
     cube = open_study(folder)
     plan = load_plan(folder)
-    known = np.flatnonzero(~cube["status"].isin([NOT_RUN, FAILED]).values.ravel())
+    there = ~cube["status"].isin([NOT_RUN, FAILED]).values
+    known = np.flatnonzero(there & (cube["computed"].values == 1) if "computed" in cube else there)
     chosen = np.random.default_rng(seed).choice(known, min(cells, known.size), replace=False)
     setting = Setting.of(plan)
     computed = evaluate(setting, motions_by_name(plan), plan.grid.coordinates(chosen)) if chosen.size else {}

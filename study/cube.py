@@ -23,6 +23,7 @@ from study.keys import Setting
 from study.labels import Coordinate, axis_coordinates, describe, motion_coordinates
 from study.manifest import Manifest
 from study.provenance import as_json, attribute, commit, machine, now, sha256, versions
+from study.refined import COMPUTED, Refined
 from study.seal import seal
 from study.status import FAILED, NOT_RUN
 from study.store import COMPRESSION, BlockStore, DamagedBlock, write_whole
@@ -32,11 +33,20 @@ CHUNK_CELLS = 1 << 17
 
 
 def write_cube(
-    plan: Plan, setting: Setting, manifest: Manifest, store: BlockStore, *, started: str, scheduler: str
+    plan: Plan,
+    setting: Setting,
+    manifest: Manifest,
+    store: BlockStore,
+    *,
+    started: str,
+    scheduler: str,
+    refined: Refined | None = None,
 ) -> Path:
     """Write ``cube.nc`` from the finished blocks; cells of other blocks are flagged in ``status``.
 
-    The file is sealed as ``cube.nc``. Raises DamagedBlock when a block's file is not what was written.
+    Of a ``refined`` study the values are its own, with the flag `computed` and the estimate of wrong cells in the
+    attribute `refinement`. The file is sealed as ``cube.nc``. Raises DamagedBlock when a block's file is not what was
+    written.
     """
     path = store.folder / "cube.nc"
     attributes = _attributes(plan, setting, path, started, scheduler)
@@ -46,15 +56,19 @@ def write_cube(
 
         with NETCDF_LOCK, netCDF4.Dataset(temporary, "w") as dataset:
             dataset.setncatts({name: attribute(value) for name, value in attributes.items()})
-            outputs = _define(dataset, plan, setting)
-            _fill(dataset, outputs, plan, setting, manifest, store)
+            outputs = _define(dataset, plan, setting, [COMPUTED] if refined else [])
+            if refined is None:
+                _fill(dataset, outputs, plan, setting, manifest, store)
+            else:
+                dataset.refinement = as_json(refined.record())
+                _fill_refined(dataset, outputs, plan, refined)
         seal(temporary, path.name)
 
     write_whole(path, write)
     return path
 
 
-def _define(dataset: Any, plan: Plan, setting: Setting) -> list[Quantity]:
+def _define(dataset: Any, plan: Plan, setting: Setting, more: Sequence[Quantity]) -> list[Quantity]:
     """Dimensions, coordinates and empty outputs; returns the outputs in their order."""
     model = models.get(setting.model)
     for axis in plan.axes:
@@ -66,7 +80,7 @@ def _define(dataset: Any, plan: Plan, setting: Setting) -> list[Quantity]:
         _write_coordinate(dataset, coordinate)
     auxiliary = " ".join(name for name in coordinates if name not in dims)
     declared = {quantity.name: quantity for quantity in model.outputs}
-    outputs = [declared[name] for name in setting.outputs]
+    outputs = [*(declared[name] for name in setting.outputs), *more]
     chunk = _chunk(plan.grid.shape)
     for quantity in outputs:
         dtype = _dtype(quantity)
@@ -133,6 +147,13 @@ def _fill(
                 value = flag if quantity.name == "status" else _missing(quantity)
                 values = np.full([len(p) for p in places], value, _dtype(quantity))
             _put(dataset[quantity.name], places, values)
+
+
+def _fill_refined(dataset: Any, outputs: Iterable[Quantity], plan: Plan, refined: Refined) -> None:
+    dataset.set_auto_mask(False)
+    for quantity in outputs:
+        values = refined.values(quantity, _missing(quantity), _dtype(quantity))
+        dataset[quantity.name][...] = values.reshape(plan.grid.shape)
 
 
 def _put(variable: Any, places: Sequence[NDArray[np.int64]], values: NDArray[Any]) -> None:

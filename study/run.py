@@ -10,13 +10,14 @@ import fcntl
 import os
 import time
 import traceback
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Future, wait
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
+from grids.changes import describe
 from grids.grid import Rectangle
 from grids.netcdf_file import check_name
 from grids.plan import Plan, read_plan
@@ -27,6 +28,7 @@ from study.keys import Setting
 from study.manifest import Manifest
 from study.provenance import now
 from study.recovery import blocks_on_disk, damaged_blocks, sound_manifest
+from study.refined import Refined, cells_of_a_block, refine
 from study.schedulers import check_scheduler, count_workers, open_executor
 from study.store import BlockStore, write_text
 from study.tally import tally, tally_line
@@ -63,7 +65,8 @@ class Progress:
 @dataclass(frozen=True)
 class Report:
     """What a run did. ``cube`` is the file; ``failed`` counts blocks whose cells are flagged; ``tally`` all cells
-    by what became of them; ``repaired`` says what in the folder was damaged and made anew."""
+    by what became of them; ``repaired`` says what in the folder was damaged and made anew; ``refined`` what was
+    inferred, of a plan with [refine]."""
 
     folder: Path
     cube: Path
@@ -77,6 +80,7 @@ class Report:
     store_seconds: float
     tally: Mapping[str, int]
     repaired: tuple[str, ...] = ()
+    refined: Refined | None = None
 
     def __str__(self) -> str:
         text = (
@@ -84,7 +88,8 @@ class Report:
             f"({self.computed} computed, {self.reused} reused) in {self.seconds:.1f} s"
         )
         text += f"; {self.failed} blocks failed, see {self.folder / 'failed'}" if self.failed else ""
-        return "\n".join([*self.repaired, text, tally_line(self.tally)])
+        lines = [*self.repaired, text, tally_line(self.tally)]
+        return "\n".join(lines if self.refined is None else [*lines, str(self.refined)])
 
 
 def run(
@@ -116,37 +121,40 @@ def run(
         store = BlockStore(folder)
         store.sweep()
         repaired: list[str] = []
-        manifest = _manifest(plan, setting, store, plan_folder, count_workers(scheduler, workers), repaired)
-        blocks = manifest.blocks
-        damaged = damaged_blocks(manifest, store)
-        if damaged:
-            repaired.append(f"blocks not as they had been written, computed anew: {len(damaged)}")
-        finished = store.finished().difference(damaged)
-        missing = {key: block for key, block in blocks.items() if key not in finished}
-        tasks = (make_task(plan, setting, folder, key, block) for key, block in missing.items())
-        counter = _Counter(blocks, missing, progress)
-        if missing:
-            try:
-                _compute(tasks, store, scheduler, workers, counter)
-            except (BrokenExecutor, CancelledError) as error:
-                raise WorkerLost(
-                    f"{str(error).rstrip('.') or 'the work was cancelled'} (killed, or out of memory?); "
-                    "finished blocks are kept, run again to continue"
-                ) from None
-        cube = write_cube(plan, setting, manifest, store, started=started, scheduler=scheduler)
+        refined = None
+        if plan.refine is None:
+            manifest = _manifest(plan, setting, store, plan_folder, count_workers(scheduler, workers), repaired)
+            damaged = damaged_blocks(manifest, store)
+            if damaged:
+                repaired.append(f"blocks not as they had been written, computed anew: {len(damaged)}")
+            finished = store.finished().difference(damaged)
+            missing = {key: block for key, block in manifest.blocks.items() if key not in finished}
+            tasks = (make_task(plan, setting, folder, key, block) for key, block in missing.items())
+            counter = _Counter(manifest.blocks, missing, progress)
+            if missing:
+                with _losses_named():
+                    _compute(tasks, store, scheduler, workers, counter)
+        else:
+            manifest = _refined_manifest(plan, setting, folder, plan_folder)
+            counter = _Counter({}, {}, progress)
+            counter.cells = int(plan.refine.budget * plan.grid.size)
+            with _losses_named():
+                refined = _refine(plan, setting, store, scheduler, workers, counter)
+        cube = write_cube(plan, setting, manifest, store, started=started, scheduler=scheduler, refined=refined)
     return Report(
         folder=folder,
         cube=cube,
-        cells=counter.cells,
-        blocks=len(blocks),
+        cells=plan.grid.size,
+        blocks=counter.blocks,
         computed=counter.computed,
-        reused=len(blocks) - len(missing),
+        reused=counter.blocks - counter.computed - counter.failures,
         failed=counter.failures,
         seconds=time.perf_counter() - clock,
         compute_seconds=counter.compute_seconds,
         store_seconds=counter.store_seconds,
         tally=tally(cube),
         repaired=tuple(repaired),
+        refined=refined,
     )
 
 
@@ -184,8 +192,46 @@ def _freeze(plan: Plan, folder: Path) -> None:
         write_text(path, plan.text)
 
 
+def _refined_manifest(plan: Plan, setting: Setting, folder: Path, plan_folder: str) -> Manifest:
+    """The manifest of a refined study, which lists no blocks: the policy asks for them anew."""
+    old = sound_manifest(plan, setting, folder)
+    if old is not None and old.blocks:
+        raise InputError(f"{folder} holds a study without [refine]: give the plan a new name, or leave [refine] out")
+    new = Manifest(describe(plan), {}, plan_folder)
+    _freeze(plan, folder)
+    new.save(folder)
+    return new
+
+
+def _refine(
+    plan: Plan, setting: Setting, store: BlockStore, scheduler: str, workers: int | None, counter: _Counter
+) -> Refined:
+    def compute(tasks: list[Task]) -> None:
+        missing = [task for task in tasks if not store.is_intact(task.key)]
+        counter.expect(tasks, missing)
+        if missing:
+            _compute(missing, store, scheduler, workers, counter)
+
+    most = cells_of_a_block(
+        store.folder, lambda: cells_per_block(plan, time_sample(plan, setting), count_workers(scheduler, workers))
+    )
+    return refine(plan, setting, store, most, compute)
+
+
 class WorkerLost(RuntimeError):
     """A worker process, or the scheduler of a cluster, was killed, by hand or because memory ran out."""
+
+
+@contextmanager
+def _losses_named() -> Iterator[None]:
+    """Turn the loss of workers into a sentence."""
+    try:
+        yield
+    except (BrokenExecutor, CancelledError) as error:
+        raise WorkerLost(
+            f"{str(error).rstrip('.') or 'the work was cancelled'} (killed, or out of memory?); "
+            "finished blocks are kept, run again to continue"
+        ) from None
 
 
 class _Counter:
@@ -205,6 +251,15 @@ class _Counter:
         self.compute_seconds = self.store_seconds = 0.0
         self.begun = time.perf_counter()
         self.report = report
+        self._show()
+
+    def expect(self, tasks: Sequence[Task], missing: Sequence[Task]) -> None:
+        """Further tasks, of which all but the ``missing`` are finished."""
+        finished = sum(task.grid.size for task in tasks) - sum(task.grid.size for task in missing)
+        self.blocks += len(tasks)
+        self.blocks_done += len(tasks) - len(missing)
+        self.done += finished
+        self.reused += finished
         self._show()
 
     def add(self, outcome: Outcome) -> None:

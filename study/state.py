@@ -28,14 +28,19 @@ class State:
     tally: Mapping[str, int] | None
 
     def __str__(self) -> str:
+        cube = (
+            "no cube yet: run the plan to go on"
+            if self.tally is None
+            else f"cube.nc is written; {tally_line(self.tally)}"
+        )
+        if not self.cells:  # refined: its blocks follow from what was found
+            return f"{self.folder}: refined study, {self.blocks_done} blocks\n{cube}"
         share = self.cells_done / self.cells
         lines = [
             f"{self.folder}: {self.blocks_done} of {self.blocks} blocks, "
             f"{self.cells_done} of {self.cells} cells ({share:.1%})",
             f"failed blocks: {len(self.failures)}",
-            "no cube yet: run the plan to go on"
-            if self.tally is None
-            else f"cube.nc is written; {tally_line(self.tally)}",
+            cube,
         ]
         if self.damaged:
             lines.append(f"damaged blocks: {len(self.damaged)} ({', '.join(self.damaged[:3])}): run the plan again")
@@ -57,7 +62,7 @@ def state(folder: str | Path) -> State:
         cells=manifest.cells,
         cells_done=sum(manifest.blocks[key].size for key in done),
         blocks=len(manifest.blocks),
-        blocks_done=len(done),
+        blocks_done=len(done) if manifest.blocks else len(store.finished()),
         damaged=tuple(damaged),
         failures=store.failures(),
         tally=tally(folder) if (folder / "cube.nc").exists() else None,
