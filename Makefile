@@ -8,7 +8,7 @@ OLDEST := .venv-oldest
 STUDY := results/rubber_interface
 HEAVY := --select "top_mass=5 t" --select damping_ratio=0.0544
 
-.PHONY: study quick test lint types bench independent faults long fuzz verify processors audit test-oldest agreement diagnosis-bench laboratory-bench beginnings-bench bases-bench gallery docs clean
+.PHONY: study quick test lint types bench independent faults long fuzz verify processors audit test-oldest agreement diagnosis-bench laboratory-bench beginnings-bench bases-bench bench-refine gallery docs clean
 
 study: $(READY)
 	$(BIN)/rocking run studies/rubber_interface.toml
@@ -77,6 +77,9 @@ beginnings-bench: $(READY)
 
 bases-bench: $(READY)
 	$(BIN)/python -m benchmarks.diagnosis bases
+
+bench-refine: $(READY)
+	$(BIN)/python -m benchmarks.refinement
 
 gallery: $(READY)
 	$(BIN)/python docs/make_gallery.py
