@@ -37,7 +37,7 @@ def first_period(model: str) -> float:
     wall: dict[str, Any] = {k: v for k, v in SHORT.items() if k != "damping_ratio"}
     wall |= {"base_damping": 0.0, "top_damping": 0.0}
     found, chosen = derived(model, wall, "frequency_1"), models.get(model)
-    shape = [derived(model, wall, f"mode_1_rotation_{k}") for k in (1, 2)] if model == "interface" else [1.0, 1.0]
+    shape = [derived(model, wall, f"mode_1_rotation_{k}") for k in (1, 2)]
     initial = {f"rotation_{k}": 1e-6 * shape[k - 1] / max(map(abs, shape)) for k in (1, 2)}
     step = 0.25 / found / 200
     run = chosen.simulate(wall, Shaking.silence(4.2 / found, step), initial=initial)
