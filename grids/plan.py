@@ -13,6 +13,8 @@ height = "1.8 m"
 formulation = "nonlinear"
 [axes]                            # in the order of the cube's dimensions
 pga = { linspace = [0.05, 0.77, 37], unit = "g" }
+[samples]                         # what a diagnosis found, with its uncertainty: the axis `sample`, first of all
+from = "answer/posterior.nc"
 [outputs]
 names = ["peak_rotation"]         # all without this table
 [run]
@@ -43,6 +45,8 @@ from grids.instruments import INSTRUMENTS
 from grids.motions import Motion
 from grids.plan_checks import check_cells, check_refinable, check_scales, check_size
 from grids.plan_motions import MotionTable, read_motions
+from grids.samples import NAME as SAMPLE
+from grids.samples import SamplesTable, read_samples
 from grids.specimen import Specimen, read_specimen
 from grids.stages import after_the_last
 from grids.targets import Targets, find_model
@@ -81,6 +85,7 @@ class PlanFile(Schema):
     parameters: dict[str, Any] = Field(default_factory=dict)
     options: dict[str, str] = Field(default_factory=dict)
     axes: dict[str, Any] = Field(default_factory=dict)
+    samples: SamplesTable | None = None
     outputs: OutputsTable | None = None
     run: RunTable = RunTable()
     refine: RefineTable | None = None
@@ -210,13 +215,16 @@ def _axes(file: PlanFile, targets: Targets, folder: Path) -> tuple[Axis, ...]:
     labelled = (*model.outputs, *model.derived)
     taken = frozenset({*targets.names(), *(quantity.name for quantity in labelled)})
     table = targets.flatten(file.axes)
-    return tuple(read_axis(Request(name, entry, targets, folder, taken)) for name, entry in table.items())
+    axes = tuple(read_axis(Request(name, entry, targets, folder, taken)) for name, entry in table.items())
+    return axes if file.samples is None else (read_samples(file.samples, targets, folder), *axes)
 
 
 def _varied(axes: tuple[Axis, ...], fixed: Mapping[str, float], options: Mapping[str, str]) -> set[str]:
     """Every name that varies; InputError where a name is set in two places."""
     places = {**dict.fromkeys(fixed, "[parameters]"), **dict.fromkeys(options, "[options]")}
     varied = set()
+    if len({axis.name for axis in axes}) < len(axes):
+        raise InputError(f"[samples] makes the axis '{SAMPLE}'; call that of [axes] something else.")
     for axis in axes:
         for name in axis.sets:
             if name in places:

@@ -9,6 +9,7 @@ import numpy as np
 
 from diagnosis.answer.drift import FEWEST, Drift, drift_of, value_at
 from diagnosis.answer.heldout import frozen, relative_misfit
+from diagnosis.answer.posterior import posterior
 from diagnosis.data.measured import Measured
 from diagnosis.errors.model import Errors, calibrated
 from diagnosis.fit.intervals import Estimate, correlation, estimates, profile_rise, settled
@@ -48,6 +49,8 @@ class Calibration:
     profiles: Mapping[str, tuple[FloatArray, FloatArray]] = field(default_factory=dict)
     by_recording: Mapping[str, Mapping[str, Estimate]] = field(default_factory=dict)
     drifts: tuple[Drift, ...] = ()
+    posterior: Mapping[str, FloatArray] = field(default_factory=dict)
+    """Samples of the parameters that a study can vary (`diagnosis.answer.posterior`)."""
 
     def __repr__(self) -> str:
         lines = [f"{'parameter':<24}{'estimate':>12}{'low 95 %':>12}{'high 95 %':>12}  unit"]
@@ -193,6 +196,7 @@ def _summary(
         windows=len(measured.windows),
         profiles=profiles,
         by_recording=by_recording,
+        posterior=posterior(fitted, measured.model),
     )
 
 

@@ -15,6 +15,7 @@ from diagnosis.answer.judgement import explains, p_of_effects, p_of_missing, und
 from diagnosis.answer.ladder import confirmed, other_model
 from diagnosis.answer.located import located
 from diagnosis.answer.missing_force import missing_force
+from diagnosis.answer.posterior import posterior
 from diagnosis.answer.rescale import over_peak, true_peak
 from diagnosis.answer.result import Diagnosis, Effect, Located, Rival, Screened, Visited
 from diagnosis.answer.shows import shows
@@ -42,6 +43,7 @@ from diagnosis.search.weighing import evidence
 from grids.instruments import INSTRUMENTS
 from grids.recordings.base import Recording
 from grids.specimen import Specimen
+from models.base import FloatArray
 
 
 def diagnose(
@@ -179,6 +181,12 @@ def _assemble(
         experiment = stages.optional("the next experiment", lambda: next_experiment(found, near), lambda: None)
     if law:
         force = missing_force(found, law)
+
+    def of_found() -> Mapping[str, FloatArray]:
+        ended = [e.name for e in effects if e.stages and np.isfinite(e.stages[-1].ends)]
+        return {} if climbed else posterior(final.fitted, measured.model, ended, seed)
+
+    drawn: Mapping[str, FloatArray] = stages.optional("samples of what was found", of_found, dict)
     acting = stages.optional("where it acts", places, lambda: ((), ()))
     answer = Diagnosis(
         verdict=verdict,
@@ -208,6 +216,7 @@ def _assemble(
         held_stages=held.held_stages if held else (),
         other_model=other_model(climbed, final) if climbed else None,
         errors=errors,
+        posterior=drawn,
         not_tried=not_tried(found),
         reference_peak=true_peak(chosen),
         provenance=_provenance(specimen, found, tested, seed),

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from diagnosis.errors.summary import ErrorModel
 from diagnosis.fit.intervals import Estimate
 from diagnosis.forces.constancy import Constancy
+from models.base import FloatArray
 
 Verdict = Literal["missing", "nothing_missing", "not_in_library", "cannot_tell_apart"]
 
@@ -265,5 +266,7 @@ class Diagnosis:
     """Of the specimen, those seen included."""
     extrapolated: tuple[Extrapolated, ...] = ()
     """Recordings held out that lie beyond the amplitudes learned from."""
+    posterior: Mapping[str, FloatArray] = field(default_factory=dict)
+    """Samples (n,) of what a study can vary, by name; none where another model is the answer."""
     skipped: tuple[str, ...] = ()
     """What a Ctrl-C after the search has left out."""

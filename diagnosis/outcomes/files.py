@@ -7,21 +7,19 @@ import io
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from diagnosis.outcomes.answer import OutcomeDiagnosis, Posterior, Prediction
 from diagnosis.report.json_file import entry, finite
+from diagnosis.report.posterior_file import LEFT_OUT, write_samples
 from grids.netcdf_file import read_netcdf
 from grids.specimen import Specimen, read_specimen
 from grids.write_specimen import specimen_text
 from models.errors import InputError
 from study.provenance import as_json
-from study.store import write_text, write_whole
-
-if TYPE_CHECKING:
-    import xarray as xr
+from study.store import write_text
 
 JSON, EXTENDED, POSTERIOR, PAGE, RUNS = "diagnosis.json", "extended.toml", "posterior.nc", "report.html", "runs.csv"
 SCATTER = "scatter"
@@ -100,28 +98,11 @@ def _csv(rows: Sequence[Sequence[object]]) -> str:
 
 
 def write_posterior(posterior: Posterior, path: Path) -> None:
-    """Samples over ``sample``, one variable a parameter with its unit, and `SCATTER`; whole or not at all."""
-    from grids.netcdf_lock import NETCDF_LOCK
-
-    data = _posterior_dataset(posterior)
-
-    def write(temporary: Path) -> None:
-        with NETCDF_LOCK:
-            data.to_netcdf(temporary, engine="netcdf4", format="NETCDF4")
-
-    write_whole(path, write)
-
-
-def _posterior_dataset(posterior: Posterior) -> xr.Dataset:
-    import xarray as xr
-
-    data = xr.Dataset({name: ("sample", values) for name, values in posterior.values.items()})
-    for name in data:
-        data[name].attrs["units"] = posterior.units[str(name)]
-    data[SCATTER] = ("sample", posterior.scatter)
-    data[SCATTER].attrs = {"units": "1", "long_name": "standard deviation of the logarithm of a run's scale"}
-    data.attrs = {"title": "equally likely samples of what outcomes say of a specimen", "Conventions": "CF-1.11"}
-    return data
+    """Samples over ``sample``, one variable a parameter with its unit, and `SCATTER`."""
+    variables: dict[str, Any] = {n: (v, {"units": posterior.units[n]}) for n, v in posterior.values.items()}
+    meaning = "standard deviation of the logarithm of a run's scale"
+    variables[SCATTER] = posterior.scatter, {"units": "1", "long_name": meaning, **LEFT_OUT}
+    write_samples(variables, {"title": "equally likely samples of what outcomes say of a specimen"}, path)
 
 
 def read_answer(folder: str | Path) -> tuple[Specimen, Posterior]:

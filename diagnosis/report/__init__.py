@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+import models
 from diagnosis.answer.result import Diagnosis
 from diagnosis.report.extended import extend
 from diagnosis.report.fit_file import write_fit
 from diagnosis.report.json_file import as_mapping, diagnosis_json
+from diagnosis.report.posterior_file import write_posterior
 from grids.recordings import Recording
 from grids.specimen import Specimen
 
@@ -24,7 +26,8 @@ def write_answer(
 ) -> list[Path]:
     """Write ``diagnosis.json``, ``extended.toml``, ``fit.nc``, ``report.html`` and ``figures/`` to ``folder``.
 
-    ``law.csv`` is written too where a law in a table is part of the answer.
+    ``law.csv`` is written too where a law in a table is part of the answer, ``posterior.nc`` where something was fitted
+    that a study can vary.
 
     ``specimen``, ``train`` and ``holdout`` are those the diagnosis was made of. Returns the paths,
     the figures as their folder. The small files come first, so that a full disk leaves the answer.
@@ -46,6 +49,9 @@ def write_answer(
         paths.append(folder / LAW_FILE)
     write_text(paths[1], specimen_text(extended))
     fit = write_fit(diagnosis, folder / "fit.nc")
+    if diagnosis.posterior:
+        model = models.get(specimen.model)
+        paths.append(write_posterior(diagnosis.posterior, model, specimen.title, folder / "posterior.nc"))
     drawn = pictures(diagnosis, specimen, (*train, *holdout))
     write_text(paths[2], report_page(diagnosis, specimen, train, holdout, drawn))
     write_figures(drawn, folder / "figures")

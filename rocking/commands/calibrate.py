@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+import models
 from models.errors import InputError
 from rocking.commands.base import STRICT, warn
 from rocking.commands.recordings import read_recordings, stages
@@ -18,13 +19,17 @@ if TYPE_CHECKING:
     from diagnosis.fit.intervals import Estimate
     from grids.specimen import Specimen
 
+POSTERIOR = "posterior.nc"
+
 
 def calibrate(
     specimen: Annotated[Path, typer.Argument(help="Specimen file (TOML).")],
     recordings: Annotated[
         list[Path], typer.Argument(help="Recordings (.nc, or .csv with .toml), in the order of the tests.")
     ],
-    out: Annotated[Path | None, typer.Option(help="Specimen file to write, with the fitted values.")] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Specimen file to write, with the fitted values; posterior.nc beside it.")
+    ] = None,
     at_strain: Annotated[
         float | None,
         typer.Option(help="With --out: layers as they were when their largest strain so far was this (0.1 for 10 %)."),
@@ -70,14 +75,18 @@ def calibrate(
 
 
 def write(wall: Specimen, found: Calibration, out: Path, at_strain: float | None) -> None:
-    """The calibrated specimen as a file."""
+    """The calibrated specimen as a file, and beside it samples of what was found."""
     from diagnosis.answer.calibration import specimen_at, specimen_of
+    from diagnosis.report.posterior_file import write_posterior
     from grids.write_specimen import specimen_text
     from study.store import write_text
 
     chosen = specimen_of(wall, found) if at_strain is None else specimen_at(wall, found, "strain", at_strain)
     write_text(out, specimen_text(chosen))
     typer.echo(f"written: {out}", err=True)
+    if found.posterior and at_strain is None:
+        path = write_posterior(found.posterior, models.get(wall.model), wall.title, out.with_name(POSTERIOR))
+        typer.echo(f"written: {path}", err=True)
 
 
 def parameter_table(title: str, found: Calibration) -> Table:
