@@ -88,6 +88,8 @@ def test_toml_is_read(block: Block, tmp_path: Path, monkeypatch: pytest.MonkeyPa
         answer = f"{(example / 'block.toml').read_text('utf-8')}\n{found}"
         (tmp_path / "answer").mkdir()
         (tmp_path / "answer" / "extended.toml").write_text(re.sub(r"\[calibrate\].*?(?=\n\[)", "", answer, flags=re.S))
+        samples = {"pivot_inset.inset_over_half_width": ("sample", np.full(1000, 0.05), {"units": "1"})}
+        xr.Dataset(samples).to_netcdf(tmp_path / "answer" / "posterior.nc")
         for recording in example.glob("shake_*"):
             (tmp_path / recording.name).symlink_to(recording)
         assert parse_plan(text, tmp_path).grid.size > 0
