@@ -149,13 +149,13 @@ def parse_plan(text: str, folder: Path) -> Plan:
     targets = Targets(model, with_scales=True)
     own = _fixed(file, targets)
     axes = _axes(file, targets, folder)
-    varied = _varied(axes, own, file.options)
+    varied = _varied(axes, own, file.options, SAMPLE if file.samples else None)
     base, notes = _from_specimen(specimen, [*own, *varied], targets)
     fixed = {**base, **own}
     if unknown := replaced(model, specimen.calibrate if specimen else {}, {*own, *varied}):
         raise InputError(
             f"[study] specimen leaves {next(iter(unknown))} to calibration; "
-            "fix it in [parameters] or vary it in [axes]."
+            "fix it in [parameters], vary it in [axes] or take [samples]."
         )
     named = {*fixed, *varied}
     used = {n.split(".")[0]: targets.mechanism(n.split(".")[0], n) for n in named if "." in n}
@@ -219,17 +219,20 @@ def _axes(file: PlanFile, targets: Targets, folder: Path) -> tuple[Axis, ...]:
     return axes if file.samples is None else (read_samples(file.samples, targets, folder), *axes)
 
 
-def _varied(axes: tuple[Axis, ...], fixed: Mapping[str, float], options: Mapping[str, str]) -> set[str]:
+def _varied(
+    axes: tuple[Axis, ...], fixed: Mapping[str, float], options: Mapping[str, str], sampled: str | None
+) -> set[str]:
     """Every name that varies; InputError where a name is set in two places."""
     places = {**dict.fromkeys(fixed, "[parameters]"), **dict.fromkeys(options, "[options]")}
     varied = set()
     if len({axis.name for axis in axes}) < len(axes):
         raise InputError(f"[samples] makes the axis '{SAMPLE}'; call that of [axes] something else.")
     for axis in axes:
+        where = "[samples]" if axis.name == sampled else f"[axes] {axis.name}"
         for name in axis.sets:
             if name in places:
-                raise InputError(f"'{name}' is set by {places[name]} and by [axes] {axis.name}; leave one out.")
-            places[name] = f"[axes] {axis.name}"
+                raise InputError(f"'{name}' is set by {places[name]} and by {where}; leave one out.")
+            places[name] = where
             varied.add(name)
     return varied
 

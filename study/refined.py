@@ -68,7 +68,8 @@ class Refined:
         if quantity.name == "overturned":
             found[np.isin(self.status, (REST, ROCKING, OVERTURNED))] = 0
             found[self.status == OVERTURNED] = 1
-        found[self.cells] = self.outputs[quantity.name]
+        own = self.outputs[quantity.name]  # nan in blocks that failed
+        found[self.cells] = np.where(np.isnan(own), missing, own)
         return found
 
     def record(self) -> dict[str, Any]:

@@ -184,7 +184,7 @@ def _assemble(
 
     def of_found() -> Mapping[str, FloatArray]:
         ended = [e.name for e in effects if e.stages and np.isfinite(e.stages[-1].ends)]
-        return {} if climbed else posterior(final.fitted, measured.model, ended, seed)
+        return {} if climbed or unexplained else posterior(final.fitted, measured.model, ended, seed)
 
     drawn: Mapping[str, FloatArray] = stages.optional("samples of what was found", of_found, dict)
     acting = stages.optional("where it acts", places, lambda: ((), ()))

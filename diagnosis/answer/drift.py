@@ -81,7 +81,9 @@ class Drift:
             return f"{self.parameter} stays the same over the tests (p = {self.p_constant:.2g})"
         said = f"{self.parameter} is not the same in all tests ({_chance(self.p_constant)})"
         if not self.curves:
-            return f"{said}; with what it changes, {FEWEST} tests or more would tell"
+            few = len(self.estimates) < FEWEST
+            why = f"{FEWEST} tests or more would tell" if few else "the runs of these tests do not tell"
+            return f"{said}; with what it changes, {why}"
         if self.left_p < CHANCE:
             return f"{said}; neither the {' nor the '.join(c.exposure.meaning for c in self.curves)} explains it"
         names = [c.exposure.meaning for c in self.with_what]

@@ -150,7 +150,9 @@ def _by_recording(gains: Mapping[str, float]) -> list[str]:
     strongest, *others = sorted(gains, key=lambda name: -gains[name])
     named = [strongest, *others] if len(gains) <= MOST_NAMED else [strongest, others[-1]]
     whole = sum(max(gain, 0.0) for gain in gains.values())
-    said = ", ".join(f"{name} {max(gains[name], 0.0) / whole:.0%}" for name in named)
+    some = ("most ", "least ") if len(named) < len(gains) else ("",) * len(named)
+    shares = [f"{word}{name} {max(gains[name], 0.0) / whole:.0%}" for word, name in zip(some, named, strict=True)]
+    said = ", ".join(shares)
     rest = sum(gains[name] for name in others)
     alone = f"; without {strongest} it would not have been named" if rest < MISSING else ""
     return [f"Of the gain in likelihood the recordings give: {said}{alone}."] if whole > 0.0 else []

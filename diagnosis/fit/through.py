@@ -38,7 +38,9 @@ def run_through(
     size = round(m.recordings[recording].time_step / m.shakings[recording].time_step)
     found = np.zeros((len(parts), len(m.channels), samples // size))
     around = Surroundings(m.shakings[recording].time_step, m.shakings[recording].horizontal, m.reference_peak)
-    largest = {c: float(np.max(np.abs(m.recordings[recording].channels[c]))) for c in m.channels}
+    peaks = {c: float(np.max(np.abs(m.recordings[recording].channels[c]))) for c in m.channels}
+    # of all levels together: the channel of one may be dead
+    largest = {c: max(peak for other, peak in peaks.items() if stem(other) == stem(c)) for c in m.channels}
     for low in range(0, len(parts), LANES):
         some = parts[low : low + LANES]
         values = [

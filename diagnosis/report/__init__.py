@@ -14,6 +14,7 @@ from diagnosis.report.posterior_file import write_posterior
 from grids.recordings import Recording
 from grids.specimen import Specimen
 
+POSTERIOR = "posterior.nc"
 __all__ = ["as_mapping", "diagnosis_json", "extend", "write_answer"]
 
 
@@ -51,7 +52,9 @@ def write_answer(
     fit = write_fit(diagnosis, folder / "fit.nc")
     if diagnosis.posterior:
         model = models.get(specimen.model)
-        paths.append(write_posterior(diagnosis.posterior, model, specimen.title, folder / "posterior.nc"))
+        paths.append(write_posterior(diagnosis.posterior, model, specimen.title, folder / POSTERIOR))
+    else:  # that of an earlier answer
+        (folder / POSTERIOR).unlink(missing_ok=True)
     drawn = pictures(diagnosis, specimen, (*train, *holdout))
     write_text(paths[2], report_page(diagnosis, specimen, train, holdout, drawn))
     write_figures(drawn, folder / "figures")

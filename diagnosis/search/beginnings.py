@@ -120,6 +120,8 @@ def _settled(found: Search) -> bool:
         return False
     if not explains_all(found.best):
         return False
+    if not found.measured.identification.forces:
+        return True
     found.about = forces(found.best.fitted)
     return not flags(found.about, tests(found.about, found.errors), found.more)
 

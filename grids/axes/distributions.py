@@ -112,9 +112,9 @@ def _pair(
         raise InputError(f"{where}: {key} = {entry!r}; give two numbers.")
     unit = table.get("unit")
 
-    def number(value: object, own: str) -> float:
-        if unit is None or isinstance(value, str) or own != target.unit:
-            return to_si(value, own, where)
-        return to_si(value, "1", where) * factor_to_si(str(unit), own, where)
+    def number(value: object) -> float:
+        if unit is None or isinstance(value, str):
+            return to_si(value, target.unit, where)
+        return to_si(value, "1", where) * factor_to_si(str(unit), target.unit, where)
 
-    return number(entry[0], target.unit), number(entry[1], "1" if spread else target.unit)
+    return number(entry[0]), to_si(entry[1], "1", where) if spread else number(entry[1])

@@ -18,6 +18,8 @@ from grids.recordings.base import REQUIRED, FloatArray, Recording
 
 LOWEST, HIGHEST, TRIED = 0.02, 0.5, 25
 """Hz; corners that are tried, evenly in the logarithm, before the best of them is refined."""
+WIDER = 1.14
+"""Factor about the best of them within which it is refined."""
 STEP = 0.02
 """s, of the means that are compared at least."""
 REPRODUCED = 0.03
@@ -52,6 +54,8 @@ def integrated(recordings: Sequence[Recording], displacement: str, acceleration:
     held = [r for r in recordings if displacement in r.channels and acceleration in r.channels]
     if not held:
         return None
+    if any(0.5 / max(STEP, r.time_step) <= HIGHEST * WIDER for r in held):  # too coarse to tell a corner
+        return None
     pairs = [_means(r, displacement, acceleration) for r in held]
 
     def error(corner: float) -> float:
@@ -59,7 +63,7 @@ def integrated(recordings: Sequence[Recording], displacement: str, acceleration:
 
     corners = np.geomspace(LOWEST, HIGHEST, TRIED)
     best = float(corners[int(np.argmin([error(c) for c in corners]))])
-    near = best * np.geomspace(0.88, 1.14, 13)
+    near = best * np.geomspace(1.0 / WIDER, WIDER, 13)
     errors = [error(c) for c in near]
     corner, least = float(near[int(np.argmin(errors))]), min(errors)
     blunt = min(error(0.5 * corner), error(min(2.0 * corner, HIGHEST))) < SHARPER * least

@@ -73,7 +73,8 @@ def on_layers(block: Numbers, own: Numbers) -> dict[str, float]:
 
 def joints(block: Numbers) -> dict[str, tuple[float, float]]:
     """Where a joint may be."""
-    return {JOINT.name: (LOWEST, 1.0 if block.get("top_mass_height", 0.0) > 0.0 else HIGHEST)}
+    above = min(block.get("top_mass_height", 0.0), block.get("top_mass", 0.0)) > 0.0
+    return {JOINT.name: (LOWEST, 1.0 if above else HIGHEST)}
 
 
 def base_layer(block: Numbers) -> dict[str, tuple[float, float]]:

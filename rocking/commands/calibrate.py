@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from diagnosis.fit.intervals import Estimate
     from grids.specimen import Specimen
 
-POSTERIOR = "posterior.nc"
-
 
 def calibrate(
     specimen: Annotated[Path, typer.Argument(help="Specimen file (TOML).")],
@@ -77,6 +75,7 @@ def calibrate(
 def write(wall: Specimen, found: Calibration, out: Path, at_strain: float | None) -> None:
     """The calibrated specimen as a file, and beside it samples of what was found."""
     from diagnosis.answer.calibration import specimen_at, specimen_of
+    from diagnosis.report import POSTERIOR
     from diagnosis.report.posterior_file import write_posterior
     from grids.write_specimen import specimen_text
     from study.store import write_text
@@ -87,6 +86,8 @@ def write(wall: Specimen, found: Calibration, out: Path, at_strain: float | None
     if found.posterior and at_strain is None:
         path = write_posterior(found.posterior, models.get(wall.model), wall.title, out.with_name(POSTERIOR))
         typer.echo(f"written: {path}", err=True)
+    else:  # that of an earlier calibration
+        out.with_name(POSTERIOR).unlink(missing_ok=True)
 
 
 def parameter_table(title: str, found: Calibration) -> Table:

@@ -9,6 +9,8 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
+from models.errors import InputError
+from models.errors import nearest as closest
 from study.figures.style import COLOURS, label, new_axes, set_log_ticks, set_title, shown, symbol_label
 from study.sets.cells import MOTION, NAMES, chosen_cells, find_measure, intensity
 from study.status import OVERTURNED, UNKNOWN
@@ -21,6 +23,9 @@ def plot_cloud(
     cube: xr.Dataset, output: str, measure: str = "pgv", at: Mapping[str, Any] | None = None, *, ax: Axes | None = None
 ) -> Axes:
     """Draw an output of every cell over a measure of its motion; overturned cells stand on the upper border."""
+    if output not in cube.data_vars or output == "status":
+        known = [str(name) for name in cube.data_vars if name != "status"]
+        raise InputError(f"'{output}' is no output of this cube: {closest(output, known)}")
     ax = new_axes(ax)
     cells, selection = chosen_cells(cube, at)
     strength = intensity(cells, measure)

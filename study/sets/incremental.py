@@ -41,7 +41,9 @@ def incremental(
     scale = next((d for d in INTENSITIES if d in cells.dims), None)
     if scale is None:
         raise InputError("incremental dynamic analysis needs an axis pga or motion_scale: add it to [axes]")
-    cells = cells.sortby(scale)
+    cells = cells.sortby(scale).isel({scale: np.sort(cells[scale].values) > 0.0})  # without shaking nothing grows
+    if cells.sizes[scale] < 2:
+        raise InputError(f"incremental dynamic analysis needs two values of {scale} above zero: add one to [axes]")
     strength = intensity(cells, measure)
     if bool((strength.isel({scale: 0}) == strength.isel({scale: -1})).any()):
         raise InputError(f"{measure} does not grow when a motion is scaled: take pga, pgv or another that does")

@@ -37,6 +37,11 @@ def test_quantiles() -> None:
         np.testing.assert_allclose(drawn("layer_modulus", entry), exact, rtol=1e-9, err_msg=what)
 
 
+def test_a_unit_is_not_that_of_a_logarithmic_spread() -> None:
+    exact = lognorm(0.3, scale=0.05).ppf(SHARE)
+    np.testing.assert_allclose(drawn("damping_ratio", {"lognormal": [5, 0.3], "unit": "%"}), exact, rtol=1e-9)
+
+
 def test_words_are_equally_likely() -> None:
     words = drawn("rubber_law", ["linear", "hardening", "mullins"])
     assert words.tolist() == ["linear"] * 11 + ["hardening"] * 11 + ["mullins"] * 11

@@ -72,3 +72,7 @@ def test_level_by_level_every_row_is_a_channel() -> None:
     split = level_by_level(recording)
     assert set(split.channels) == {"base_acceleration_x", *(f"{name}_{k}" for name in PAIR for k in range(2))}
     np.testing.assert_array_equal(split.channels["level_displacement_x_1"], recording.channels[PAIR[0]][1])
+
+
+def test_recordings_too_coarse_to_tell_a_corner_tell_none() -> None:
+    assert integrated([replace(moving(), time_step=1.0)], *PAIR) is None

@@ -50,7 +50,7 @@ def test_samples_set_their_names_together_as_the_first_axis(tmp_path: Path) -> N
     ("more", "axes", "changes", "said"),
     [
         ("count = 9", "", {}, "the file holds 3 samples"),
-        ("", 'width = { values = ["0.2 m"] }', {}, "'width' is set by .axes. sample and by .axes. width"),
+        ("", 'width = { values = ["0.2 m"] }', {}, "'width' is set by .samples. and by .axes. width"),
         ("", "sample = { sobol = 4, seed = 1, parameters = { restitution = [0.8, 0.9] } }", {}, "call that of .axes. "),
         ("", "", {"gain.gain": (INSET, "1")}, "gain"),
         ("", "", {"width": (-WIDTH, "m")}, "width"),

@@ -98,3 +98,10 @@ def test_blocks_that_cannot_be_cut_say_why() -> None:
     rung = rung_of("housner", 0)
     assert "inertia" in rung.refusal({**BLOCKS["pier"], "inertia": 500.0})
     assert "no mass" in rung.refusal({"width": 0.5, "height": 2.3, "mass": 0.0, "top_mass": 900.0})
+
+
+def test_a_joint_below_nothing_is_not_looked_for() -> None:
+    """At the top of a block only if there is a mass on it."""
+    block = {"width": 0.4, "height": 1.6, "mass": 500.0, "top_mass_height": 0.2}
+    assert of_block.joints(block)["joint_over_height"][1] < 1.0
+    assert of_block.joints({**block, "top_mass": 100.0})["joint_over_height"][1] == 1.0

@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 import pytest
 import xarray as xr
 
+import models
 import study.run
 import study.task
 from grids.plan import Plan, parse_plan
+from grids.refinement import Estimate
 from models.errors import InputError
 from study.check import check
 from study.open import open_study
-from study.refined import cells_of_a_block
+from study.refined import Refined, cells_of_a_block
 from study.run import run
 from study.state import state
-from study.status import OVERTURNED
+from study.status import FAILED, OVERTURNED, ROCKING
 from tests.study.plans import plan_text
 
 
@@ -87,3 +90,11 @@ def test_a_stopped_run_goes_on_and_changes_nothing(
     once, twice = open_study(home / "refined"), open_study(report.folder)
     for name in once.data_vars:
         np.testing.assert_array_equal(once[name], twice[name])
+
+
+def test_cells_of_a_failed_block_hold_the_fill_value() -> None:
+    """Whole numbers cannot hold nan."""
+    status = np.array([ROCKING, FAILED, OVERTURNED], np.int8)
+    refined = Refined(np.arange(3), {"impacts": np.array([4.0, np.nan, 7.0])}, status, cast(Estimate, None))
+    impacts = next(q for q in models.get("housner").outputs if q.name == "impacts")
+    assert refined.values(impacts, -1, np.dtype(np.int32)).tolist() == [4, -1, 7]

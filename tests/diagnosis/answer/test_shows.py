@@ -25,6 +25,7 @@ def shown(where: tuple[int, ...], explained: bool) -> Any:
             SimpleNamespace(name=f"run_{r}", time_step=0.01, time=np.arange(WINDOWS * SAMPLES) * 0.01) for r in range(2)
         ),
         channels=("rotation_1",),
+        lead=0,
         windows=tuple(
             SimpleNamespace(recording=r, first=w * SAMPLES, samples=SAMPLES) for r in range(2) for w in range(WINDOWS)
         ),

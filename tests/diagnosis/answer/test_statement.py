@@ -126,7 +126,7 @@ def test_a_dependence_says_on_which_side() -> None:
     [
         ({"a": 40.0, "b": 22.5}, "the recordings give: a 64%, b 36%."),
         ({"a": 3.0, "b": 57.0}, "give: b 95%, a 5%; without b it would not have been named."),
-        ({name: float(k) for k, name in enumerate("abcdef", 10)}, "give: f 20%, a 13%."),
+        ({name: float(k) for k, name in enumerate("abcdef", 10)}, "give: most f 20%, least a 13%."),
     ],
 )
 def test_what_every_recording_says_is_stated(gains: dict[str, float], expected: str) -> None:

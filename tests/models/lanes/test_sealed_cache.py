@@ -45,7 +45,7 @@ def test_files_are_used_until_they_are_damaged(kernel: Callable[[], tuple[str, s
     assert kernel() == ("41.0 1", "")
     for suffix, damage in (
         ("nbi", lambda data: b""),
-        ("nbc", lambda data: data[: len(data) // 2] + b"\0" + data[len(data) // 2 + 1 :]),
+        ("nbc", lambda data: data[: len(data) // 2] + bytes([data[len(data) // 2] ^ 255]) + data[len(data) // 2 + 1 :]),
     ):
         (path,) = (tmp_path / "cache").rglob(f"*.{suffix}")
         path.write_bytes(damage(path.read_bytes()))

@@ -8,6 +8,7 @@ import pytest
 from grids.motions import make_pulse, read_motion
 from grids.motions.measures import MEASURES, measures_of
 from models.errors import InputError
+from study.figures.cloud import plot_cloud
 from study.sets.cells import event_of, intensity
 from study.sets.fragility import fragility
 from study.sets.incremental import incremental
@@ -103,3 +104,19 @@ def test_bad_events_are_refused() -> None:
             event_of(CUBE, *words)  # type: ignore[arg-type]
     with pytest.raises(InputError, match="no axis 'motion'"):
         fragility(CUBE.isel(motion=0), event_of(CUBE))
+
+
+def test_curves_begin_where_something_shakes() -> None:
+    levels = np.array([0.0, 1.0, 2.0, 4.0])
+    cube = cube_of(np.array([2.5, 3.0, 3.5]), levels)
+    for measure in ("pga", "pgv"):
+        found = incremental(cube, "peak_rotation", measure)
+        assert found["pga"].values.tolist() == [1.0, 2.0, 4.0]
+        assert np.all(np.isfinite(found["quantile_curves"].values[:, 0]))
+    with pytest.raises(InputError, match="two values of pga above zero"):
+        incremental(cube.isel(pga=[0, 1]), "peak_rotation", "pga")
+
+
+def test_a_misspelt_output_of_a_cloud_is_a_sentence() -> None:
+    with pytest.raises(InputError, match="'peak_rotatoin' is no output of this cube: did you mean 'peak_rotation'"):
+        plot_cloud(cube_of(np.array([2.5, 3.0])), "peak_rotatoin")
