@@ -255,3 +255,16 @@ def state_unit(model: Model, name: str, where: str) -> str:
         raise InputError(f"{where} is no state of model '{model.name}'; {nearest(name, model.states)}")
     units = {quantity.name: quantity.unit for quantity in model.observables}
     return units.get(name) or next(unit for start, unit in UNITS_OF_STATES.items() if name.startswith(start))
+
+
+def with_values(specimen: Specimen, values: Mapping[str, float]) -> Specimen:
+    """The specimen with these values of parameters, and of mechanisms by ``mechanism.parameter``."""
+    parameters = dict(specimen.parameters)
+    mechanisms = {name: dict(own) for name, own in specimen.mechanisms.items()}
+    for name, value in values.items():
+        mechanism, dot, parameter = name.partition(".")
+        if dot:
+            mechanisms.setdefault(mechanism, {})[parameter] = value
+        else:
+            parameters[name] = value
+    return replace(specimen, parameters=parameters, mechanisms=mechanisms)

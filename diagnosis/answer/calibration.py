@@ -20,7 +20,7 @@ from diagnosis.progress import Progress, silent
 from diagnosis.search.refit import Explanation
 from grids.instruments.staged import moved_in_stages
 from grids.recordings.base import Recording
-from grids.specimen import Specimen
+from grids.specimen import Specimen, with_values
 from models.base import FloatArray
 from models.errors import InputError
 from models.piecewise import simulate
@@ -51,6 +51,10 @@ class Calibration:
     drifts: tuple[Drift, ...] = ()
     posterior: Mapping[str, FloatArray] = field(default_factory=dict)
     """Samples of the parameters that a study can vary (`diagnosis.answer.posterior`)."""
+    seen: tuple[str, ...] = ()
+    """What the recordings show of their instruments by themselves."""
+    instruments: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    """These instruments as mechanisms of a specimen."""
 
     def __repr__(self) -> str:
         lines = [f"{'parameter':<24}{'estimate':>12}{'low 95 %':>12}{'high 95 %':>12}  unit"]
@@ -84,7 +88,8 @@ def calibrate(
             f"nothing to calibrate in '{specimen.title}': no parameter has a [tolerance] or a range in [calibrate]; "
             "give one, for instance [tolerance] width = 0.005 (one sigma, relative)."
         )
-    specimen, _ = as_recorded(specimen, recordings)
+    given = specimen.mechanisms
+    specimen, seen = as_recorded(specimen, recordings)
     measured = measure(specimen, recordings)
     alone = list(recordings) if len(recordings) > 1 else []
     profiles = len(specimen.tolerance) + len(specimen.calibrate) if profile else 0
@@ -97,22 +102,16 @@ def calibrate(
         each[recording.name] = calibrated(specimen, measure(specimen, [recording], measured.reference_peak), seed)[0]
     by_recording = {name: estimates(one) for name, one in each.items()}
     found = _summary(fitted, errors, measured, profile, by_recording, steps)
-    return replace(found, drifts=_drifts(by_recording, list(each.values())))
+    instruments = {name: values for name, values in specimen.mechanisms.items() if name not in given}
+    drifts = _drifts(by_recording, list(each.values()))
+    return replace(found, drifts=drifts, seen=tuple(str(one) for one in seen), instruments=instruments)
 
 
 def specimen_of(specimen: Specimen, found: Calibration) -> Specimen:
     """The specimen with the fitted values in the place of nominal ones and ranges."""
-    parameters = dict(specimen.parameters)
-    mechanisms = {name: dict(values) for name, values in specimen.mechanisms.items()}
-    for name, value in found.parameters.items():
-        mechanism, dot, parameter = name.partition(".")
-        if dot:
-            mechanisms.setdefault(mechanism, {})[parameter] = value.estimate
-        else:
-            parameters[name] = value.estimate
-    return replace(
-        specimen, title=f"{specimen.title}, calibrated", parameters=parameters, mechanisms=mechanisms, calibrate={}
-    )
+    seen = replace(specimen, mechanisms={**specimen.mechanisms, **found.instruments})
+    fitted = with_values(seen, {name: value.estimate for name, value in found.parameters.items()})
+    return replace(fitted, title=f"{specimen.title}, calibrated", calibrate={})
 
 
 def specimen_at(specimen: Specimen, found: Calibration, exposure: str, level: float) -> Specimen:

@@ -8,7 +8,7 @@ import models
 from diagnosis.answer.result import Diagnosis, OtherModel
 from diagnosis.data.measured import identification_of
 from diagnosis.fit.unknowns import library
-from grids.specimen import Specimen
+from grids.specimen import Specimen, with_values
 from grids.stages import Stage
 
 
@@ -21,15 +21,9 @@ def extend(specimen: Specimen, diagnosis: Diagnosis) -> Specimen:
     parameters as fitted.
     """
     if diagnosis.other_model is not None:
-        return _of_another_model(specimen, diagnosis.other_model)
-    parameters = dict(specimen.parameters)
-    mechanisms = {name: dict(values) for name, values in {**specimen.mechanisms, **diagnosis.instruments}.items()}
-    for name, value in diagnosis.base.items():
-        mechanism, dot, parameter = name.partition(".")
-        if dot:
-            mechanisms.setdefault(mechanism, {})[parameter] = value.estimate
-        else:
-            parameters[name] = value.estimate
+        return _of_another_model(specimen, diagnosis, diagnosis.other_model)
+    fitted_base = _with_base(specimen, diagnosis)
+    parameters, mechanisms = fitted_base.parameters, dict(fitted_base.mechanisms)
     known = library(models.get(specimen.model))
     stages = dict(specimen.stages)
     for effect in diagnosis.effects:
@@ -37,7 +31,7 @@ def extend(specimen: Specimen, diagnosis: Diagnosis) -> Specimen:
         off = {p.name: p.null for p in known[effect.name].parameters if not p.shape}
         if not off.keys() & fitted.keys() and effect.name not in mechanisms:
             fitted = off | fitted  # what acts through a shape alone (a high-pass) names the effect's own value too
-        mechanisms[effect.name] = mechanisms.get(effect.name, {}) | fitted
+        mechanisms[effect.name] = {**mechanisms.get(effect.name, {}), **fitted}
         if effect.stages:
             stages[effect.name] = tuple(Stage(one.recording, one.begins, one.ends) for one in effect.stages)
     if diagnosis.missing_force:
@@ -56,7 +50,13 @@ def extend(specimen: Specimen, diagnosis: Diagnosis) -> Specimen:
     )
 
 
-def _of_another_model(specimen: Specimen, other: OtherModel) -> Specimen:
+def _with_base(specimen: Specimen, diagnosis: Diagnosis) -> Specimen:
+    """The specimen with the calibrated base and the instruments that were seen."""
+    seen = replace(specimen, mechanisms={**specimen.mechanisms, **diagnosis.instruments})
+    return with_values(seen, {name: value.estimate for name, value in diagnosis.base.items()})
+
+
+def _of_another_model(specimen: Specimen, diagnosis: Diagnosis, other: OtherModel) -> Specimen:
     rung = next(r for r in identification_of(models.get(specimen.model)).ladder if r.name == other.effect)
     initial = dict(specimen.initial)
     initial |= {name: initial[of] for name, of in rung.alike.items() if of in initial}
@@ -70,4 +70,6 @@ def _of_another_model(specimen: Specimen, other: OtherModel) -> Specimen:
         options=other.options,
         vertical=other.vertical,
         initial=initial,
+        mechanisms=_with_base(specimen, diagnosis).mechanisms,
+        reference_peak=diagnosis.reference_peak or specimen.reference_peak,
     )

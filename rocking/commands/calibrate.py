@@ -60,6 +60,8 @@ def calibrate(
         console.print(correlation_table(found))
     if found.by_recording:
         console.print(drift_table(found))
+    for seen in found.seen:
+        console.print(f"Seen in the recordings: {seen}.", highlight=False)
     for drift in found.drifts:
         console.print(f"{drift}.", highlight=False)
     console.print(profile_table(found))
