@@ -65,7 +65,7 @@ def test_a_module_beside_the_data_is_not_imported(module: str, tmp_path: Path, m
     assert not (tmp_path / "executed").exists()
 
 
-@pytest.mark.parametrize("name", ["..", "../x", "a/b", "/tmp/x", ".hidden", "", "a\\b", "x\n", "é/..", "con\0"])
+@pytest.mark.parametrize("name", ["..", "../x", "a/b", "/x", ".hidden", "", "a\\b", "x\n", "é/..", "con\0"])
 def test_the_name_of_a_study_stays_in_the_folder_of_results(name: str) -> None:
     quoted = name.replace("\\", "\\\\").replace("\n", "\\n").replace("\0", "\\u0000")
     with pytest.raises(InputError, match="becomes a folder"):

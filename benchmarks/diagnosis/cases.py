@@ -63,10 +63,15 @@ class Case:
 
 def make(design: CaseDesign, seed: int) -> Case:
     """The case, the same for the same design and seed. Raises RuntimeError when no draw was suitable."""
+    return drawn(design, seed, lambda design, seed, rng: _Draft(design, rng).case(seed))
+
+
+def drawn(design: CaseDesign, seed: int, draw: Callable[[CaseDesign, int, np.random.Generator], Case]) -> Case:
+    """The first suitable case that ``draw`` gives for a design and seed. Raises RuntimeError when none was."""
     rng = np.random.default_rng([seed, design.number])
     for _ in range(ATTEMPTS):
         try:
-            return _Draft(design, rng).case(seed)
+            return draw(design, seed, rng)
         except Unsuitable:
             continue
     raise RuntimeError(f"{design.label} ({design.kind} {design.names}): no suitable draw in {ATTEMPTS}")

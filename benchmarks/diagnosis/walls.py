@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.diagnosis import instruments, shakings, suite
-from benchmarks.diagnosis.cases import ATTEMPTS, LOW_PASS, RECORDINGS, Case
+from benchmarks.diagnosis.cases import LOW_PASS, RECORDINGS, Case, drawn
 from benchmarks.diagnosis.scene import FloatArray, Unsuitable
 from models.interface.model import MODEL
 from models.shaking import Shaking
@@ -100,13 +100,7 @@ def designs(seed: int) -> list[suite.CaseDesign]:
 
 def make(design: suite.CaseDesign, seed: int) -> Case:
     """The case, the same for the same design and seed. Raises RuntimeError when no draw was suitable."""
-    rng = np.random.default_rng([seed, design.number])
-    for _ in range(ATTEMPTS):
-        try:
-            return _case(design, seed, rng)
-        except Unsuitable:
-            continue
-    raise RuntimeError(f"{design.label} ({design.kind} {design.names}): no suitable draw in {ATTEMPTS}")
+    return drawn(design, seed, _case)
 
 
 def _case(design: suite.CaseDesign, seed: int, rng: np.random.Generator) -> Case:
