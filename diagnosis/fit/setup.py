@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import models
@@ -12,8 +12,8 @@ from diagnosis.fit.memory import counted
 from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.prediction import Predictor
 from diagnosis.fit.solver import Fitted, fit_thoroughly
-from diagnosis.fit.starts import calibrate_base
-from diagnosis.fit.unknowns import Unknown, fixed_values, of_specimen, without_instruments
+from diagnosis.fit.starts import led
+from diagnosis.fit.unknowns import fixed_values, of_specimen, without_instruments
 from diagnosis.fit.whitening import responses, sensor_noise_only, with_base_noise
 from grids.instruments.integrated_displacement import MECHANISM as INTEGRATED
 from grids.recordings.base import Recording
@@ -75,18 +75,17 @@ def base_fit(specimen: Specimen, measured: Measured, seed: int = 0) -> Fitted:
     ranged = {u.name for u in unknowns if u.prior is None}
     coordinates = tuple(name for name in measured.identification.coordinates if name in ranged)
     predictor = Predictor(measured, specimen.options, specimen.stages, coordinates)
-    return fit_from_nothing(predictor, unknowns, fixed_values(specimen), seed)
+    plain = Misfit(predictor, sensor_noise_only(predictor), unknowns, fixed_values(specimen))
+    return settled_base(led(plain, seed))
 
 
-def fit_from_nothing(
-    predictor: Predictor, unknowns: tuple[Unknown, ...], fixed: Mapping[str, float], seed: int
-) -> Fitted:
-    """The global minimum, first against sensor noise alone, then with the noise of the base motion."""
-    plain = Misfit(predictor, sensor_noise_only(predictor), unknowns, fixed)
-    first = calibrate_base(plain, seed)
+def settled_base(start: Fitted) -> Fitted:
+    """The minimum from a ``start``, first against sensor noise alone, then with the noise of the base motion."""
+    first = fit_thoroughly(start.misfit, start.u, start.states)
+    plain, predictor = first.misfit, first.misfit.predictor
     if predictor.measured.stretches is not None:  # what the noise of the base leaves goes on from stretch to stretch
         return first
     point = plain.point(first.u, first.states)
     whitening = with_base_noise(predictor, responses(predictor, point))
     predictor = replace(predictor, measured=counted(predictor, point))
-    return fit_thoroughly(Misfit(predictor, whitening, unknowns, fixed), first.u, first.states)
+    return fit_thoroughly(replace(plain, predictor=predictor, whitening=whitening), first.u, first.states)

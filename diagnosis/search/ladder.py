@@ -20,9 +20,12 @@ from diagnosis.data.measured import Measured, for_model, identification_of
 from diagnosis.errors.adequacy import inadequacy
 from diagnosis.errors.comparison import by_window, deviance
 from diagnosis.errors.model import Errors, disturbance_about, refitted
+from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.prediction import Predictor
-from diagnosis.fit.setup import fit_from_nothing
-from diagnosis.fit.unknowns import fixed_values, in_range, of_specimen
+from diagnosis.fit.setup import settled_base
+from diagnosis.fit.solver import fit
+from diagnosis.fit.starts import Origin, led
+from diagnosis.fit.unknowns import clip, fixed_values, in_range, of_specimen
 from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.progress import Progress
 from diagnosis.search.budget import ENDED, LADDER, Budget
@@ -42,6 +45,7 @@ LEFT = 1.5
 """Misfit per sample, over the sensors' noise, from which on other base models are tried."""
 DECISIVE = 2.0
 """Gain over that of the best single mechanism with which another base model that errs nowhere ends the search."""
+WORSE = "from its best starts it explains less of the recordings than the base model does"
 PER_STATE = 2.0
 """What every state that a window starts from beyond those of the base model costs."""
 
@@ -93,7 +97,7 @@ def rungs(
         return []
     budget = Budget(LADDER)
     recordings = [*found.measured.recordings, *held]
-    tried = []
+    below, tried = [_plain(found.base)], []
     for rung in ladder:
         if not _meant_for(rung, recordings):
             continue
@@ -101,7 +105,8 @@ def rungs(
         if not why:
             progress(f"another base model: {rung.name.replace('_', ' ')}", 0.48)
             try:
-                tried.append((rung, _weighed(_fitted(rung, specimen, found.measured, recordings, seed))))
+                below.append(_fitted(rung, specimen, below, recordings, seed))
+                tried.append((rung, _weighed(below[-1])))
             except InputError as error:
                 why = str(error)
         if why:
@@ -160,10 +165,34 @@ def _nominal(specimen: Specimen) -> dict[str, float]:
     return {**unknown, **specimen.parameters}
 
 
+def _plain(explanation: Explanation) -> Explanation:
+    """The explanation refitted as if the errors were the sensors' white noise."""
+    f = explanation.fitted
+    plain = replace(f.misfit, whitening=sensor_noise_only(f.misfit.predictor))
+    return replace(explanation, fitted=fit(plain, f.u, f.states))
+
+
 def _fitted(
-    rung: Rung, specimen: Specimen, measured: Measured, recordings: Sequence[Recording], seed: int
+    rung: Rung, specimen: Specimen, below: Sequence[Explanation], recordings: Sequence[Recording], seed: int
 ) -> Explanation:
-    """The other model on the same windows, as an explanation with one effect: the rung."""
+    """The other model on the same windows, as an explanation with one effect: the rung.
+
+    Its search goes on from the base model and the rungs ``below``, too. Raises InputError where it does worse than the
+    base model does, both against white noise of the sensors.
+    """
+    base_model = below[0]
+    plain = _misfit(rung, specimen, base_model.measured, recordings)
+    start = led(plain, seed, [_origin(plain, one) for one in below])
+    if start.loss > base_model.loss:
+        raise InputError(WORSE)
+    own = tuple(x for x in plain.unknowns if x.name.startswith(f"{rung.name}."))
+    states = len(plain.measured.free) - len(base_model.measured.free)
+    price = PER_STATE * (states * len(plain.measured.windows) + 1)
+    return Explanation((Candidate(rung.mechanism, own, {}, price=price),), settled_base(start))
+
+
+def _misfit(rung: Rung, specimen: Specimen, measured: Measured, recordings: Sequence[Recording]) -> Misfit:
+    """Of the other model on the same windows, against white noise of the sensors."""
     other = get(rung.model)
     channel = {state.name: state.channel for state in identification_of(other).free}
     alike = {s: of for s, of in rung.alike.items() if not all(channel[s] in r.channels for r in recordings)}
@@ -172,11 +201,17 @@ def _fitted(
     own = tuple(in_range(f"{rung.name}.{p.name}", p.unit, *ranges[p.name]) for p in rung.parameters)
     base = tuple(x for x in of_specimen(specimen, measured.model) if x.name not in rung.without)
     predictor = Predictor(seen, _options(rung, specimen.options), specimen.stages, rung=rung)
-    fitted = fit_from_nothing(predictor, (*base, *own), fixed_values(specimen), seed)
-    states = len(seen.free) - len(measured.free)
-    return Explanation(
-        (Candidate(rung.mechanism, own, {}, price=PER_STATE * (states * len(measured.windows) + 1)),), fitted
-    )
+    return Misfit(predictor, sensor_noise_only(predictor), (*base, *own), fixed_values(specimen))
+
+
+def _origin(misfit: Misfit, below: Explanation) -> Origin:
+    """What another base model's fit knows of this one's parameters and states."""
+    values = {name.rpartition(".")[2]: value for name, value in below.fitted.values.items()}
+    own = [x.name.rpartition(".")[2] for x in misfit.unknowns]
+    u = [x.coordinate(values.get(name, x.start)) for x, name in zip(misfit.unknowns, own, strict=True)]
+    fitted = dict(zip(below.measured.free, below.fitted.states.T, strict=True))
+    states = [fitted.get(name, x) for name, x in zip(misfit.measured.free, misfit.measured.states.T, strict=True)]
+    return Origin(clip(misfit.unknowns, np.array(u)), np.stack(states, axis=1), np.array([n in values for n in own]))
 
 
 def _options(rung: Rung, given: Mapping[str, str]) -> dict[str, str]:

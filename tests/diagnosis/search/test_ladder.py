@@ -57,7 +57,8 @@ def test_rubber_under_a_pier_is_named_with_its_stiffness_and_the_answer_is_a_spe
     found = Search(Explanation((), fitted), (), errors)
     pier = PIER.parameters
     rung = next(r for r in fitted.measured.identification.ladder if r.bonded)
-    tried = [(rung, ladder._weighed(ladder._fitted(rung, PIER, fitted.measured, fitted.measured.recordings, 0)))]
+    below = [ladder._plain(found.base)]
+    tried = [(rung, ladder._weighed(ladder._fitted(rung, PIER, below, fitted.measured.recordings, 0)))]
     climbed = confirmed(ladder.climb(found, tried, decisive=False), fitted.measured)
     assert climbed is not None and climbed.rung is rung and climbed.evidence > 3.0 * MISSING and climbed.inadequate
     other = other_model(climbed, climbed.after.chosen)
@@ -69,16 +70,33 @@ def test_rubber_under_a_pier_is_named_with_its_stiffness_and_the_answer_is_a_spe
     assert read.model == rung.model and read.options == rung.options and read.parameters == extended.parameters
 
 
-def test_a_block_that_is_one_stays_one_whatever_is_tried() -> None:
-    """Both rotations of one body are alike: a joint in it, which may open, explains no more."""
+def test_a_block_that_is_one_stays_one_whatever_is_tried(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Both rotations of one body are alike: a joint in it, which may open, and rubber explain no more."""
     fitted, errors = base_fit("housner", 2)
     assert fitted.measured.channels == ("rotation_1", "rotation_2")
     found = Search(Explanation((), fitted), (), errors)
-    rung = fitted.measured.identification.ladder[0]
-    tried = [(rung, ladder._weighed(ladder._fitted(rung, PIER, fitted.measured, fitted.measured.recordings, 0)))]
+    monkeypatch.setattr(ladder, "LEFT", 0.0)
+    tried = ladder.rungs(found, PIER, [], 0, silent)
+    assert {rung.name for rung, _ in tried} | set(found.not_tried) == {"second_body", "compliant_base"}
+    assert all(why == ladder.WORSE for why in found.not_tried.values())
     assert ladder.climb(found, tried, decisive=False) is None
-    evidence, _ = tried[0][1].over(ladder._as_found(found))
-    assert evidence < 0.0
+    assert all(one.over(ladder._as_found(found))[0] < 0.0 for _, one in tried)
+
+
+def test_a_rung_goes_on_from_what_the_one_below_has_found() -> None:
+    fitted, _ = base_fit("housner", 2)
+    one, two = (r for r in fitted.measured.identification.ladder if ladder._meant_for(r, fitted.measured.recordings))
+    base = ladder._plain(Explanation((), fitted))
+    below = ladder._fitted(one, PIER, [base], fitted.measured.recordings, 0)
+    misfit = ladder._misfit(two, PIER, base.measured, fitted.measured.recordings)
+    origin = ladder._origin(misfit, below)
+    known = [x.name for x, is_known in zip(misfit.unknowns, origin.known, strict=True) if is_known]
+    assert known == ["width", "height", "mass", "compliant_base.joint_over_height"]
+    joint = misfit.point(origin.u, origin.states).values["compliant_base.joint_over_height"]
+    assert joint == pytest.approx(below.fitted.values["second_body.joint_over_height"])
+    assert set(misfit.measured.free) == set(below.measured.free)
+    order = [below.measured.free.index(name) for name in misfit.measured.free]
+    assert np.array_equal(origin.states, below.fitted.states[:, order])
 
 
 def test_nothing_is_tried_where_the_base_model_explains_the_recordings() -> None:
