@@ -45,7 +45,7 @@ def complete(
     """The value on the grid of every axis that ``keep`` does not leave whole: as ``at`` says, else the middle one."""
     given = on_grid(cube, at, nearest=nearest)
     if both := [name for name in given if name in keep]:
-        raise InputError(f"'{both[0]}' is an axis of the figure: leave it out of the selection")
+        raise InputError(f"'{both[0]}' is shown over its whole range: leave it out of the selection")
     left = [str(d) for d, size in cube.sizes.items() if size > 1 and d not in given and d not in keep]
     return given | {name: cube[name].values[cube.sizes[name] // 2] for name in left}
 

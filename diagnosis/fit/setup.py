@@ -76,12 +76,12 @@ def base_fit(specimen: Specimen, measured: Measured, seed: int = 0) -> Fitted:
     coordinates = tuple(name for name in measured.identification.coordinates if name in ranged)
     predictor = Predictor(measured, specimen.options, specimen.stages, coordinates)
     plain = Misfit(predictor, sensor_noise_only(predictor), unknowns, fixed_values(specimen))
-    return settled_base(led(plain, seed))
+    start = led(plain, seed)
+    return with_noise_of_the_base(fit_thoroughly(plain, start.u, start.states))
 
 
-def settled_base(start: Fitted) -> Fitted:
-    """The minimum from a ``start``, first against sensor noise alone, then with the noise of the base motion."""
-    first = fit_thoroughly(start.misfit, start.u, start.states)
+def with_noise_of_the_base(first: Fitted) -> Fitted:
+    """A fit against the sensors' noise alone taken on with that of the base motion."""
     plain, predictor = first.misfit, first.misfit.predictor
     if predictor.measured.stretches is not None:  # what the noise of the base leaves goes on from stretch to stretch
         return first

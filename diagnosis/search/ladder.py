@@ -22,8 +22,8 @@ from diagnosis.errors.comparison import by_window, deviance
 from diagnosis.errors.model import Errors, disturbance_about, refitted
 from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.prediction import Predictor
-from diagnosis.fit.setup import settled_base
-from diagnosis.fit.solver import fit
+from diagnosis.fit.setup import with_noise_of_the_base
+from diagnosis.fit.solver import fit, fit_thoroughly
 from diagnosis.fit.starts import Origin, led
 from diagnosis.fit.unknowns import clip, fixed_values, in_range, of_specimen
 from diagnosis.fit.whitening import sensor_noise_only
@@ -45,7 +45,7 @@ LEFT = 1.5
 """Misfit per sample, over the sensors' noise, from which on other base models are tried."""
 DECISIVE = 2.0
 """Gain over that of the best single mechanism with which another base model that errs nowhere ends the search."""
-WORSE = "from its best starts it explains less of the recordings than the base model does"
+WORSE = "it explains less of the recordings than what was found with the base model"
 PER_STATE = 2.0
 """What every state that a window starts from beyond those of the base model costs."""
 
@@ -97,7 +97,7 @@ def rungs(
         return []
     budget = Budget(LADDER)
     recordings = [*found.measured.recordings, *held]
-    below, tried = [_plain(found.base)], []
+    below, best, tried = [_plain(found.base)], _plain(found.chosen), []
     for rung in ladder:
         if not _meant_for(rung, recordings):
             continue
@@ -105,7 +105,7 @@ def rungs(
         if not why:
             progress(f"another base model: {rung.name.replace('_', ' ')}", 0.48)
             try:
-                below.append(_fitted(rung, specimen, below, recordings, seed))
+                below.append(_fitted(rung, specimen, below, best, recordings, seed))
                 tried.append((rung, _weighed(below[-1])))
             except InputError as error:
                 why = str(error)
@@ -173,22 +173,30 @@ def _plain(explanation: Explanation) -> Explanation:
 
 
 def _fitted(
-    rung: Rung, specimen: Specimen, below: Sequence[Explanation], recordings: Sequence[Recording], seed: int
+    rung: Rung,
+    specimen: Specimen,
+    below: Sequence[Explanation],
+    found: Explanation,
+    recordings: Sequence[Recording],
+    seed: int,
 ) -> Explanation:
     """The other model on the same windows, as an explanation with one effect: the rung.
 
     Its search goes on from the base model and the rungs ``below``, too. Raises InputError where it does worse than the
-    base model does, both against white noise of the sensors.
+    base model, or in the end than what was ``found``, all against white noise of the sensors.
     """
     base_model = below[0]
     plain = _misfit(rung, specimen, base_model.measured, recordings)
     start = led(plain, seed, [_origin(plain, one) for one in below])
     if start.loss > base_model.loss:
         raise InputError(WORSE)
+    fitted = fit_thoroughly(plain, start.u, start.states)
+    if fitted.loss > found.loss:
+        raise InputError(WORSE)
     own = tuple(x for x in plain.unknowns if x.name.startswith(f"{rung.name}."))
     states = len(plain.measured.free) - len(base_model.measured.free)
     price = PER_STATE * (states * len(plain.measured.windows) + 1)
-    return Explanation((Candidate(rung.mechanism, own, {}, price=price),), settled_base(start))
+    return Explanation((Candidate(rung.mechanism, own, {}, price=price),), with_noise_of_the_base(fitted))
 
 
 def _misfit(rung: Rung, specimen: Specimen, measured: Measured, recordings: Sequence[Recording]) -> Misfit:

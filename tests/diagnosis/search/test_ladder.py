@@ -58,7 +58,7 @@ def test_rubber_under_a_pier_is_named_with_its_stiffness_and_the_answer_is_a_spe
     pier = PIER.parameters
     rung = next(r for r in fitted.measured.identification.ladder if r.bonded)
     below = [ladder._plain(found.base)]
-    tried = [(rung, ladder._weighed(ladder._fitted(rung, PIER, below, fitted.measured.recordings, 0)))]
+    tried = [(rung, ladder._weighed(ladder._fitted(rung, PIER, below, *below, fitted.measured.recordings, 0)))]
     climbed = confirmed(ladder.climb(found, tried, decisive=False), fitted.measured)
     assert climbed is not None and climbed.rung is rung and climbed.evidence > 3.0 * MISSING and climbed.inadequate
     other = other_model(climbed, climbed.after.chosen)
@@ -87,7 +87,7 @@ def test_a_rung_goes_on_from_what_the_one_below_has_found() -> None:
     fitted, _ = base_fit("housner", 2)
     one, two = (r for r in fitted.measured.identification.ladder if ladder._meant_for(r, fitted.measured.recordings))
     base = ladder._plain(Explanation((), fitted))
-    below = ladder._fitted(one, PIER, [base], fitted.measured.recordings, 0)
+    below = ladder._fitted(one, PIER, [base], base, fitted.measured.recordings, 0)
     misfit = ladder._misfit(two, PIER, base.measured, fitted.measured.recordings)
     origin = ladder._origin(misfit, below)
     known = [x.name for x, is_known in zip(misfit.unknowns, origin.known, strict=True) if is_known]
