@@ -6,17 +6,17 @@ did harm are written beside the table, to be kept in ``tests/corpus``. Exit code
 
 from __future__ import annotations
 
-import argparse
 import hashlib
 import json
 import selectors
 import subprocess
 import sys
-import time
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from benchmarks.by_row import Row, fill, parser
 from benchmarks.fuzz.readers import Reader, readers
 
 OUT = Path("results/bench/fuzz.json")
@@ -25,9 +25,9 @@ SILENCE = 60.0
 """s without a word after which the process of a reader is taken for hung, in code that no signal reaches."""
 
 
-def fuzz(reader: Reader, inputs: int, seed: int, corpus: Path) -> dict[str, Any]:
+def fuzz(reader: Reader, inputs: int, seed: int, corpus: Path) -> Row:
     """A row: processes are started until ``inputs`` are read, another one when an input has ended one."""
-    row: dict[str, Any] = {"reader": reader.name, **dict.fromkeys(COLUMNS, 0), "seconds": 0.0, "notes": []}
+    row: Row = {"reader": reader.name, **dict.fromkeys(COLUMNS, 0), "seconds": 0.0, "notes": []}
     attempts = 0
     while row["inputs"] < inputs and attempts < 20:
         with TemporaryDirectory(prefix="fuzz-") as folder:
@@ -77,33 +77,13 @@ def _keep(corpus: Path, reader: Reader, data: bytes) -> None:
 
 def main() -> int:
     """Print the table row by row."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--inputs", type=int, default=200_000, help="of all readers together")
-    parser.add_argument("--only", default="", help="a part of the readers' names")
-    parser.add_argument("--seconds", type=float, default=float("inf"), help="begin no reader after so long")
-    parser.add_argument("--again", action="store_true", help="fuzz what the file has already")
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--out", type=Path, default=OUT)
-    given = parser.parse_args()
-    known = json.loads(given.out.read_text()) if given.out.exists() and not given.again else []
-    rows = {row["reader"]: row for row in known}
-    begun, all_readers = time.perf_counter(), list(readers())
-    each = given.inputs / sum(reader.share for reader in all_readers)
-    print(f"{'reader':<28}" + "".join(f"{name.replace('_', ' '):>13}" for name in COLUMNS))
-    for reader in all_readers:
-        if given.only not in reader.name:
-            continue
-        if reader.name not in rows and time.perf_counter() - begun < given.seconds:
-            rows[reader.name] = fuzz(reader, round(each * reader.share) + 1, given.seed, given.out.with_suffix(""))
-            given.out.parent.mkdir(parents=True, exist_ok=True)
-            given.out.write_text(json.dumps(list(rows.values()), indent=1) + "\n")
-        if reader.name in rows:
-            print(f"{reader.name:<28}" + "".join(f"{rows[reader.name][name]:>13}" for name in COLUMNS), flush=True)
-    bad = [row for row in rows.values() if any(row[name] for name in COLUMNS[2:])]
-    for row in bad:
-        print(f"\n{row['reader']}:", *row["notes"][:5], sep="\n  ")
-    print(f"{sum(row['inputs'] for row in rows.values())} inputs, {len(bad)} readers with findings")
-    return 1 if bad else 0
+    asked = parser(__doc__, OUT)
+    asked.add_argument("--inputs", type=int, default=200_000, help="of all readers together")
+    given = asked.parse_args()
+    all_readers = list(readers())
+    each, corpus = given.inputs / sum(reader.share for reader in all_readers), given.out.with_suffix("")
+    makers = {r.name: partial(fuzz, r, round(each * r.share) + 1, given.seed, corpus) for r in all_readers}
+    return fill(given, "reader", COLUMNS, COLUMNS[2:], makers)
 
 
 if __name__ == "__main__":
