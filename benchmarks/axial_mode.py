@@ -19,7 +19,6 @@ import numpy as np
 
 from grids.plan import read_plan
 from models.interface import modes
-from models.interface.assembly import build
 from models.interface.lanes import run as lanes
 from models.interface.model import MODEL
 from models.runs import Request
@@ -40,7 +39,7 @@ def measure() -> list[dict[str, Any]]:
     cells = plan.grid.coordinates(index)
     (motion,) = plan.motions
     shaking, scale = motion.shaking(), cells.pop("pga") / motion.pga
-    wall = build({**plan.fixed, **cells}, MODEL.resolve_options(None), True, CELLS)
+    wall = MODEL.build({**plan.fixed, **cells}, vertical=True, size=CELLS)
     rate = 2.0 * (wall.base_damping * wall.base_half_width + wall.top_damping * wall.top_half_width) / wall.mass_1
     bound, step = (
         EXPLICIT_LIMIT / rate,

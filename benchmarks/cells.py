@@ -27,7 +27,6 @@ import numpy as np
 
 from grids.plan import Plan, parse_plan
 from models.interface import modes
-from models.interface.assembly import build
 from models.interface.lanes import run as lanes
 from models.interface.model import MODEL
 from study.run import run
@@ -62,7 +61,7 @@ def lane_steps(chosen: Plan) -> float:
     """Steps of all cells if every run lasts the record: from the step rule of random walls of the grid."""
     index = np.random.default_rng(0).integers(0, chosen.grid.size, WALLS)
     varied = {name: v for name, v in chosen.grid.coordinates(index).items() if name != "pga"}
-    walls = build({**chosen.fixed, **varied}, MODEL.resolve_options(None), True, WALLS)
+    walls = MODEL.build({**chosen.fixed, **varied}, vertical=True, size=WALLS)
     (motion,) = chosen.motions
     return (
         float(lanes.substeps(walls, modes.at_rest(walls).squares, motion.time_step).mean())

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,12 +61,17 @@ class MechanismParameter(Parameter):
     required: bool = False
 
 
+OverParts = Literal["first", "largest", "least", "total", "last", "bits"]
+
+
 @dataclass(frozen=True)
 class Quantity:
     """An output of a run, a derived constant, or an observable channel of a history.
 
     ``peak_of``: observables whose largest absolute value the output is (see `models.peaks`); an output without
-    them is summed up by the integrators.
+    them is summed up by the integrators. ``over_parts``: how the output of a run that is cut follows from those of
+    its parts (`models.piecewise`): the first time, the largest, the least, the sum, the last, or the bits of all;
+    None for what is no output.
     """
 
     name: str
@@ -76,6 +81,7 @@ class Quantity:
     rule: str = ""
     dtype: str = "float64"
     peak_of: tuple[str, ...] = ()
+    over_parts: OverParts | None = None
 
 
 JOINTS = (("base", "at the base"), ("top", "at the top joint"))

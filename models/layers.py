@@ -14,31 +14,37 @@ COMPRESSIONS = (5e-5, 1e-2)
 DAMPING_RATIOS = (0.005, 0.4)
 GRAVITY = 9.80665
 
-BASE_STIFFNESS, TOP_STIFFNESS = (
-    MechanismParameter(
-        f"{joint}_stiffness", f"k_{joint[0]}", "N m-2", f"force per metre of contact and compression, {joint}",
-        0.0, low_open=True,
-    )
-    for joint in ("base", "top")
-)  # fmt: skip
-BASE_DAMPING_RATIO, TOP_DAMPING_RATIO = (
-    MechanismParameter(
-        f"{joint}_damping_ratio",
-        f"xi_{joint[0]}",
-        "1",
-        f"damping ratio at the lowest frequency, {joint} layer",
-        0.0,
-        1.0,
-    )
-    for joint in ("base", "top")
-)
+
+def layer_parameters(joint: str) -> tuple[MechanismParameter, MechanismParameter]:
+    """Stiffness and damping ratio of the layer at ``joint``."""
+    return (
+        MechanismParameter(
+            f"{joint}_stiffness", f"k_{joint[0]}", "N m-2", f"force per metre of contact and compression, {joint}",
+            0.0, low_open=True,
+        ),
+        MechanismParameter(
+            f"{joint}_damping_ratio", f"xi_{joint[0]}", "1", f"damping ratio at the lowest frequency, {joint} layer",
+            0.0, 1.0,
+        ),
+    )  # fmt: skip
 
 
-def stiffness_range(mass: float, length: float, gravity: float | None = None) -> tuple[float, float]:
-    """Stiffness (N m-2) of a layer of some ``length`` (m) that ``mass`` (kg) compresses by the least and the most."""
-    weight = mass * (GRAVITY if gravity is None else gravity)
-    least, most = COMPRESSIONS
-    return weight / (length * most), weight / (length * least)
+BASE, TOP = layer_parameters("base"), layer_parameters("top")
+
+
+def layer_ranges(gravity: float | None, **loads: tuple[float, float]) -> dict[str, tuple[float, float]]:
+    """Where the parameters of layers are looked for: stiffness (N m-2) and damping ratio by name.
+
+    ``loads``: mass (kg) on the layer and its length (m), by joint; its stiffness lies between those with which the
+    mass compresses it by the most and by the least of `COMPRESSIONS`.
+    """
+    found = {}
+    for joint, (mass, length) in loads.items():
+        weight = mass * (GRAVITY if gravity is None else gravity)
+        least, most = COMPRESSIONS
+        found[f"{joint}_stiffness"] = weight / (length * most), weight / (length * least)
+        found[f"{joint}_damping_ratio"] = DAMPING_RATIOS
+    return found
 
 
 def compliant(**given: Any) -> Rung:

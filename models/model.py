@@ -39,7 +39,7 @@ class Model(ABC, Generic[C]):
     """A model of a wall: its declarations, its coefficients ``C`` and its integrators.
 
     Arrays broadcast; nothing here knows labels, files or dask. A model gives `assemble`, `run_lanes`,
-    `run_reference`, `observe`, `check` and `derive`; everything else is the same for all.
+    `run_reference`, `observe` and `derive`; everything else is the same for all, but where a model says more.
 
     ``alternatives``: tuples of parameter sets of which exactly one must be given, for instance
     ``(("width", "height"), ("height", "aspect_ratio"))``.
@@ -90,12 +90,25 @@ class Model(ABC, Generic[C]):
         """The observables ``(n, samples)`` of states ``(n, samples, k)`` as the integrators return them."""
 
     @abstractmethod
-    def check(self, values: Values, options: Mapping[str, str] | None = None) -> list[str]:
-        """Sentences about values that have no meaning together under ``options`` (e <= 0); empty: fine."""
-
-    @abstractmethod
     def derive(self, values: Values, options: Mapping[str, str] | None = None) -> dict[str, FloatArray]:
         """Auxiliary constants (alpha, R, p ...) under ``options``, arrays ``(n,)`` by the names of `derived`."""
+
+    def complete(self, coefficients: C, options: Mapping[str, str]) -> C:
+        """The coefficients once every mechanism has acted: with the rubber laws that ``options`` name.
+
+        Raises InputError for what does not go together; default: as they are.
+        """
+        return coefficients
+
+    def check(self, values: Values, options: Mapping[str, str] | None = None) -> list[str]:
+        """Sentences about values that have no meaning together under ``options`` (e <= 0); empty: fine.
+
+        Default: why there are no coefficients, or why not one lane can stand.
+        """
+        try:
+            return self.refused(self.build(values, options))
+        except InputError as error:
+            return [str(error)]
 
     def cannot_stand(self, coefficients: C) -> Sequence[tuple[NDArray[np.bool_], str]]:
         """Lanes (n,) without a state of rest under their own load, by why, with a sentence about the worst of each.
@@ -166,12 +179,13 @@ class Model(ABC, Generic[C]):
     ) -> C:
         """The coefficients with the mechanisms that ``values`` switch on (as ``mechanism.parameter``).
 
-        ``values`` and ``size`` broadcast to the lanes; ``vertical``: whether the vertical motion acts.
+        ``values`` and ``size`` broadcast to the lanes; ``vertical``: whether that motion acts. Raises InputError.
         """
         plain = {name: value for name, value in values.items() if "." not in name}
         lanes = int(np.prod(np.broadcast_shapes(*(np.shape(value) for value in values.values()), (size,))))
         chosen = self.resolve_options(options)
-        return applied(self.name, self.assemble(plain, chosen, vertical=vertical, size=lanes), values)
+        found = applied(self.name, self.assemble(plain, chosen, vertical=vertical, size=lanes), values)
+        return self.complete(found, chosen)
 
     def evaluate(
         self,

@@ -7,27 +7,27 @@ which mechanisms its states are all that a run remembers; with others a run cann
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
-from operator import or_
+from operator import itemgetter, or_
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from models.base import Event, FloatArray, History, Values
+from models.base import Event, FloatArray, History, OverParts, Quantity, Values
 from models.errors import InputError
 from models.model import Model, by_lane
 from models.shaking import Shaking
 
-FIRST, LARGEST, LEAST, TOTAL, LAST, BITS = "first", "largest", "least", "total", "last", "bits"
-OVER_PARTS = {
-    "onset_time": FIRST, "overturning_time": FIRST, "peak_": LARGEST, "friction_demand": LARGEST,
-    "overturned": LARGEST, "configurations": BITS, "minimum_contact": LEAST, "uplift_duration": TOTAL,
-    "time_in_": TOTAL, "impacts": TOTAL, "dissipated_energy": TOTAL, "residual_": LAST, "status": LAST,
+JOINED: Mapping[OverParts, Callable[[Sequence[float]], float]] = {
+    "first": itemgetter(0), "largest": max, "least": min, "total": math.fsum,
+    "bits": lambda values: float(reduce(or_, map(int, values))),
 }  # fmt: skip
-"""How an output of a whole run follows from those of its parts, by the start of its name."""
+"""An output of a whole run from those of its parts that have one, by `Quantity.over_parts`; the last is the last's."""
+LEFT_LYING = ("largest", "least", "last")
+"""What goes on as it was where nothing moves any more."""
 
 
 @dataclass(frozen=True)
@@ -83,14 +83,14 @@ def simulate(
     found: list[History] = []
     for one, end in zip(parts, ends, strict=True):
         if found and _lies(found[-1]):
-            found.append(_lying(found[-1], end - one.first))
+            found.append(_lying(model, found[-1], end - one.first))
             continue
         history, state = model.simulate_from(
             one.values, begun_at(shaking, one.first), initial=state, samples=end - one.first, scale=scale,
             options=options, integrator=integrator,
         )  # fmt: skip
         found.append(history)
-    return found[0] if len(found) == 1 else _joined(found, [one.first for one in parts], step)
+    return found[0] if len(found) == 1 else _joined(model, found, [one.first for one in parts], step)
 
 
 def begun_at(shaking: Shaking, first: int) -> Shaking:
@@ -110,14 +110,14 @@ def _lies(part: History) -> bool:
     return bool(part.outputs.get("overturned")) and still
 
 
-def _lying(before: History, samples: int) -> History:
+def _lying(model: Model[Any], before: History, samples: int) -> History:
     """What has overturned stays where it lies."""
     channels = {name: np.repeat(x[..., -1:], samples + 1, axis=-1) for name, x in before.channels.items()}
-    nothing = {name: value for name, value in before.outputs.items() if _rule(name) in (LARGEST, LEAST, LAST)}
-    return History(before.time[: samples + 1], channels, (), nothing)
+    kept = {q.name: before.outputs[q.name] for q in model.outputs if q.over_parts in LEFT_LYING}
+    return History(before.time[: samples + 1], channels, (), kept)
 
 
-def _joined(parts: Sequence[History], firsts: Sequence[int], step: float) -> History:
+def _joined(model: Model[Any], parts: Sequence[History], firsts: Sequence[int], step: float) -> History:
     """Parts as one history; the sample between two of them is that of the later one."""
     kept = [slice(None, -1)] * (len(parts) - 1) + [slice(None)]
     channels = {
@@ -131,7 +131,7 @@ def _joined(parts: Sequence[History], firsts: Sequence[int], step: float) -> His
         for event in part.events
         if (event.time > 0.0 or begin == 0.0) and not (begin > 0.0 and _first_uplift(event, part))
     )
-    outputs = {name: _over(name, [p.outputs.get(name, math.nan) for p in parts], begins) for name in parts[0].outputs}
+    outputs = {q.name: _over(q, [p.outputs.get(q.name, math.nan) for p in parts], begins) for q in model.outputs}
     count = next(iter(channels.values())).shape[-1]
     return History(step * np.arange(count, dtype=np.float64), channels, _once(events), outputs)
 
@@ -154,26 +154,17 @@ def _once(events: tuple[Event, ...]) -> tuple[Event, ...]:
     return tuple(found)
 
 
-def _rule(name: str) -> str:
-    return next(rule for start, rule in OVER_PARTS.items() if name.startswith(start))
-
-
-def _over(name: str, values: Sequence[float], begins: Sequence[float]) -> float:
+def _over(output: Quantity, values: Sequence[float], begins: Sequence[float]) -> float:
     """An output of the whole from those of the parts, which begin at ``begins`` (s)."""
-    rule = _rule(name)
-    if rule == FIRST:
-        times = [value + begin for value, begin in zip(values, begins, strict=True) if not math.isnan(value)]
-        return times[0] if times else math.nan
-    if rule == LAST:
+    rule = output.over_parts
+    if rule is None:
+        raise ValueError(f"the output {output.name} does not declare how it follows from those of parts of a run")
+    if rule == "last":
         return values[-1]
+    if rule == "first":
+        values = [value + begin for value, begin in zip(values, begins, strict=True)]
     known = [value for value in values if not math.isnan(value)]
-    if not known:
-        return math.nan
-    if rule == TOTAL:
-        return math.fsum(known)
-    if rule == BITS:
-        return float(reduce(or_, (int(value) for value in known)))
-    return max(known) if rule == LARGEST else min(known)
+    return JOINED[rule](known) if known else math.nan
 
 
 def trajectories(

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from models.base import FloatArray, Parameter, Quantity, Values
+from models.base import FloatArray, OverParts, Parameter, Quantity, Values
 from models.peaks import AT_SAMPLES
 
 PARAMETERS = (
@@ -83,13 +83,13 @@ def bodies(values: Values, size: int | None = None) -> Bodies:
 
 
 def by_body(
-    name: str, symbol: str, unit: str, meaning: str, rule: str, plain: str, kind: str = "float64"
+    name: str, symbol: str, unit: str, meaning: str, rule: str, plain: str, over: OverParts, kind: str = "float64"
 ) -> list[Quantity]:
-    """The plain quantity and one for each body."""
+    """The plain quantity and one for each body; ``over``: `Quantity.over_parts`."""
     return [
-        Quantity(name, symbol, unit, f"{meaning}, {plain}", rule, dtype=kind),
-        Quantity(f"{name}_1", f"{symbol}_1", unit, f"{meaning}, of the wall", rule, dtype=kind),
-        Quantity(f"{name}_2", f"{symbol}_2", unit, f"{meaning}, of the upper block", rule, dtype=kind),
+        Quantity(name, symbol, unit, f"{meaning}, {plain}", rule, kind, over_parts=over),
+        Quantity(f"{name}_1", f"{symbol}_1", unit, f"{meaning}, of the wall", rule, kind, over_parts=over),
+        Quantity(f"{name}_2", f"{symbol}_2", unit, f"{meaning}, of the upper block", rule, kind, over_parts=over),
     ]
 
 
@@ -97,16 +97,16 @@ def peaks_by_body(name: str, symbol: str, unit: str, meaning: str, channel: str)
     """The peaks of ``channel_1`` and ``channel_2``, and the larger of both."""
     each = [f"{channel}_{body}" for body in (1, 2)]
     channels = [tuple(each), *((one,) for one in each)]
-    given = by_body(name, symbol, unit, meaning, AT_SAMPLES, "the larger of both")
+    given = by_body(name, symbol, unit, meaning, AT_SAMPLES, "the larger of both", "largest")
     return [replace(quantity, peak_of=of) for quantity, of in zip(given, channels, strict=True)]
 
 
 def by_joint(
-    name: str, symbol: str, unit: str, meaning: str, rule: str, plain: str, kind: str = "float64"
+    name: str, symbol: str, unit: str, meaning: str, rule: str, plain: str, over: OverParts, kind: str = "float64"
 ) -> list[Quantity]:
-    """The plain quantity and one for each joint."""
+    """The plain quantity and one for each joint; ``over``: `Quantity.over_parts`."""
     return [
-        Quantity(name, symbol, unit, f"{meaning}, {plain}", rule, dtype=kind),
-        Quantity(f"{name}_base", f"{symbol}_b", unit, f"{meaning}, at the base", rule, dtype=kind),
-        Quantity(f"{name}_top", f"{symbol}_t", unit, f"{meaning}, at the top joint", rule, dtype=kind),
+        Quantity(name, symbol, unit, f"{meaning}, {plain}", rule, kind, over_parts=over),
+        Quantity(f"{name}_base", f"{symbol}_b", unit, f"{meaning}, at the base", rule, kind, over_parts=over),
+        Quantity(f"{name}_top", f"{symbol}_t", unit, f"{meaning}, at the top joint", rule, kind, over_parts=over),
     ]

@@ -11,7 +11,6 @@ from benchmarks import opensees
 from benchmarks.independent.table import Row
 from grids.motions import read_motion
 from models.interface import modes
-from models.interface.assembly import build
 from models.interface.lanes import run as lanes
 from models.interface.layered import LayeredWall
 from models.interface.model import MODEL
@@ -36,7 +35,7 @@ STIFFNESS = 1e7
 
 
 def wall(values: dict[str, float], joints: str, vertical: bool) -> LayeredWall:
-    return build(values, {**WORDS, "joints": joints}, vertical)
+    return MODEL.build(values, {**WORDS, "joints": joints}, vertical=vertical)
 
 
 def block() -> LayeredWall:

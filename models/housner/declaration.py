@@ -74,13 +74,16 @@ AT_REST = (
 )
 
 OUTPUTS = (
-    Quantity("peak_rotation", "max |theta|", "rad", "largest absolute rotation", "pi/2 when overturned"),
+    Quantity(
+        "peak_rotation", "max |theta|", "rad", "largest absolute rotation", "pi/2 when overturned", over_parts="largest"
+    ),
     Quantity(
         "peak_rotation_ratio",
         "max |theta| / alpha",
         "1",
         "largest absolute rotation over the slenderness angle",
         "(pi/2)/alpha when overturned",
+        over_parts="largest",
     ),
     Quantity(
         "peak_velocity",
@@ -89,6 +92,7 @@ OUTPUTS = (
         "largest absolute angular velocity",
         AT_SAMPLES,
         peak_of=("rotation_rate_1",),
+        over_parts="largest",
     ),
     Quantity(
         "uplift_duration",
@@ -96,25 +100,37 @@ OUTPUTS = (
         "s",
         "time spent rocking",
         f"up while it rocks; {AT_REST}; counted to overturning",
+        over_parts="total",
     ),
-    Quantity("onset_time", "t_on", "s", "time of the first uplift", "nan when it never rocks"),
-    Quantity("overturned", "", "1", "whether the block overturned", OVERTURNED, dtype="bool"),
-    Quantity("overturning_time", "t_ov", "s", "time of overturning", f"nan when it stands; {OVERTURNED}"),
-    Quantity("impacts", "n", "1", "number of impacts", "every change of pivot counts", dtype="int32"),
+    Quantity("onset_time", "t_on", "s", "time of the first uplift", "nan when it never rocks", over_parts="first"),
+    Quantity("overturned", "", "1", "whether the block overturned", OVERTURNED, "bool", over_parts="largest"),
+    Quantity(
+        "overturning_time", "t_ov", "s", "time of overturning", f"nan when it stands; {OVERTURNED}", over_parts="first"
+    ),
+    Quantity("impacts", "n", "1", "number of impacts", "every change of pivot counts", "int32", over_parts="total"),
     Quantity(
         "residual_rotation",
         "theta_end",
         "rad",
         "rotation at the end of the run",
         "0 at rest; signed pi/2 when overturned",
+        over_parts="last",
     ),
-    Quantity("dissipated_energy", "E_d", "J", "energy lost at impacts and in couples", "counted to overturning"),
+    Quantity(
+        "dissipated_energy",
+        "E_d",
+        "J",
+        "energy lost at impacts and in couples",
+        "counted to overturning",
+        over_parts="total",
+    ),
     Quantity(
         "friction_demand",
         "max |H|/N",
         "1",
         "largest friction demand while rocking",
         "0 when it never rocks; inf when N <= 0, that is when the block would leave the ground; impulses not included",
+        over_parts="largest",
     ),
     Quantity(
         "status",
@@ -123,6 +139,7 @@ OUTPUTS = (
         "what became of the run",
         f"not_converged: more than {MOST_IMPACTS_PER_STEP} impacts within one step",
         dtype="int8",
+        over_parts="last",
     ),
 )
 

@@ -11,16 +11,7 @@ import math
 
 from models.base import MechanismParameter
 from models.identification import Numbers, Rung
-from models.layers import (
-    BASE_DAMPING_RATIO,
-    BASE_STIFFNESS,
-    DAMPING_RATIOS,
-    LAYER_THICKNESS,
-    TOP_DAMPING_RATIO,
-    TOP_STIFFNESS,
-    compliant,
-    stiffness_range,
-)
+from models.layers import BASE, LAYER_THICKNESS, TOP, compliant, layer_ranges
 
 JOINT = MechanismParameter(
     "joint_over_height",
@@ -77,19 +68,21 @@ def joints(block: Numbers) -> dict[str, tuple[float, float]]:
     return {JOINT.name: (LOWEST, 1.0 if above else HIGHEST)}
 
 
+def whole_load(block: Numbers) -> tuple[float, float]:
+    """Mass (kg) of the block with what stands on it, and its length (m)."""
+    whole = cut(block, ANYWHERE)
+    return whole["wall_mass"] + whole["top_mass"], whole["wall_length"]
+
+
 def base_layer(block: Numbers) -> dict[str, tuple[float, float]]:
     """What the layer under the block may be."""
-    whole = cut(block, ANYWHERE)
-    mass = whole["wall_mass"] + whole["top_mass"]
-    stiffness = stiffness_range(mass, whole["wall_length"], block.get("gravity"))
-    return {BASE_STIFFNESS.name: stiffness, BASE_DAMPING_RATIO.name: DAMPING_RATIOS}
+    return layer_ranges(block.get("gravity"), base=whole_load(block))
 
 
 def both_layers(block: Numbers) -> dict[str, tuple[float, float]]:
     """What the layers under the block and at a joint in it may be."""
-    base = base_layer(block)
-    top = {TOP_STIFFNESS.name: base[BASE_STIFFNESS.name], TOP_DAMPING_RATIO.name: DAMPING_RATIOS}
-    return {**base, **top, **joints(block)}
+    load = whole_load(block)
+    return {**layer_ranges(block.get("gravity"), base=load, top=load), **joints(block)}
 
 
 def refusal(block: Numbers) -> str:
@@ -115,7 +108,7 @@ LADDER = (
     ),
     compliant(
         options={"joints": "base"},
-        parameters=(BASE_STIFFNESS, BASE_DAMPING_RATIO),
+        parameters=BASE,
         ranges=base_layer,
         carried_over=on_layers,
         without=("restitution", *LAWS_OF_RESTITUTION),
@@ -125,7 +118,7 @@ LADDER = (
         refusal=refusal,
     ),
     compliant(
-        parameters=(BASE_STIFFNESS, BASE_DAMPING_RATIO, TOP_STIFFNESS, TOP_DAMPING_RATIO, JOINT),
+        parameters=(*BASE, *TOP, JOINT),
         ranges=both_layers,
         carried_over=on_layers,
         without=("restitution", *LAWS_OF_RESTITUTION),

@@ -11,7 +11,6 @@ from models.base import FloatArray, Values
 from models.errors import InputError
 from models.interface import modes
 from models.interface.layered import LayeredWall
-from models.mechanisms import applied
 from models.rubber import LAWS
 from models.walls import bodies, lanes_shape
 
@@ -105,12 +104,8 @@ def _needed(found: FloatArray | None, joint: str, name: str) -> FloatArray:
     return found
 
 
-def build(
-    values: Values, options: Mapping[str, str], vertical: bool, size: int | None = None, model: str = "interface"
-) -> LayeredWall:
-    """The walls with the mechanisms of ``model`` that ``values`` switch on, in the order of the catalogue."""
-    plain = {k: v for k, v in values.items() if "." not in k}
-    wall = applied(model, assemble(plain, options, vertical, int(np.prod(lanes_shape(values, size)))), values)
+def complete(wall: LayeredWall, options: Mapping[str, str]) -> LayeredWall:
+    """The walls with the rubber laws that ``options`` name; raises InputError for what does not go together."""
     for joint in wall.rubber_joints:
         option = f"{joint}_rubber_law"
         word = options["rubber_law"] if options[option] == "same" else options[option]

@@ -86,30 +86,41 @@ CALM = 1e-6
 
 WORST, FIRST = "the larger of both", "the earlier of both"
 OUTPUTS = (
-    *by_body("peak_rotation", "max |theta|", "rad", "largest absolute rotation", "pi/2 when overturned", WORST),
+    *by_body(
+        "peak_rotation", "max |theta|", "rad", "largest absolute rotation", "pi/2 when overturned", WORST, "largest"
+    ),
     *by_body(
         "peak_rotation_ratio", "max |theta| / alpha", "1", "largest absolute rotation over the slenderness angle",
-        "alpha of both as one body for the wall, of the upper block alone for the upper block", WORST,
+        "alpha of both as one body for the wall, of the upper block alone for the upper block", WORST, "largest",
     ),
     *peaks_by_body("peak_velocity", "max |theta'|", "rad s-1", "largest absolute angular velocity", "rotation_rate"),
-    *by_joint("uplift_duration", "t_up", "s", "time for which the joint is up", UP, WORST),
-    *by_joint("onset_time", "t_on", "s", "time of the first uplift", f"nan when it never lifts; {UP}", FIRST),
-    *by_joint("minimum_contact", "min l/2b", "1", "smallest share of the joint in contact", UP, "the smaller of both"),
-    *by_body("overturned", "", "1", "whether it overturned", OVERTURNED, "one of them", "bool"),
-    *by_body("overturning_time", "t_ov", "s", "time of overturning", f"nan when it stands; {OVERTURNED}", FIRST),
-    *by_joint("impacts", "n", "1", "number of closings", "every return to full contact counts", WORST, "int32"),
-    *by_body("residual_rotation", "theta_end", "rad", "rotation at the end", "signed pi/2 when overturned", WORST),
-    *by_joint("dissipated_energy", "E_d", "J", "energy lost in the layer", LOST, "in all"),
+    *by_joint("uplift_duration", "t_up", "s", "time for which the joint is up", UP, WORST, "total"),
+    *by_joint("onset_time", "t_on", "s", "time of the first uplift", f"nan when it never lifts; {UP}", FIRST, "first"),
+    *by_joint(
+        "minimum_contact", "min l/2b", "1", "smallest share of the joint in contact", UP, "the smaller of both", "least"
+    ),
+    *by_body("overturned", "", "1", "whether it overturned", OVERTURNED, "one of them", "largest", "bool"),
+    *by_body(
+        "overturning_time", "t_ov", "s", "time of overturning", f"nan when it stands; {OVERTURNED}", FIRST, "first"
+    ),
+    *by_joint(
+        "impacts", "n", "1", "number of closings", "every return to full contact counts", WORST, "total", "int32"
+    ),
+    *by_body(
+        "residual_rotation", "theta_end", "rad", "rotation at the end", "signed pi/2 when overturned", WORST, "last"
+    ),
+    *by_joint("dissipated_energy", "E_d", "J", "energy lost in the layer", LOST, "in all", "total"),
     *by_joint(
         "peak_strain", "max u/e", "1", "largest compression of the joint's edge over the layer's thickness",
         "(compression + b |sin r|)/e at the steps, of an overturned wall that of the fall; above 1 the layer would be "
-        "compressed beyond its own thickness; nan for a bonded joint", WORST,
+        "compressed beyond its own thickness; nan for a bonded joint", WORST, "largest",
     ),
     *by_joint(
         "friction_demand", "max |H|/N", "1", "largest ratio of the forces along and across the joint",
         "nan for a bonded joint; inf when the joint opens completely: the model holds it laterally all the same", WORST,
+        "largest",
     ),
-    Quantity("status", "", "1", "what became of the run", STATUS_RULE, dtype="int8"),
+    Quantity("status", "", "1", "what became of the run", STATUS_RULE, "int8", over_parts="last"),
 )  # fmt: skip
 
 

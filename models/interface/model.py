@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.base import FloatArray, Values
-from models.errors import InputError
 from models.interface import declaration, modes, standing
-from models.interface.assembly import assemble, build
+from models.interface.assembly import assemble, complete
 from models.interface.effects import BENDS
 from models.interface.effects import STATES as OTHER_STATES
 from models.interface.identification import IDENTIFICATION
@@ -33,7 +32,7 @@ class Interface(Model[LayeredWall]):
 
     name = "interface"
     title = "a wall and a block on top, a rubber layer under each"
-    version = "4"
+    version = "5"
     parameters = declaration.PARAMETERS
     alternatives = declaration.ALTERNATIVES
     options = declaration.OPTIONS
@@ -52,18 +51,8 @@ class Interface(Model[LayeredWall]):
     def assemble(self, values: Values, options: Mapping[str, str], *, vertical: bool, size: int) -> LayeredWall:
         return assemble(values, options, vertical, size)
 
-    def build(
-        self, values: Values, options: Mapping[str, str] | None = None, *, vertical: bool = False, size: int = 1
-    ) -> LayeredWall:
-        """The walls with mechanisms, and with the rubber laws that ``options`` name."""
-        return build(values, self.resolve_options(options), vertical, size, self.name)
-
-    def check(self, values: Values, options: Mapping[str, str] | None = None) -> list[str]:
-        """Layers that lack a number, and walls none of which can stand under their own weight."""
-        try:
-            return self.refused(self.build(values, options))
-        except InputError as error:
-            return [str(error)]
+    def complete(self, coefficients: LayeredWall, options: Mapping[str, str]) -> LayeredWall:
+        return complete(coefficients, options)
 
     def cannot_stand(self, coefficients: LayeredWall) -> list[standing.Unable]:
         return standing.cannot_stand(coefficients)
@@ -91,7 +80,7 @@ class Interface(Model[LayeredWall]):
         self, values: Values, names: Sequence[str], options: Mapping[str, str] | None = None
     ) -> Mapping[str, FloatArray]:
         """The stiffness of the unstressed layers, from their slope under the static load."""
-        return unstressed(values, self.resolve_options(options), names, self.name)
+        return unstressed(self.build(values, options), values, names)
 
     def carry_lanes(
         self, coefficients: LayeredWall, shaking: Shaking, motion: Mapping[str, FloatArray], marks: NDArray[np.int64],

@@ -11,13 +11,12 @@ rest it carries nothing.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from models.base import FloatArray, Values
 from models.interface import modes
-from models.interface.assembly import build
 from models.interface.layered import LayeredWall
 from models.rubber.layer import Layer
 
@@ -34,13 +33,14 @@ ROUNDS, LEAST, FARTHEST = 6, 0.1, 1.5
 """Rounds of the iteration, the least p that is believed, and the largest step of ln k."""
 
 
-def unstressed(values: Values, options: Mapping[str, str], names: Sequence[str], model: str) -> dict[str, FloatArray]:
+def unstressed(wall: LayeredWall, values: Values, names: Sequence[str]) -> dict[str, FloatArray]:
     """The ``names``, given as slopes of n lanes, as the parameters (n,) of the unstressed layers that have them.
+
+    ``wall``: the walls of ``values`` with the slopes for stiffnesses.
 
     Where no stiffness has the slope the one with the nearest of those tried is taken; where a layer cannot carry its
     load at all, they stay as given.
     """
-    wall = build(values, options, False, 1, model)
     joints = [j for j in wall.rubber_joints if _kept(wall, j).laws and any(j in JOINTS[name] for name in names)]
     asked = {joint: _stiffness(wall, joint) for joint in joints}
     power = {joint: np.ones(wall.size) for joint in joints}

@@ -10,7 +10,6 @@ from models.base import FloatArray, Values
 from models.errors import InputError
 from models.isolated.chain import Chain
 from models.isolated.declaration import IN_SHEAR, MOST_LEVELS
-from models.mechanisms import applied
 from models.rubber import LAWS
 
 OF_THE_STRAIN = (*(name for name in IN_SHEAR if LAWS[name].of_strain), "payne")
@@ -36,18 +35,14 @@ def complaints(values: Values) -> list[str]:
     for name in ("storey_stiffness", "storey_damping"):
         if most > 1 and name not in values:
             found.append(f"levels is {most} and {name} is missing: give it, or 1 level for a rigid body")
-    mechanisms = {name.partition(".")[0] for name in values if "." in name}
-    strained = [name for name in OF_THE_STRAIN if name in mechanisms]
-    if strained and "rubber_thickness" not in values:
-        found.append(f"{strained[0]} is a law of the strain and needs rubber_thickness (m): give it")
     return found
 
 
-def build(values: Values, options: Mapping[str, str], size: int | None = None) -> Chain:
-    """The buildings with the mechanisms that ``values`` switch on; raises InputError."""
+def assemble(values: Values, size: int) -> Chain:
+    """The buildings of the parameters alone, without mechanisms; raises InputError."""
     for sentence in complaints(values):
         raise InputError(sentence)
-    shape = (int(np.prod(np.broadcast_shapes(*(np.shape(v) for v in values.values()), (size or 1,)))),)
+    shape = np.broadcast_shapes(*(np.shape(v) for v in values.values()), (size,))
 
     def value(name: str, default: float = np.nan) -> FloatArray:
         return np.broadcast_to(np.asarray(values.get(name, default), dtype=np.float64), shape).copy()
@@ -58,7 +53,7 @@ def build(values: Values, options: Mapping[str, str], size: int | None = None) -
         masses = np.broadcast_to((value("total_mass") / levels)[:, None], there.shape)
     else:
         masses = np.stack([value(f"level_mass_{j}") for j in range(1, MOST_LEVELS + 1)], axis=1)
-    chain = Chain(
+    return Chain(
         levels=levels,
         masses=np.where(there, masses, 0.0),
         storey_stiffness=value("storey_stiffness", 0.0),
@@ -67,7 +62,13 @@ def build(values: Values, options: Mapping[str, str], size: int | None = None) -
         damping=value("bearing_damping"),
         thickness=value("rubber_thickness"),
     )
-    chain = applied("isolated", chain, values)
+
+
+def complete(chain: Chain, options: Mapping[str, str]) -> Chain:
+    """The buildings with the rubber law that ``options`` name; raises InputError."""
+    strained = [name for name in OF_THE_STRAIN if chain.numbers(name)]
+    if strained and np.any(np.isnan(chain.thickness)):
+        raise InputError(f"{strained[0]} is a law of the strain and needs rubber_thickness (m): give it")
     for rubber_law, p in chain.rubber_laws:
         if refused := rubber_law.refusal(p):
             raise InputError(refused)

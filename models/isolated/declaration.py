@@ -60,26 +60,34 @@ CALM = 1e-6
 """At rest: kinetic energy below this share of its peak for one first period, after the shaking."""
 
 OUTPUTS = (
-    Quantity("peak_bearing_displacement", "max |x_1|", "m", "largest absolute displacement of the bearings"),
-    Quantity("peak_level_acceleration", "max |x_j'' + a|", "m s-2", "largest absolute acceleration of any level"),
+    Quantity(
+        "peak_bearing_displacement", "max |x_1|", "m", "largest absolute displacement of the bearings",
+        over_parts="largest",
+    ),
+    Quantity(
+        "peak_level_acceleration", "max |x_j'' + a|", "m s-2", "largest absolute acceleration of any level",
+        over_parts="largest",
+    ),
     Quantity(
         "peak_drift", "max |x_j - x_j-1|", "m", "largest absolute displacement of a level against the one below",
-        "storeys only, without the bearings; 0 for one level",
+        "storeys only, without the bearings; 0 for one level", over_parts="largest",
     ),
     Quantity(
         "peak_velocity", "max |x_1'|", "m s-1", "largest absolute velocity of the bearings", AT_SAMPLES,
-        peak_of=("bearing_velocity",),
+        peak_of=("bearing_velocity",), over_parts="largest",
     ),
-    Quantity("residual_displacement", "x_1,end", "m", "displacement of the bearings at the end of the run"),
+    Quantity(
+        "residual_displacement", "x_1,end", "m", "displacement of the bearings at the end of the run", over_parts="last"
+    ),
     Quantity(
         "dissipated_energy", "E_d", "J", "energy lost in bearings and storeys",
-        "work of the shaking on the masses less what is kinetic or stored at the end",
+        "work of the shaking on the masses less what is kinetic or stored at the end", over_parts="total",
     ),
     Quantity(
         "status", "", "1", "what became of the run",
         "nothing rocks or overturns here: rocking means that it moved; not_converged: the run diverged: a state that "
         "is not a number, a velocity beyond what the shaking's impulse can give, energy that nothing has given",
-        dtype="int8",
+        dtype="int8", over_parts="last",
     ),
 )  # fmt: skip
 

@@ -7,9 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from models.base import FloatArray, Values
-from models.errors import InputError
 from models.isolated import declaration, modes
-from models.isolated.assembly import build, complaints
+from models.isolated.assembly import assemble, complete
 from models.isolated.chain import Chain
 from models.isolated.identification import IDENTIFICATION
 from models.isolated.observe import observe
@@ -39,23 +38,10 @@ class Isolated(Model[Chain]):
     takes_vertical = False
 
     def assemble(self, values: Values, options: Mapping[str, str], *, vertical: bool, size: int) -> Chain:
-        return build(values, options, size)
+        return assemble(values, size)
 
-    def build(
-        self, values: Values, options: Mapping[str, str] | None = None, *, vertical: bool = False, size: int = 1
-    ) -> Chain:
-        """The buildings with mechanisms, and with the rubber law that ``options`` name."""
-        return build(values, self.resolve_options(options), size)
-
-    def check(self, values: Values, options: Mapping[str, str] | None = None) -> list[str]:
-        """What describes no building: levels without a mass, a law without its parameters, and so on."""
-        found = complaints(values)
-        if not found:
-            try:
-                self.build(values, options)
-            except InputError as error:
-                found.append(str(error))
-        return found
+    def complete(self, coefficients: Chain, options: Mapping[str, str]) -> Chain:
+        return complete(coefficients, options)
 
     def derive(self, values: Values, options: Mapping[str, str] | None = None) -> dict[str, FloatArray]:
         """Mass, natural frequencies and modal damping at small strain, arrays ``(n,)``."""

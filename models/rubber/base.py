@@ -9,7 +9,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from typing import Any, Literal, Protocol, Self
 
 import numpy as np
@@ -57,6 +57,11 @@ def accepted(p: Numbers) -> str:
     return ""
 
 
+def unlimited(p: Numbers) -> FloatArray:
+    """Infinite."""
+    return np.full(np.shape(p["thickness"]), np.inf)
+
+
 def resting(p: Numbers, u: FloatArray) -> tuple[NDArray[np.bool_], str]:
     """Nowhere restless."""
     return np.zeros(u.shape, np.bool_), ""
@@ -76,6 +81,7 @@ class RubberLaw:
     ``numbers(p, step)``: what ``update`` wants for steps of ``step`` (s), by the names of its arguments.
     ``update(u, change, h, *numbers)``: h, effect and slope of one fibre at the end of a step over which u has
     grown by ``change`` (``_`` where the law does not look at it) to u; plain floats, without branches.
+    ``limit(p)``: compression (m) that the layer cannot reach; a run that passes it was taken in steps too coarse.
     ``of_strain``: whether the rubber's thickness enters. ``refusal(p)``: what is wrong with the numbers, or "".
     ``restless(p, u)``: where the law never comes to rest at u, and a sentence about the worst such place.
     """
@@ -92,6 +98,7 @@ class RubberLaw:
     turned: Callable[[FloatArray, FloatArray, Numbers], FloatArray] = nothing
     reached: Callable[[FloatArray, FloatArray, Numbers], FloatArray] = unmoved
     hidden: bool = True
+    limit: Callable[[Numbers], FloatArray] = unlimited
     of_strain: bool = False
     refusal: Callable[[Numbers], str] = accepted
     restless: Callable[[Numbers, FloatArray], tuple[NDArray[np.bool_], str]] = resting
@@ -110,7 +117,7 @@ class RubberLaw:
         """The parameters at which the law does nothing, those that only shape it at any value."""
         return {p.name: np.array([p.null]) for p in self.mechanism.parameters}
 
-    @property
+    @cached_property
     def wanted(self) -> tuple[str, ...]:
         """Names of the numbers that ``update`` takes, in its order: the rows of the kernels' tables."""
         return tuple(inspect.signature(self.update).parameters)[3:]

@@ -47,6 +47,8 @@ def variant_for(laws: Given) -> tuple[int, ...]:
 def number_table(laws: Given, step: FloatArray) -> FloatArray:
     """The numbers (n, `N_NUMBERS`) of n layers for steps of ``step`` (n,) seconds; absent laws at their null."""
     table = np.zeros((step.size, N_NUMBERS))
+    if not laws:
+        return table  # of which the variant without laws reads nothing
     one = {"stiffness": np.ones(1), "thickness": np.ones(1)}
     given = {law.name: p for law, p in laws}
     for law in ORDER:
@@ -252,10 +254,13 @@ def looks_back(laws: Sequence[RubberLaw]) -> bool:
 
 
 def chosen(variants: Sequence[Callable[..., None]]) -> Callable[..., None]:
-    """A function ``(t, which)`` for kernels: of ``variants``, compiled ``(t, which)``, the one `variant_for` names."""
+    """A function ``(t, which)`` for kernels: of ``variants``, compiled ``(t, which)``, the one `variant_for` names.
+
+    Which one is known when the kernel that calls it is compiled, and only that one is.
+    """
 
     def run(t: Table, which: Any) -> None:
-        raise NotImplementedError("only compiled code calls this")
+        variants[len(which)](t, which)
 
     def variant(t: Any, which: Any) -> Callable[..., None]:
         one = variants[len(which)]

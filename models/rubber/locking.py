@@ -14,9 +14,14 @@ from models.rubber.base import Numbers, RubberLaw, rubber_mechanism
 TANGENT_FROM = 0.99
 
 
+def limit(p: Numbers) -> FloatArray:
+    """L."""
+    return np.asarray(p["lock_strain"] * p["thickness"])
+
+
 def _scaled(u: FloatArray, p: Numbers) -> tuple[FloatArray, FloatArray, FloatArray]:
     """L, |u|/L, and the same up to `TANGENT_FROM`."""
-    length = p["lock_strain"] * p["thickness"]
+    length = limit(p)
     x = np.abs(u) / length
     return length, np.asarray(x), np.minimum(x, TANGENT_FROM)
 
@@ -72,5 +77,6 @@ LAW = RubberLaw(
         sentence="the rubber locks at a strain of {lock_strain:.2f}",
         source="form of this project: models/rubber/locking.py",
     ),
-    "adds", effect, numbers, update, slope, energy, hidden=False, of_strain=True,
+    "adds", effect, numbers, update, slope, energy, hidden=False, limit=limit,
+    of_strain=True,
 )  # fmt: skip

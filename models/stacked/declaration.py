@@ -42,48 +42,56 @@ AT_REST = (
 MOST_EVENTS_PER_STEP = 200
 WORST = "the larger of both"
 OUTPUTS = (
-    *by_body("peak_rotation", "max |theta|", "rad", "largest absolute rotation", "pi/2 when overturned", WORST),
+    *by_body(
+        "peak_rotation", "max |theta|", "rad", "largest absolute rotation", "pi/2 when overturned", WORST, "largest"
+    ),
     *by_body(
         "peak_rotation_ratio", "max |theta| / alpha", "1", "largest absolute rotation over the slenderness angle",
-        "alpha of both as one body for the wall, of the upper block alone for the upper block", WORST,
+        "alpha of both as one body for the wall, of the upper block alone for the upper block", WORST, "largest",
     ),
     *peaks_by_body("peak_velocity", "max |theta'|", "rad s-1", "largest absolute angular velocity", "rotation_rate"),
     *by_joint(
-        "uplift_duration", "t_up", "s", "time for which the joint is up", f"{AT_REST}; counted to overturning", WORST
+        "uplift_duration", "t_up", "s", "time for which the joint is up", f"{AT_REST}; counted to overturning", WORST,
+        "total",
     ),
-    *by_joint("onset_time", "t_on", "s", "time of the first uplift", "nan when it never rocks", "the earlier of both"),
-    *by_body("overturned", "", "1", "whether it overturned", OVERTURNED, "one of them", "bool"),
+    *by_joint(
+        "onset_time", "t_on", "s", "time of the first uplift", "nan when it never rocks", "the earlier of both", "first"
+    ),
+    *by_body("overturned", "", "1", "whether it overturned", OVERTURNED, "one of them", "largest", "bool"),
     *by_body(
         "overturning_time", "t_ov", "s", "time of overturning", f"nan when it stands; {OVERTURNED}",
-        "the earlier of both",
+        "the earlier of both", "first",
     ),
-    *by_joint("impacts", "n", "1", "number of impacts", "every closing of the joint counts", WORST, "int32"),
+    *by_joint("impacts", "n", "1", "number of impacts", "every closing of the joint counts", WORST, "total", "int32"),
     *by_body(
-        "residual_rotation", "theta_end", "rad", "rotation at the end of the run", "signed pi/2 when overturned", WORST
+        "residual_rotation", "theta_end", "rad", "rotation at the end of the run", "signed pi/2 when overturned", WORST,
+        "last",
     ),
     *by_joint(
         "dissipated_energy", "E_d", "J", "energy lost",
-        "at impacts, and at the base in couples; counted to overturning", "in all",
+        "at impacts, and at the base in couples; counted to overturning", "in all", "total",
     ),
     *by_joint(
         "friction_demand", "max |H|/N", "1", "largest friction demand while the stack rocks",
-        "0 when it never rocks; inf when N <= 0; impulses not included", WORST,
+        "0 when it never rocks; inf when N <= 0; impulses not included", WORST, "largest",
     ),
     Quantity(
         "configurations", "", "1", "configurations visited, as a bit mask",
-        "bits " + ", ".join(f"{1 << k}: {name}" for k, name in enumerate(NAMES)), dtype="int16",
+        "bits " + ", ".join(f"{1 << k}: {name}" for k, name in enumerate(NAMES)), "int16",
+        over_parts="bits",
     ),
     *(
         Quantity(
             f"time_in_{name}", "t", "s", f"time in {name.replace('_', ' ')}",
             "patterns: 1 both rock to one side, 2 to opposite sides, 3 as one body, 4 only the upper block; right or "
-            "left: the corner of the lowest joint that is up; counted to overturning",
+            "left: the corner of the lowest joint that is up; counted to overturning", over_parts="total",
         )
         for name in NAMES
     ),
     Quantity(
         "status", "", "1", "what became of the run",
-        f"not_converged: more than {MOST_EVENTS_PER_STEP} events within one step", dtype="int8",
+        f"not_converged: more than {MOST_EVENTS_PER_STEP} events within one step", "int8",
+        over_parts="last",
     ),
 )  # fmt: skip
 

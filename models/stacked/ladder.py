@@ -3,30 +3,16 @@
 from __future__ import annotations
 
 from models.identification import Numbers
-from models.layers import (
-    BASE_DAMPING_RATIO,
-    BASE_STIFFNESS,
-    DAMPING_RATIOS,
-    LAYER_THICKNESS,
-    TOP_DAMPING_RATIO,
-    TOP_STIFFNESS,
-    compliant,
-    stiffness_range,
-)
+from models.layers import BASE, LAYER_THICKNESS, TOP, compliant, layer_ranges
 from models.walls import bodies
 
 
 def ranges(wall: Numbers) -> dict[str, tuple[float, float]]:
     """What both layers may be."""
     two = bodies(wall)
-    upper, gravity = float(two.mass_2[0]), float(two.gravity[0])
-    whole = upper + float(two.mass_1[0])
-    return {
-        BASE_STIFFNESS.name: stiffness_range(whole, 2.0 * float(two.half_length_1[0]), gravity),
-        BASE_DAMPING_RATIO.name: DAMPING_RATIOS,
-        TOP_STIFFNESS.name: stiffness_range(upper, 2.0 * float(two.half_joint[0]), gravity),
-        TOP_DAMPING_RATIO.name: DAMPING_RATIOS,
-    }
+    upper = float(two.mass_2[0])
+    base = upper + float(two.mass_1[0]), 2.0 * float(two.half_length_1[0])
+    return layer_ranges(float(two.gravity[0]), base=base, top=(upper, 2.0 * float(two.half_joint[0])))
 
 
 def on_layers(wall: Numbers, own: Numbers) -> dict[str, float]:
@@ -38,7 +24,7 @@ def on_layers(wall: Numbers, own: Numbers) -> dict[str, float]:
 GIVEN_RATIOS = ("base_restitution", "top_restitution")
 LADDER = (
     compliant(
-        parameters=(BASE_STIFFNESS, BASE_DAMPING_RATIO, TOP_STIFFNESS, TOP_DAMPING_RATIO),
+        parameters=(*BASE, *TOP),
         ranges=ranges,
         carried_over=on_layers,
         without=GIVEN_RATIOS,

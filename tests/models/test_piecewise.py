@@ -7,7 +7,7 @@ import pytest
 
 import models
 from models.errors import InputError
-from models.piecewise import OVER_PARTS, Part, simulate, trajectories
+from models.piecewise import Part, simulate, trajectories
 from models.shaking import Shaking
 
 STEP = 0.005
@@ -100,10 +100,8 @@ def test_what_remembers_more_than_its_states_is_refused() -> None:
 
 
 @pytest.mark.parametrize("name", models.MODELS)
-def test_every_output_of_a_model_has_a_rule_over_parts(name: str) -> None:
+def test_every_output_of_a_model_declares_what_it_is_of_a_run_in_parts(name: str) -> None:
     model = models.get(name)
-    if model.resumes_with is None:
-        return
-    assert set(model.resumes_with) <= set(model.mechanisms)
-    for quantity in model.outputs:
-        assert any(quantity.name.startswith(start) for start in OVER_PARTS), quantity.name
+    assert set(model.resumes_with or ()) <= set(model.mechanisms)
+    assert not [quantity.name for quantity in model.outputs if quantity.over_parts is None]
+    assert all(quantity.over_parts == "largest" for quantity in model.outputs if quantity.peak_of)

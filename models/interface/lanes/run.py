@@ -16,7 +16,7 @@ from models.interface.lanes.advance import advance
 from models.interface.lanes.effects.given import energy, given_effects
 from models.interface.lanes.effects.rows import CONSTANTS
 from models.interface.lanes.laws import given_laws, stored_in_layers
-from models.interface.lanes.sense import diverged
+from models.interface.lanes.sense import diverged, pressed
 from models.interface.layered import LayeredWall
 from models.interface.observe import with_onset
 from models.lanes.arrays import Tables
@@ -29,6 +29,7 @@ from models.shaking import Shaking
 EVENTS = ("uplift", "closing", "rest", "overturned")
 LARGEST_PHASE = (0.1, 0.4)
 """Largest omega h of a step (rad) of the second mode of the rotations and of the slowest vertical one."""
+FINER = 4
 
 
 def substeps(wall: LayeredWall, squares: FloatArray, time_step: float) -> NDArray[np.int64]:
@@ -66,8 +67,22 @@ def given_table(
 def run(wall: LayeredWall, request: Request, refinement: int = 1) -> Run:
     """Run n lanes of ``wall`` as requested; ``refinement`` divides every step. Samples: q, q'.
 
-    Of walls with effects q, q' of the plain coordinates, then those of the others.
+    Of walls with effects q, q' of the plain coordinates, then those of the others. Lanes whose rubber was pressed
+    beyond its limit are taken again, in steps `FINER` times as fine.
     """
+    found, steps = _pitched(wall, request, refinement)
+    if (again := np.flatnonzero(pressed(wall, found.result))).size:
+        finer, more = _pitched(wall.take(again), request.take(again), FINER * refinement)
+        put(found, again, finer)
+        steps += more
+    result = found.result
+    lost = diverged(wall, request, result)
+    result[:, r.R_FAILED] = np.maximum(result[:, r.R_FAILED], lost)
+    return Run(outputs(wall, result), found.trace, with_onset(logged(found, EVENTS)), steps)
+
+
+def _pitched(wall: LayeredWall, request: Request, refinement: int) -> tuple[Tables, int]:
+    """Tables of all lanes, those of one low pass of the base's pitch together, and the lane-steps."""
     columns = 8 if wall.effects is None else 16
     found, steps = empty(request, r.N_RESULT, columns), 0
     for (corner,), lanes in groups(low_passes(wall)):
@@ -75,10 +90,7 @@ def run(wall: LayeredWall, request: Request, refinement: int = 1) -> Run:
         tables = empty(asked, r.N_RESULT, columns)
         steps += _advanced(part, asked, refinement, corner, tables)
         put(found, lanes, tables)
-    result = found.result
-    lost = diverged(wall, request, result)
-    result[:, r.R_FAILED] = np.maximum(result[:, r.R_FAILED], lost)
-    return Run(outputs(wall, result), found.trace, with_onset(logged(found, EVENTS)), steps)
+    return found, steps
 
 
 def low_passes(wall: LayeredWall) -> FloatArray:

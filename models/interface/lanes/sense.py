@@ -1,4 +1,4 @@
-"""Runs whose numbers have no sense."""
+"""Runs whose numbers have no sense, or were taken in steps too coarse for the rubber."""
 
 from __future__ import annotations
 
@@ -13,6 +13,8 @@ from models.runs import Request
 
 SIZES = 10.0
 """Of the wall, by which no layer opens or is compressed."""
+BEYOND = 1.15
+"""Times the compression that a layer cannot reach."""
 
 
 def diverged(wall: LayeredWall, request: Request, table: FloatArray) -> NDArray[np.bool_]:
@@ -29,3 +31,16 @@ def diverged(wall: LayeredWall, request: Request, table: FloatArray) -> NDArray[
     over = ~np.isnan(table[:, [r.R_OVER_1, r.R_OVER_2]]).all(axis=1)
     sound = over | (table[:, [r.R_LOST_B, r.R_LOST_T]].sum(axis=1) >= -CREATED * reach)
     return np.asarray(~(np.all(np.abs(places) <= size[:, None], axis=1) & sound))
+
+
+def pressed(wall: LayeredWall, table: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Lanes (n,) of which an edge was compressed by more than `BEYOND` what a law of its layer can be.
+
+    Rubber that locks stiffens so steeply that a step sized for the wall at rest may throw it into the lock, from where
+    it comes back with energy that nothing has given. With steps fine enough edges pass the limit by a tenth at most.
+    """
+    found = np.zeros(wall.size, np.bool_)
+    for joint, column in (("base", r.R_EDGE_B), ("top", r.R_EDGE_T)):
+        for law, p in wall.laws_at(joint) if joint in wall.rubber_joints else ():
+            found |= table[:, column] > BEYOND * law.limit(p)
+    return found

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from models.interface.declaration import CALM
 from models.interface.lanes import rows as kept
@@ -15,11 +14,11 @@ from models.interface_linear.lanes.gather import gather, look, stored
 from models.interface_linear.lanes.locate import first_crossing, may_cross
 from models.interface_linear.lanes.propagate import COLUMNS, ORDER, along, build, read, series, step
 from models.interface_linear.lanes.switch import successor
+from models.interface_linear.lanes.work import Work
 from models.lanes.arrays import Counts, Record, Table, Tables
 from models.lanes.compiler import called, compiled, inlined
 from models.lanes.events import note
 
-Flags = NDArray[np.bool_]
 HALF_TURN = 0.5 * math.pi
 NEVER = 1e300
 ROUNDING = 1e-20
@@ -30,19 +29,17 @@ GOES_ON, FALLEN, LOST = range(3)
 
 
 @called
-def enter(system: Table, table: Table, built: Flags, c: int, levels: int, unit: float, now: Table, then: Table) -> None:
+def enter(system: Table, work: Work, c: int, levels: int, unit: float) -> None:
     """Have the propagators of a configuration at hand."""
-    if not built[c]:
-        build(table, system, c, levels, unit, now, then)
-        built[c] = True
+    if not work.built[c]:
+        build(work.propagators, system, c, levels, unit, work.powers, work.sums)
+        work.built[c] = True
 
 
 @called
-def switch(
-    given: Table, lane: int, system: Table, place: Counts, event: int, x: Table, gathered: Table, time: float,
-    log: Table, count: Counts,
-) -> None:  # fmt: skip
+def switch(given: Table, lane: int, system: Table, work: Work, tables: Tables, event: int, time: float) -> None:
     """The joint of watched value ``event`` changes its state: energies, uplift, closing."""
+    place, x, gathered, log, count = work.place, work.x, work.gathered, tables.log, tables.length
     joint = event // 2
     old = place[0]
     was = old // STATES if joint == 0 else old % STATES
@@ -60,16 +57,14 @@ def switch(
 
 @inlined
 def cross(
-    given: Table, lane: int, system: Table, table: Table, built: Flags, time: float, levels: int, unit: float,
-    place: Counts, gathered: Table, x: Table, to: Table, before: Table, after: Table, motion: Table, watched: Table,
-    now: Table, then: Table, log: Table, count: Counts,
-) -> int:  # fmt: skip
-    """One of the equal steps into which a sample of the record is divided, switches included.
+    given: Table, lane: int, system: Table, work: Work, tables: Tables, time: float, levels: int, unit: float
+) -> int:
+    """One of the equal steps into which a sample of the record is divided, from ``time`` (s) on, switches included.
 
-    A step in which a watched value may become positive is taken as two halves, down to the smallest, where
-    the Taylor series tells when. ``place``: the configuration, the level of the next step (0: the whole),
-    switches since the sample.
+    A step in which a watched value may become positive is taken as two halves, down to the smallest, ``unit`` (s),
+    where the Taylor series tells when.
     """
+    place, gathered, x, to, before, after = work.place, work.gathered, work.x, work.to, work.before, work.after
     whole = 1 << levels
     position, within = 0, 0.0
     while position < whole:
@@ -81,7 +76,7 @@ def cross(
                 level += 1
             units = 1 << (levels - level)
             length = unit * units
-            step(table, c, level, x, length, to)
+            step(work.propagators, c, level, x, length, to)
             read(system, c, to, after)
             if may_cross(before, after, length):
                 if level < levels:
@@ -93,10 +88,10 @@ def cross(
         else:
             units = 0
         if units == 0:
-            series(system, c, x, unit, motion, watched)
-            share, event = first_crossing(watched, 1.0 - within)
+            series(system, c, x, unit, work.motion, work.watched)
+            share, event = first_crossing(work.watched, 1.0 - within)
             length = share * unit
-            along(motion, share, x, length, to)
+            along(work.motion, share, x, length, to)
             read(system, c, to, after)
             within += share
             units = 1 if event < 0 or within >= 1.0 else 0
@@ -115,8 +110,8 @@ def cross(
             gathered[r.WINDOW] = time + position * unit + length * (HALF_TURN - old) / (abs(x[body]) - old)
             return FALLEN
         if event >= 0:
-            switch(given, lane, system, place, event, x, gathered, time + (position + within) * unit, log, count)
-            enter(system, table, built, place[0], levels, unit, now, then)
+            switch(given, lane, system, work, tables, event, time + (position + within) * unit)
+            enter(system, work, place[0], levels, unit)
             read(system, place[0], x, before)
             look(gathered, given, lane, place[0], x, before)
             place[1] = levels
@@ -183,19 +178,20 @@ def advance(
     """
     samples, time_step, shaken = record.samples, record.step, record.shaken
     result, trace, log, count = tables.result, tables.trace, tables.log, tables.length
-    table = np.zeros((STATES * STATES, most_levels + 1, COLUMNS, 8))
-    built, gathered, place = np.zeros(STATES * STATES, np.bool_), np.zeros(r.N_GATHERED), np.zeros(4, np.int64)
-    x, to = np.zeros(r.N_STATE), np.zeros(r.N_STATE)
-    before, after = np.zeros(r.N_READING), np.zeros(r.N_READING)
-    motion, watched = np.zeros((ORDER + 1, 8)), np.zeros((4, ORDER + 1))
-    powers, sums = np.zeros((COLUMNS, 8)), np.zeros((COLUMNS, 8))
+    work = Work(
+        np.zeros(4, np.int64), np.zeros(r.N_STATE), np.zeros(r.N_STATE), np.zeros(r.N_READING), np.zeros(r.N_READING),
+        np.zeros(r.N_GATHERED), np.zeros((STATES * STATES, most_levels + 1, COLUMNS, 8)),
+        np.zeros(STATES * STATES, np.bool_), np.zeros((ORDER + 1, 8)), np.zeros((4, ORDER + 1)),
+        np.zeros((COLUMNS, 8)), np.zeros((COLUMNS, 8)),
+    )  # fmt: skip
+    place, x, gathered = work.place, work.x, work.gathered
     steps = 0
     for lane in range(given.shape[0]):
         system = systems[lane]
         per, levels = int(given[lane, r.STEPS]), int(given[lane, r.LEVELS])
         length = time_step / per
         unit = length / (1 << levels)
-        built[:], gathered[:] = False, 0.0
+        work.built[:], gathered[:] = False, 0.0
         gathered[r.ONSET_B : r.ONSET_T + 1], gathered[r.SHARE_B : r.SHARE_T + 1] = NEVER, 1.0
         gathered[r.ACROSS_B : r.ACROSS_T + 1] = 1.0
         for row in range(8):
@@ -203,7 +199,7 @@ def advance(
         gathered[r.PEAK_1], gathered[r.PEAK_2] = abs(x[0]), abs(x[1])
         base, top = first_state(given, lane, 0, x), first_state(given, lane, 1, x)
         place[0], place[1], place[3] = STATES * base + top, levels, 0
-        enter(system, table, built, place[0], levels, unit, powers, sums)
+        enter(system, work, place[0], levels, unit)
         i, window, how = first[lane], -1, GOES_ON
         noise = (
             ROUNDING * (given[lane, r.M1] + given[lane, r.M2]) * given[lane, r.GRAVITY] * given[lane, r.COMPRESSION_B]
@@ -222,9 +218,9 @@ def advance(
             else:
                 # beyond the record's last sample the base is at rest: it may jump there
                 x[r.A], x[r.G] = given[lane, r.OFFSET], given[lane, r.GRAVITY]
-            read(system, place[0], x, before)
+            read(system, place[0], x, work.before)
             if i == first[lane]:
-                look(gathered, given, lane, place[0], x, before)
+                look(gathered, given, lane, place[0], x, work.before)
             if sampled and i - first[lane] < trace.shape[1]:
                 for k in range(8):
                     trace[lane, i - first[lane], k] = x[k]
@@ -240,10 +236,7 @@ def advance(
             place[2] = 0
             for part in range(per):
                 now = i * time_step + part * length
-                how = cross(
-                    given, lane, system, table, built, now, levels, unit, place, gathered, x, to, before, after, motion,
-                    watched, powers, sums, log, count,
-                )  # fmt: skip
+                how = cross(given, lane, system, work, tables, now, levels, unit)
                 steps += 1
                 if how != GOES_ON:
                     break

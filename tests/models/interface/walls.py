@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 import models
-from models.interface.assembly import build
 from models.interface.layered import LayeredWall
 
 MODEL = models.get("interface")
@@ -29,7 +28,7 @@ LONG = {**SHORT, "wall_length": 2.0, "damping_ratio": 0.0167}
 
 def wall(values: dict[str, Any], **options: str) -> LayeredWall:
     """Coefficients of one wall."""
-    return build(values, MODEL.resolve_options(options), False)
+    return MODEL.build(values, options)
 
 
 def undamped(values: dict[str, Any]) -> dict[str, Any]:

@@ -9,7 +9,6 @@ from scipy.linalg import expm
 
 import models
 from models.base import FloatArray
-from models.interface.assembly import build
 from models.interface.layered import LayeredWall
 from models.interface_linear import equation
 
@@ -18,7 +17,7 @@ MODEL: Any = models.get("interface_linear")
 
 def wall(values: dict[str, Any], joints: str = "both") -> LayeredWall:
     """Coefficients of one wall."""
-    return build(values, MODEL.resolve_options({"joints": joints}), False, model="interface_linear")
+    return MODEL.build(values, {"joints": joints})
 
 
 def by_exponential(

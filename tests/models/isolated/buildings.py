@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 import models
-from models.isolated.assembly import build
 from models.isolated.chain import Chain
 from models.shaking import Shaking
 
@@ -35,8 +34,8 @@ NULLS = {
 }
 
 
-def chain(values: dict[str, Any], size: int | None = None) -> Chain:
-    return build(values, {"rubber_law": "as_given"}, size)
+def chain(values: dict[str, Any], size: int = 1) -> Chain:
+    return MODEL.build(values, size=size)
 
 
 def two_tones(duration: float = 3.0, step: float = 0.01) -> Shaking:
