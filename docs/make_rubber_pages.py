@@ -11,7 +11,6 @@ Writes ``docs/_static/rubber_*.png`` and ``docs/tables/rubber_*.md``.
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable
 from functools import partial
 from pathlib import Path
 
@@ -19,8 +18,22 @@ import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from rubber_locking import rubber_locking
+from rubber_tables import (
+    FIGURES,
+    HEAVY,
+    MODERATE,
+    SHAPE,
+    SHORT,
+    STUDIES,
+    found_onset,
+    predicted_onset,
+    spectrum_numbers,
+    standing_again,
+    table,
+    write,
+)
 
-from grids.motions.spectrum import response_spectrum
 from grids.plan import read_plan
 from models import get
 from study.figures import plot_onset_map, plot_overturning_map, plot_slices, save_figure
@@ -29,13 +42,6 @@ from study.open import open_study
 from study.status import OVERTURNED, ROCKING
 from study.wording import GRAVITY
 
-HERE = Path(__file__).parent
-FIGURES, TABLES, STUDIES = HERE / "_static", HERE / "tables", HERE.parent / "studies"
-HEAVY = {"top_mass": 5000.0, "damping_ratio": 0.0544}
-"""The paper's mass and the damping ratio of its short wall."""
-SHORT = {**HEAVY, "aspect_ratio": 0.4}
-MODERATE = {"pga": 0.31 * GRAVITY}
-SHAPE = ("aspect_ratio", "top_mass", "layer_modulus", "damping_ratio")
 WORDS = {
     "linear": "linear",
     "hardening": "hardening",
@@ -43,46 +49,6 @@ WORDS = {
     "bouc_wen": "Bouc-Wen",
     "mullins": "Mullins",
 }
-
-
-def table(head: Iterable[str], rows: Iterable[Iterable[object]]) -> str:
-    lines = [list(head), *([str(cell) for cell in row] for row in rows)]
-    lines.insert(1, ["---"] * len(lines[0]))
-    return "\n".join(f"| {' | '.join(line)} |" for line in lines) + "\n"
-
-
-def write(name: str, text: str) -> None:
-    TABLES.mkdir(exist_ok=True)
-    (TABLES / f"{name}.md").write_text(text)
-
-
-def predicted_onset(cube: xr.Dataset) -> xr.DataArray:
-    """PGA at which the first mode of the record's spectrum reaches the moment that lifts the base, W b/3.
-
-    S_a(f_1, xi) = g b/(3 h_c), h_c the height of the mass centre of wall and top mass.
-    """
-    plan = read_plan(STUDIES / "rubber_interface.toml")
-    (motion,), fixed = plan.motions, plan.fixed
-    height, top = fixed["wall_height"], cube["top_mass"]
-    length = cube["aspect_ratio"] * height
-    wall = fixed["wall_density"] * fixed["wall_thickness"] * length * height
-    centre = (wall * height / 2 + top * (height + fixed["layer_thickness"] + fixed["top_height"] / 2)) / (wall + top)
-    periods = np.geomspace(0.02, 3.0, 150)
-    shares = []
-    for xi in cube["damping_ratio"].values:
-        spectrum = response_spectrum(motion.horizontal, motion.time_step, periods, float(xi))
-        shares.append(
-            xr.apply_ufunc(partial(np.interp, xp=periods, fp=spectrum.pseudo_acceleration), 1 / cube["frequency_1"])
-        )
-    response = xr.concat(shares, "damping_ratio").assign_coords(damping_ratio=cube["damping_ratio"])
-    return GRAVITY * length / 2 / (3 * centre) / (response / motion.pga)
-
-
-def found_onset(cube: xr.Dataset) -> xr.DataArray:
-    """Smallest PGA of the grid that lifts a joint; nan where it is the grid's first (the true one may lie below)."""
-    lifts = cube["status"].isin((ROCKING, OVERTURNED))
-    first = lifts.argmax("pga")
-    return cube["pga"].isel(pga=first).where(lifts.any("pga") & (first > 0)).drop_vars("pga")
 
 
 def plot_prediction(found: xr.DataArray, predicted: xr.DataArray) -> Axes:
@@ -166,11 +132,6 @@ def rubber_interface(cube: xr.Dataset) -> None:
             [["overturns", *(f"{v:.1f} %" for v in by_mass)]],
         )
     )
-    ratio = (found / predicted).values
-    ratio = ratio[np.isfinite(ratio)]
-    both = np.isfinite(found.values)
-    correlation = np.corrcoef(np.log(found.values[both]), np.log(predicted.values[both]))[0, 1]
-    low, middle, high = np.quantile(ratio, [0.05, 0.5, 0.95])
     spectrum = table(
         [
             "walls that lift above the lowest PGA",
@@ -179,13 +140,11 @@ def rubber_interface(cube: xr.Dataset) -> None:
             "median",
             "95 %",
         ],
-        [[int(both.sum()), f"{correlation:.3f}", f"{low:.2f}", f"{middle:.2f}", f"{high:.2f}"]],
+        [spectrum_numbers(cube)],
     )
-    above = (over.cumsum("pga") > 0) & ~over
-    again = int((above.any("pga")).sum())
     islands = table(
         ["walls that overturn at some PGA", "of these: stand again at a higher PGA of the grid"],
-        [[int(over.any("pga").sum()), again]],
+        [standing_again(cube)],
     )
     for name, text in (
         ("counts", counts), ("lifts", lifts), ("peaks", peaks), ("shares", shares), ("spectrum", spectrum),
@@ -251,77 +210,10 @@ def rubber_laws(cube: xr.Dataset) -> None:
     )
 
 
-def overturned_share(cube: xr.Dataset, aspect: float) -> xr.DataArray:
-    """Share of the cells at one aspect ratio that overturn, over the layer modulus, in per cent."""
-    over = (cube["status"] == OVERTURNED).sel(aspect_ratio=aspect, method="nearest")
-    return 100 * over.mean([d for d in over.dims if d != "layer_modulus"])
-
-
-def plot_overturned_shares(cubes: dict[str, xr.Dataset]) -> Axes:
-    ax = plt.figure(figsize=(6.4, 4.0), layout="constrained").add_subplot()
-    for k, (name, cube) in enumerate(cubes.items()):
-        for aspect, style in ((0.4, "-"), (0.5, "--")):
-            share = overturned_share(cube, aspect)
-            label = f"{name} layers, aspect ratio {aspect}"
-            ax.plot(share["layer_modulus"] / 1e6, share, "os"[k] + style, color=COLOURS[k], label=label)
-    ax.set_xscale("log")
-    set_log_ticks(ax.xaxis)
-    ax.set_ylim(0.0)
-    ax.set_xlabel("unstressed layer modulus [MPa]")
-    ax.set_ylabel("cells that overturn [%]")
-    ax.legend(frameon=False)
-    ax.grid(alpha=0.3)
-    return ax
-
-
-def rubber_locking(linear: xr.Dataset, locking: xr.Dataset) -> None:
-    """The same study on linear and on locking layers."""
-    cubes = {"linear": linear, "locking": locking}
-    save_figure(partial(plot_overturned_shares, cubes), FIGURES / "rubber_locking.png")
-    fixed, aspect = read_plan(STUDIES / "rubber_locking.toml").fixed, {"aspect_ratio": 0.4}
-    moduli = linear["layer_modulus"].values
-    some = slice(None, None, 2)
-    wall = {**fixed, **aspect, **HEAVY, "layer_modulus": moduli}
-    lock = fixed["locking.lock_strain"]
-    rest = {}
-    for name in cubes:
-        own = {key: value for key, value in wall.items() if name == "locking" or "." not in key}
-        rest[name] = get("interface").derive(own)["static_compression_base"] / fixed["layer_thickness"]
-    tangent = moduli / (1.0 - rest["locking"] / lock) ** 2
-    rows: list[list[str]] = [
-        *([f"strain at rest, {name}", *(f"{v:.2f}" for v in rest[name][some])] for name in cubes),
-        ["tangent modulus at rest, locking [MPa]", *(f"{v / 1e6:.2f}" for v in tangent[some])],
-    ]
-    for name, cube in cubes.items():
-        onset = cube.rocking.onset_map(x="layer_modulus", y="aspect_ratio", **HEAVY)
-        lifts = onset.sel(aspect_ratio=0.4, method="nearest").values / GRAVITY
-        rows.append([f"PGA that lifts a joint, {name} [g]", *(f"{v:.2f}" for v in lifts[some])])
-    for ratio in (0.4, 0.5):
-        for name, cube in cubes.items():
-            shares = overturned_share(cube, ratio).values
-            rows.append([f"overturns, aspect ratio {ratio}, {name}", *(f"{v:.1f} %" for v in shares[some])])
-    both = xr.align(*(cube["peak_rotation"].where(cube["status"] == ROCKING) for cube in cubes.values()))
-    ratios = (both[1] / both[0]).transpose("layer_modulus", ...).values.reshape(moduli.size, -1)
-    low, middle, high = np.nanquantile(ratios, [0.1, 0.5, 0.9], axis=1)
-    spread = [f"{m:.2f} ({a:.2f} to {b:.2f})" for a, m, b in zip(low[some], middle[some], high[some], strict=True)]
-    rows.append(["peak rotation, locking over linear: median (10 to 90 %)", *spread])
-    edge = locking["peak_strain_base"].where(locking["status"] == ROCKING).transpose("layer_modulus", ...)
-    largest = np.nanmax(edge.values.reshape(moduli.size, -1), axis=1)
-    rows.append(["largest strain of the base's edge, locking", *(f"{v:.3f}" for v in largest[some])])
-    write("rubber_locking", table(["layer modulus, MPa", *(f"{e / 1e6:.3g}" for e in moduli[some])], rows))
-    counts = [
-        [name, int((c["status"] == OVERTURNED).sum()), int((c["status"] > OVERTURNED).sum())]
-        for name, c in cubes.items()
-    ]
-    write("rubber_locking_counts", table(["layers", "cells that overturn", "cells without an answer"], counts))
-
-
 def main(results: Path) -> None:
     interface = open_study(results / "rubber_interface")
     rubber_interface(interface)
-    locking = open_study(results / "rubber_locking")
-    same = interface.sel(aspect_ratio=locking["aspect_ratio"], method="nearest")
-    rubber_locking(same.assign_coords(aspect_ratio=locking["aspect_ratio"]), locking)
+    rubber_locking(interface, open_study(results / "rubber_locking"))
     rubber_laws(open_study(results / "rubber_laws"))
 
 
