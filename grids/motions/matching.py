@@ -11,7 +11,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -71,48 +71,63 @@ class _Process:
         x = np.clip((rfftfreq(length, step) - low) / (high - low), 0.0, 1.0)
         return cls(envelope(size), np.maximum(np.sin(np.pi / 2 * x) ** 2, FLOOR), length)
 
-    def __call__(self, rows: FloatArray) -> FloatArray:
-        """B applied to each of the rows (m, n)."""
-        from scipy.fft import irfft, rfft
+    def root(self, rows: FloatArray) -> NDArray[np.complex128]:
+        """Spectra (m, k) of the rows (m, n) under E and the root of F: those of `sum` and `products`."""
+        from scipy.fft import rfft
 
-        passed = irfft(self.density * rfft(self.shape * rows, self.length), self.length)
-        return np.asarray(self.shape * passed[..., : self.shape.size])
+        return np.asarray(np.sqrt(self.density) * rfft(self.shape * rows, self.length))
+
+    def products(self, roots: NDArray[np.complex128]) -> FloatArray:
+        """r B r^T (m, m) of rows whose spectra are ``roots``, by Parseval's theorem."""
+        twice = np.full(roots.shape[1], 2.0)
+        twice[0] = 1.0
+        if self.length % 2 == 0:
+            twice[-1] = 1.0
+        parts = (roots * np.sqrt(twice / self.length)).view(np.float64)
+        return np.asarray(parts @ parts.T)
+
+    def sum(self, shares: FloatArray, roots: NDArray[np.complex128]) -> FloatArray:
+        """B r^T s (n,): what ``shares`` (m,) of the rows add up to."""
+        from scipy.fft import irfft
+
+        passed = irfft(np.sqrt(self.density) * (shares @ roots), self.length)
+        return np.asarray(self.shape * passed[: self.shape.size])
 
 
 @dataclass(frozen=True)
 class _Oscillators:
-    """Pseudo-accelerations of oscillators: unit responses (m, n) and their transforms."""
+    """Pseudo-accelerations of oscillators: their filters and unit responses (m, n)."""
 
     periods: FloatArray
+    filters: tuple[tuple[FloatArray, FloatArray], ...]
     unit: FloatArray
-    transform: NDArray[np.complex128]
-    length: int
 
     @classmethod
     def of(cls, periods: FloatArray, damping: float, step: float, size: int) -> _Oscillators:
-        from scipy.fft import next_fast_len, rfft
-        from scipy.signal import lfilter
-
+        found = [(omega, recursive_filter(float(omega), damping, step)) for omega in 2 * np.pi / periods]
+        filters = tuple((omega**2 * forward, backward) for omega, (forward, backward) in found)
         impulse = np.zeros(size)
         impulse[0] = 1.0
-        unit = np.empty((periods.size, size))
-        for row, omega in zip(unit, 2 * np.pi / periods, strict=True):
-            forward, backward = recursive_filter(float(omega), damping, step)
-            row[:] = omega**2 * lfilter(forward, backward, impulse)
-        length = next_fast_len(2 * size, real=True)
-        return cls(periods, unit, rfft(unit, length), length)
+        return cls(periods, filters, _filtered(filters, impulse))
 
     def peaks(self, motion: FloatArray) -> tuple[FloatArray, NDArray[np.intp], FloatArray]:
         """Largest absolute response (by a parabola between samples), its sample and its sign, each (m,)."""
-        from scipy.fft import irfft, rfft
-
-        size = motion.size
-        response = irfft(self.transform * rfft(motion, self.length), self.length)[:, :size]
+        response = _filtered(self.filters, motion)
         rows = np.arange(len(response))
         at = np.argmax(np.abs(response[:, 1:-1]), axis=1) + 1
         before, peak, after = (np.abs(response[rows, at + k]) for k in (-1, 0, 1))
         bend = np.minimum(before - 2 * peak + after, -1e-12 * peak)
         return peak - (before - after) ** 2 / (8 * bend), at, np.sign(response[rows, at])
+
+
+def _filtered(filters: Sequence[tuple[FloatArray, FloatArray]], motion: FloatArray) -> FloatArray:
+    """The motion (n,) through each of m filters, (m, n)."""
+    from scipy.signal import lfilter
+
+    found = np.empty((len(filters), motion.size))
+    for row, (forward, backward) in zip(found, filters, strict=True):
+        row[:] = lfilter(forward, backward, motion)
+    return found
 
 
 def match(target: Target, damping: float, step: float, size: int, seed: int) -> FloatArray:
@@ -141,8 +156,9 @@ def match(target: Target, damping: float, step: float, size: int, seed: int) -> 
 
 def _end_at_rest(motion: FloatArray, process: _Process, ends: FloatArray) -> FloatArray:
     """The motion with zero last velocity and displacement, changed as little as possible."""
-    spread = process(ends)
-    return np.asarray(motion - np.linalg.solve(spread @ ends.T, ends @ motion) @ spread)
+    roots = process.root(ends)
+    shares = np.asarray(np.linalg.solve(process.products(roots), ends @ motion), np.float64)
+    return np.asarray(motion - process.sum(shares, roots))
 
 
 def _by_fourier(
@@ -200,9 +216,10 @@ def _in_time(
         rows = np.vstack([ends, samples, responses])
         lower = np.where(high == top, 1.0, np.minimum(size[high], 1.0)) - size[high]
         miss = np.concatenate([-ends @ motion, STEP_LENGTH * lower, STEP_LENGTH * (wanted - peak)])
-        spread = process(rows)
-        length = np.sqrt(np.sum(spread * rows, axis=1))
-        normal = spread @ rows.T / np.outer(length, length)
+        roots = process.root(rows)
+        normal = process.products(roots)
+        length = np.sqrt(np.diagonal(normal))
+        normal /= np.outer(length, length)
         normal[np.diag_indices_from(normal)] += np.where(np.arange(miss.size) < 2, 0.0, REGULARISATION)
-        motion = motion + np.linalg.solve(normal, miss / length) / length @ spread
+        motion = motion + process.sum(np.linalg.solve(normal, miss / length) / length, roots)
     return best, least

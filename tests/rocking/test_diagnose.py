@@ -16,6 +16,7 @@ import xarray as xr
 from typer.testing import CliRunner
 
 import rocking.commands.diagnose as command
+from diagnosis.report.svg import Picture
 from grids.recordings import read_recording
 from rocking.commands import app
 from rocking.commands.recordings import read_recordings
@@ -31,7 +32,13 @@ def run(*words: str) -> tuple[int, str, str]:
 
 
 @pytest.fixture
-def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+def blank(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The figures are blank."""
+    monkeypatch.setattr("diagnosis.report.pictures.picture", lambda *_: Picture("<svg ></svg>", "<svg ></svg>"))
+
+
+@pytest.fixture
+def quick(monkeypatch: pytest.MonkeyPatch, blank: None) -> None:
     """The engine answers at once."""
     monkeypatch.setattr("diagnosis.answer.diagnose.diagnose", lambda *_, **__: diagnosis("nothing_missing"))
 
@@ -161,6 +168,7 @@ def stopping(at: float) -> Callable[[str], object]:
     return stages
 
 
+@pytest.mark.usefixtures("blank")
 def test_ctrl_c_in_the_search_leaves_what_was_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(command, "stages", stopping(0.2))
     code, out, _ = run("diagnose", BLOCK, FIRST, "--out", str(tmp_path))

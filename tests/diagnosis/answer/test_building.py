@@ -12,7 +12,7 @@ from grids.recordings.base import Recording
 from grids.specimen import Specimen
 from models.shaking import Shaking
 
-STEP, COUNT = 0.02, 3000
+STEP, COUNT = 0.02, 2200
 BODY = {"levels": 1.0, "total_mass": 1.0, "rubber_thickness": 0.2}
 BEARINGS = {"bearing_stiffness": 14.0, "bearing_damping": 0.5}
 SPECIMEN = Specimen(

@@ -1,4 +1,4 @@
-"""The whole chain on recordings made by the plain reference."""
+"""The whole chain on simulated recordings."""
 
 from __future__ import annotations
 

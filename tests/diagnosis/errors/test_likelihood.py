@@ -51,9 +51,9 @@ def estimated(theta: list[float], seed: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def test_known_variances_are_recovered() -> None:
-    """Within three standard deviations each, and right on average over twelve simulations."""
+    """Within three standard deviations each, and right on average over eight simulations."""
     truth = np.array([1.0, 0.5, 2.0, 3.0])
-    found = [estimated(truth.tolist(), seed) for seed in range(12)]
+    found = [estimated(truth.tolist(), seed) for seed in range(8)]
     z = np.array([(values - truth) / sd for values, sd in found])
     assert np.all(np.abs(z) < 3.5)
     assert np.all(np.abs(z.mean(axis=0)) < 3.0 / np.sqrt(len(z)))

@@ -37,7 +37,7 @@ def made(name: str, seed: int, changes: Sequence[tuple[float, Mapping[str, float
     rest = np.zeros(round(STILL / TIME_STEP))
     shaking = replace(plain, horizontal=np.concatenate([rest, plain.horizontal, rest]))
     parts = [Part(0, TRUE), *(Part(round(at / TIME_STEP), {**TRUE, **values}) for at, values in changes if values)]
-    rotation = np.ravel(simulate(MODEL, parts, shaking, integrator="reference").channels["rotation_1"])
+    rotation = np.ravel(simulate(MODEL, parts, shaking).channels["rotation_1"])
     time = TIME_STEP * np.arange(rotation.size)
     peak = float(np.max(np.abs(rotation)))
     rng = np.random.default_rng(seed + 1000)

@@ -25,7 +25,7 @@ from tests.diagnosis.made import SPECIMEN, recording
 
 @cache
 def null() -> Search:
-    measured = measure(SPECIMEN, [recording("train_1", 1), recording("train_2", 2)])
+    measured = measure(SPECIMEN, [recording("train_1", 1)])
     fitted, errors = calibrated(SPECIMEN, measured)
     return Search(Explanation((), fitted), candidates(measured, SPECIMEN), errors)
 

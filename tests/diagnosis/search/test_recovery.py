@@ -1,4 +1,4 @@
-"""Every mechanism, simulated by the plain reference, is seen by the screen and recovered by its own refit."""
+"""Every mechanism, simulated, is seen by the screen and recovered by its own refit."""
 
 from __future__ import annotations
 

@@ -59,7 +59,8 @@ def threshold(
         scale = np.linspace(low, high, LANES)
         close = (high - low) / (LANES * high)
         tail = (np.log(1.0 / close) + 8.0) / p
-        over = outcomes(integrator, values, shaking, scale, tail=tail, linear=linear)["overturned"]
+        found = outcomes(integrator, values, shaking, scale, tail=tail, linear=linear, outputs=["overturned"])
+        over = found["overturned"]
         beyond = over == (1 if overturns_above else 0)
         first = int(np.argmax(beyond))
         assert not beyond[0], f"beyond the threshold already at {low}"

@@ -34,7 +34,7 @@ def layers(draw: st.DrawFn) -> Layer:
 
 
 @given(layers(), st.integers(0, 1000))
-@settings(max_examples=10)
+@settings(max_examples=6)
 def test_a_combination_takes_energy_and_has_a_positive_stiffness(layer: Layer, seed: int) -> None:
     """Random paths in compression: over every step the work is at least the change of what is stored."""
     rng, count = np.random.default_rng(seed), 4000

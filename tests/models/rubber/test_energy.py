@@ -22,10 +22,12 @@ AMPLITUDES = {"locking": 5e-4}
 """Of the random paths' sines (m): a layer that locks stays below its lock strain."""
 
 
-@pytest.mark.parametrize("clip", [True, False])
 @pytest.mark.parametrize("name", LAWS)
-def test_a_fibre_never_gives_back_more_than_it_took(name: str, clip: bool) -> None:
-    """Random paths, opening too: over every step the work is at least the change of the stored energy."""
+def test_a_fibre_never_gives_back_more_than_it_took(name: str) -> None:
+    """Random paths, opening too: over every step the work is at least the change of the stored energy.
+
+    Of a fibre that can pull, and of one that cannot.
+    """
     layer, count = alone(name), 20_000
     rng = np.random.default_rng(5)
     lines, ways = 2 * np.pi * rng.integers(1, 12, (4, 30)), rng.normal(0, AMPLITUDES.get(name, 3e-3), (4, 30))
@@ -37,10 +39,9 @@ def test_a_fibre_never_gives_back_more_than_it_took(name: str, clip: bool) -> No
         middle, change = 0.5 * (old + new), new - old
         rates = layer.rates(middle, change * count, h)
         h = layer.reached(new, [one + rate / count for one, rate in zip(h, rates, strict=True)])
-        spring, energy = layer.stress(new, h), layer.energy(new, h)
-        if clip:
-            energy = energy - np.minimum(spring, 0.0) ** 2 / (2 * layer.slope(new, h))
-            spring = np.maximum(spring, 0.0)
+        pulled, energy = layer.stress(new, h), layer.energy(new, h)
+        pressed = energy - np.minimum(pulled, 0.0) ** 2 / (2 * layer.slope(new, h))
+        spring, energy = np.stack([pulled, np.maximum(pulled, 0.0)]), np.stack([energy, pressed])
         if before is not None:
             taken = 0.5 * (spring + before[0]) * change - (energy - before[1])
             worst, lost = np.minimum(worst, taken), lost + taken
@@ -92,16 +93,18 @@ def test_springs_that_only_store_lose_nothing(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", LAWS)
-def test_both_routes_dissipate_alike(name: str) -> None:
-    """A random wall let go at four times its uplift rotation: never negative, and with fine steps the same."""
+def test_both_routes_move_and_dissipate_alike(name: str) -> None:
+    """A random wall let go at four times its uplift rotation: with fine steps the same, and no energy is given."""
     rng = np.random.default_rng([8, list(LAWS).index(name)])
     one = wall({k: float(v[0]) for k, v in laden(name, rng, 1).items()})
     lean = 4.0 * float(modes.uplift_rotation(one, modes.static_state(one))[0])
     start = {"rotation_1": lean, "rotation_2": lean}
     request = asked(Shaking.silence(0.3, 0.01), initial=start, duration=0.3)
-    ran = reference.run(one, request, 1e-7), lanes.run(one, request, 8)
+    ran = reference.run(one, request, 1e-6), lanes.run(one, request, 8)
     slow, fast = (outputs_of(each) for each in ran)
     assert slow["minimum_contact_base"] < 0.8
+    there, here = (each.samples[0, :, :4] for each in ran)
+    assert np.max(np.max(np.abs(here - there), axis=0) / np.max(np.abs(there), axis=0)) < 1e-3
     for joint in JOINTS:
         part = slow[f"dissipated_energy_{joint}"]
         assert part >= 0.0

@@ -14,7 +14,7 @@ from models.stacked.stack import Stack
 from tests.models.stacked.walls import B, random_wall
 from tests.models.strategies import random_motion
 
-WALLS = 16
+WALLS = 10
 
 
 def random_walls(seed: int, count: int) -> tuple[Stack, FloatArray]:
@@ -34,7 +34,7 @@ def random_walls(seed: int, count: int) -> tuple[Stack, FloatArray]:
 def test_lanes_agree_with_the_reference(linear: bool) -> None:
     """Outputs of random walls, where the lanes' own answer does not depend on the step."""
     stack, scale = random_walls(21, WALLS)
-    shaking = random_motion(np.random.default_rng(1), duration=6.0)
+    shaking = random_motion(np.random.default_rng(1), duration=4.5)
     words = {"formulation": "linear" if linear else "nonlinear"}
     request = Request(shaking, scale, words, tail=3.0)
     coarse, fine = (lanes.run(stack, request, n).outputs for n in (1, 2))
@@ -51,7 +51,7 @@ def test_lanes_agree_with_the_reference(linear: bool) -> None:
     found = {name: values[steady] for name, values in coarse.items()}
     for name in counted:
         np.testing.assert_array_equal(found[name], expected[name])
-    assert found["impacts_base"].sum() + found["impacts_top"].sum() > 100
+    assert found["impacts_base"].sum() + found["impacts_top"].sum() > 50
     for name in NAMES:
         np.testing.assert_allclose(found[f"time_in_{name}"], expected[f"time_in_{name}"], atol=1e-4)
     for name in (*peaks, "onset_time_base", "onset_time_top"):
@@ -64,11 +64,11 @@ def test_lanes_agree_with_the_reference(linear: bool) -> None:
 
 
 def test_overturning_agrees_with_the_reference() -> None:
-    stack, scale = random_walls(22, 16)
+    stack, scale = random_walls(22, 8)
     shaking = random_motion(np.random.default_rng(3), duration=5.0)
     request = Request(shaking, 3.0 * scale, tail=8.0)
     found, expected = (MODEL.run(integrator, stack, request).outputs for integrator in MODEL.integrators)
-    assert 3 <= found["overturned"].sum() <= 16
+    assert 3 <= found["overturned"].sum() <= 8
     for name in ("overturned", "overturned_1", "overturned_2", "status"):
         np.testing.assert_array_equal(found[name], expected[name])
     np.testing.assert_allclose(found["overturning_time"], expected["overturning_time"], atol=0.02)
