@@ -8,7 +8,10 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from models.isolated import bearing
+from models.isolated.lanes import bearing as compiled
 from models.isolated.lanes import run as lanes
+from models.isolated.lanes.rows import W
+from models.rubber import lanes as rubber
 from models.shaking import Shaking
 from tests.models.isolated.buildings import BODY, HOUSE, LAWS, MODEL, chain, two_tones
 from tests.models.requests import asked
@@ -141,3 +144,17 @@ def test_shaking_never_takes_energy_out_of_bearings() -> None:
         outcome = lanes.run(one, asked(two_tones(step=0.005), rng.uniform(0.2, 1.5, 16))).outputs
         size = one.stiffness * outcome["peak_bearing_displacement"] ** 2
         assert np.all(outcome["dissipated_energy"] > -2e-4 * size), name
+
+
+@pytest.mark.parametrize("name", ["linear", "hardening"])
+def test_springs_of_the_kernel_carry_what_the_law_says(name: str) -> None:
+    """One look from rest, by the compiled piece alone, against the plain form of the law."""
+    one = chain({**BODY, **LAWS.get(name, {})}, size=W)
+    laws, u = one.rubber_laws, np.random.default_rng(1).uniform(-0.1, 0.1, W)
+    spring = np.zeros(compiled.N_SPRING)
+    spring[compiled.K : compiled.K + W], spring[compiled.U : compiled.U + W] = one.stiffness, u
+    numbers = rubber.number_table(laws, np.full(W, 0.01)).T.ravel()
+    spring[compiled.P_LAWS : compiled.P_LAWS + numbers.size] = numbers
+    compiled.springs(spring, rubber.variant_for(laws))
+    carried = spring[compiled.WHOLE : compiled.WHOLE + W]
+    np.testing.assert_allclose(carried, one.layer.stress(u, one.layer.relaxed(u)), rtol=1e-13)
