@@ -57,70 +57,74 @@ def switch(given: Table, lane: int, system: Table, work: Work, tables: Tables, e
 
 @inlined
 def cross(
-    given: Table, lane: int, system: Table, work: Work, tables: Tables, time: float, levels: int, unit: float
-) -> int:
-    """One of the equal steps into which a sample of the record is divided, from ``time`` (s) on, switches included.
+    given: Table, lane: int, system: Table, work: Work, tables: Tables, begin: float, per: int, step_length: float,
+    levels: int,
+) -> tuple[int, int]:  # fmt: skip
+    """One sample of the record from ``begin`` (s) on, in ``per`` equal steps, switches included; how, and how many.
 
-    A step in which a watched value may become positive is taken as two halves, down to the smallest, ``unit`` (s),
-    where the Taylor series tells when.
+    A step in which a watched value may become positive is taken as two halves, down to the smallest, where the Taylor
+    series tells when.
     """
     place, gathered, x, to, before, after = work.place, work.gathered, work.x, work.to, work.before, work.after
     whole = 1 << levels
-    position, within = 0, 0.0
-    while position < whole:
-        c = place[0]
-        event = -1
-        if within == 0.0:
-            level = place[1]
-            while position & ((1 << (levels - level)) - 1) != 0:
-                level += 1
-            units = 1 << (levels - level)
-            length = unit * units
-            step(work.propagators, c, level, x, length, to)
-            read(system, c, to, after)
-            if may_cross(before, after, length):
-                if level < levels:
-                    place[1] = level + 1
-                    continue
-                units = 0
+    unit = step_length / whole
+    for part in range(per):
+        time = begin + part * step_length
+        position, within = 0, 0.0
+        while position < whole:
+            c = place[0]
+            event = -1
+            if within == 0.0:
+                level = place[1]
+                while position & ((1 << (levels - level)) - 1) != 0:
+                    level += 1
+                units = 1 << (levels - level)
+                length = unit * units
+                step(work.propagators, c, level, x, length, to)
+                read(system, c, to, after)
+                if may_cross(before, after, length):
+                    if level < levels:
+                        place[1] = level + 1
+                        continue
+                    units = 0
+                else:
+                    place[1] = max(level - 1, 0)
             else:
-                place[1] = max(level - 1, 0)
-        else:
-            units = 0
-        if units == 0:
-            series(system, c, x, unit, work.motion, work.watched)
-            share, event = first_crossing(work.watched, 1.0 - within)
-            length = share * unit
-            along(work.motion, share, x, length, to)
-            read(system, c, to, after)
-            within += share
-            units = 1 if event < 0 or within >= 1.0 else 0
-        gather(gathered, given, lane, c, x, before, to, after, length)
-        t1, t2 = abs(x[0]), abs(x[1])
-        for row in range(r.N_STATE):
-            x[row] = to[row]
-        for row in range(r.N_READING):
-            before[row] = after[row]
-        if not (abs(x[0]) < HALF_TURN and abs(x[1]) < HALF_TURN):
-            if x[0] != x[0] or x[1] != x[1]:
-                return LOST
-            body = 0 if abs(x[0]) >= HALF_TURN else 1
-            old = t1 if body == 0 else t2
-            place[3] = body
-            gathered[r.WINDOW] = time + position * unit + length * (HALF_TURN - old) / (abs(x[body]) - old)
-            return FALLEN
-        if event >= 0:
-            switch(given, lane, system, work, tables, event, time + (position + within) * unit)
-            enter(system, work, place[0], levels, unit)
-            read(system, place[0], x, before)
-            look(gathered, given, lane, place[0], x, before)
-            place[1] = levels
-            place[2] += 1
-            if place[2] > MOST_SWITCHES:
-                return LOST
-        if units > 0:
-            position, within = position + units, 0.0
-    return GOES_ON
+                units = 0
+            if units == 0:
+                series(system, c, x, unit, work.motion, work.watched)
+                share, event = first_crossing(work.watched, 1.0 - within)
+                length = share * unit
+                along(work.motion, share, x, length, to)
+                read(system, c, to, after)
+                within += share
+                units = 1 if event < 0 or within >= 1.0 else 0
+            gather(gathered, given, lane, c, x, before, to, after, length)
+            t1, t2 = abs(x[0]), abs(x[1])
+            for row in range(r.N_STATE):
+                x[row] = to[row]
+            for row in range(r.N_READING):
+                before[row] = after[row]
+            if not (abs(x[0]) < HALF_TURN and abs(x[1]) < HALF_TURN):
+                if x[0] != x[0] or x[1] != x[1]:
+                    return LOST, part + 1
+                body = 0 if abs(x[0]) >= HALF_TURN else 1
+                old = t1 if body == 0 else t2
+                place[3] = body
+                gathered[r.WINDOW] = time + position * unit + length * (HALF_TURN - old) / (abs(x[body]) - old)
+                return FALLEN, part + 1
+            if event >= 0:
+                switch(given, lane, system, work, tables, event, time + (position + within) * unit)
+                enter(system, work, place[0], levels, unit)
+                read(system, place[0], x, before)
+                look(gathered, given, lane, place[0], x, before)
+                place[1] = levels
+                place[2] += 1
+                if place[2] > MOST_SWITCHES:
+                    return LOST, part + 1
+            if units > 0:
+                position, within = position + units, 0.0
+    return GOES_ON, per
 
 
 @inlined
@@ -234,12 +238,8 @@ def advance(
             if ended:
                 break
             place[2] = 0
-            for part in range(per):
-                now = i * time_step + part * length
-                how = cross(given, lane, system, work, tables, now, levels, unit)
-                steps += 1
-                if how != GOES_ON:
-                    break
+            how, done = cross(given, lane, system, work, tables, i * time_step, per, length, levels)
+            steps += done
             if how != GOES_ON:
                 break
             i += 1
