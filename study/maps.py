@@ -2,7 +2,8 @@
 
 A cell without a valid answer (not run, outside the model, not converged, failed) is unknown; a smallest intensity is
 given only where every lower one is known, for overturning is not monotone. ``at`` selects values of the other axes
-as in `study.selection`, ``nearest`` what lies nearest to them; axes left open take their middle value.
+as in `study.selection`, ``nearest`` what lies nearest to them; axes left open take their middle value. Of an axis of
+samples left open a map has the share of the samples: the chance, as far as the wall is known.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import xarray as xr
 import models
 from models.errors import InputError
 from models.errors import nearest as closest
-from study.selection import INTENSITIES, check_axis, complete, place, select
+from study.selection import INTENSITIES, SAMPLE, check_axis, complete, over_samples, place, select
 from study.status import OVERTURNED, ROCKING, UNKNOWN
 
 At = Mapping[str, Any]
@@ -25,12 +26,13 @@ def overturning_map(
     cube: xr.Dataset, x: str | None = None, y: str | None = None, at: At | None = None, *, nearest: bool = False
 ) -> xr.DataArray:
     """Overturned (1), stands (0) or unknown (nan) over ``x`` and ``y`` if one of them is the intensity axis (or
-    there is none left), else the smallest intensity of the grid that overturns (nan: none does).
+    there is none left), else the smallest intensity of the grid that overturns (nan: none does). Over an axis of
+    samples: the share of them that overturns, or the smallest intensity that overturns at least half.
 
     ``x`` and ``y`` default as in `default_axes`; the result has dimensions ``(y, x)``. Raises InputError for
     unknown axes and for values off the grid.
     """
-    return _map(cube, x, y, at, nearest, (OVERTURNED,), "overturned", "overturns the wall")
+    return _map(cube, x, y, at, nearest, (OVERTURNED,), "overturned", "overturns {}")
 
 
 def onset_map(
@@ -40,7 +42,7 @@ def onset_map(
 
     Axes, selection and dimensions as in `overturning_map`.
     """
-    return _map(cube, x, y, at, nearest, (ROCKING, OVERTURNED), "uplift", "makes it rock")
+    return _map(cube, x, y, at, nearest, (ROCKING, OVERTURNED), "uplift", "makes {} rock")
 
 
 def output_map(
@@ -94,7 +96,8 @@ def default_axes(cube: xr.Dataset, x: str | None, y: str | None) -> tuple[str, s
         if axis is not None:
             check_axis(cube, axis)
     long = [str(dim) for dim, size in cube.sizes.items() if size > 1]
-    free = [*(d for d in long if d not in INTENSITIES), *(d for d in long if d in INTENSITIES)]
+    last = [*INTENSITIES, SAMPLE]
+    free = sorted(long, key=lambda d: last.index(d) if d in last else -1)
     x = x or next((d for d in free if d != y), None)
     y = y or next((d for d in free if d != x), None)
     if x is None or y is None:
@@ -134,10 +137,22 @@ def _map(
     x, y = default_axes(cube, x, y)
     # a single intensity is no grid to search: then the map says yes or no
     searched = [i for i in INTENSITIES if cube.sizes.get(i, 1) > 1 and i not in (x, y, *(at or {}))][:1]
-    taken = complete(cube, at, (x, y, *searched), nearest=nearest)
+    among = over_samples(cube, at, (x, y))
+    taken = complete(cube, at, (x, y, *searched, *among), nearest=nearest)
     status = select(cube, taken)["status"]
-    status = status.squeeze([dim for dim in status.dims if dim not in (x, y, *searched)])
+    status = status.squeeze([dim for dim in status.dims if dim not in (x, y, *searched, *among)])
     happens = status.isin(flags).astype(float).where(~status.isin(UNKNOWN))
+    if among and not searched:
+        result = happens.mean(SAMPLE).transpose(y, x)
+        result.attrs = {
+            "units": "1",
+            "long_name": f"share of the samples: {name}",
+            "comment": "of the samples with a valid answer; nan: none has one",
+            "selection": f"{place(cube, taken)}, {cube.sizes[SAMPLE]} samples".removeprefix(", "),
+        }
+        return result.rename(f"{name}_share")
+    if among:
+        happens = _of_most(happens)
     if not searched:
         result = happens.transpose(y, x)
         result.attrs = {"units": "1", "long_name": name, "comment": "1: yes, 0: no, nan: unknown"}
@@ -147,7 +162,7 @@ def _map(
     result = _smallest(happens, along).transpose(y, x)
     result.attrs = {
         "units": cube[along].attrs["units"],
-        "long_name": f"smallest {along} of the grid that {verb}",
+        "long_name": f"smallest {along} of the grid that {verb.format('half of the samples' if among else 'the wall')}",
         "comment": "nan: no value of the grid does, or, where the coordinate unknown is true, the outcome at a lower "
         "one is unknown",
         "selection": place(cube, taken),
@@ -155,6 +170,12 @@ def _map(
         "largest": float(cube[along].max()),
     }
     return result.rename(f"{along}_{name}")
+
+
+def _of_most(happens: xr.DataArray) -> xr.DataArray:
+    """1 where it happens to at least half of the samples, 0 where not, nan where those without an answer decide."""
+    least, most = happens.fillna(0.0).mean(SAMPLE), happens.fillna(1.0).mean(SAMPLE)
+    return (least >= 0.5).astype(float).where((least >= 0.5) == (most >= 0.5))
 
 
 def _smallest(happens: xr.DataArray, along: str) -> xr.DataArray:

@@ -2,7 +2,8 @@
 
 A value of an axis of numbers is a number in the axis's SI unit or a text with its unit (``pga="0.3 g"``); it must
 lie on the grid, to the four digits that figures and messages print, unless the nearest one is asked for. An axis
-left open takes its middle value. Titles and `place` say what was taken.
+left open takes its middle value, but for one of samples, of which none lies in the middle. Titles and `place` say
+what was taken.
 """
 
 from __future__ import annotations
@@ -13,11 +14,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from grids import samples
 from grids.units import to_si
 from models.errors import InputError
 from models.errors import nearest as closest
 from study.wording import title, unit_shown
 
+SAMPLE = samples.NAME
 INTENSITIES = ("pga", "motion_scale")
 """Axes along which the smallest value is sought."""
 SAME = 5e-4
@@ -47,7 +50,17 @@ def complete(
     if both := [name for name in given if name in keep]:
         raise InputError(f"'{both[0]}' is shown over its whole range: leave it out of the selection")
     left = [str(d) for d, size in cube.sizes.items() if size > 1 and d not in given and d not in keep]
+    if SAMPLE in left:
+        raise InputError(
+            f"axis '{SAMPLE}' holds {cube.sizes[SAMPLE]} equally likely walls, and this shows one: choose it, for "
+            f"instance {SAMPLE}=0, or draw an overturning map or a fragility, which take all of them"
+        )
     return given | {name: cube[name].values[cube.sizes[name] // 2] for name in left}
+
+
+def over_samples(cube: xr.Dataset, at: Mapping[str, Any] | None, shown: Collection[str]) -> list[str]:
+    """The axis of samples, if all of it is asked for: neither shown nor selected."""
+    return [SAMPLE] if cube.sizes.get(SAMPLE, 1) > 1 and SAMPLE not in {*shown, *(at or {})} else []
 
 
 def place(cube: xr.Dataset, at: Mapping[str, Any]) -> str:

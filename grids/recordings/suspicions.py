@@ -85,7 +85,8 @@ def _of_rotation(name: str, recording: Recording) -> Iterator[str]:
     if peak > np.pi / 2 * 1.1:
         yield f"{name} peaks at {peak:.3g} rad, beyond lying flat: is it in degrees, declared as rad?"
         return
-    if not np.any(base):
+    upper = name == "rotation_2" and "rotation_1" in recording.channels  # may well rock against what carries it
+    if upper or not np.any(base):
         return
     fit = fit_rocking(rotation, base, recording.time_step)
     if fit is None:

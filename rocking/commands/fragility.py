@@ -47,8 +47,9 @@ def _print(found: xr.Dataset, over: str | None) -> None:
     from study.wording import unit_shown
 
     factor, unit = unit_shown(found["median"].attrs["units"])
+    of = f"{found.motions} motions" + (f", {found.samples} samples" if found.samples else "")
     heads = [*([over] if over else []), f"median {found.measure} [{unit}]", "dispersion", "cells", "note"]
-    table = Table(*heads, title=f"{found.event}, {found.motions} motions, {found.selection}".rstrip(", "))
+    table = Table(*heads, title=f"{found.event}, {of}, {found.selection}".rstrip(", "))
     for k in range(found.sizes[over] if over else 1):
         one = found.isel({over: k}) if over else found
         name = [value_shown(found[over], found[over].values[k])] if over else []

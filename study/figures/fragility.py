@@ -42,7 +42,8 @@ def plot_fragility(found: xr.Dataset, *, ax: Axes | None = None) -> Axes:
     ax.grid(alpha=0.3)
     title = over[0].replace("_", " ") if over else None
     ax.legend(title=title, fontsize="small", loc="lower right")
-    what = f"{found.attrs['motions']} motions, {found.attrs['confidence']:.0%} intervals"
+    of = f"of {found.attrs['samples']} samples" if found.attrs["samples"] else "intervals"
+    what = f"{found.attrs['motions']} motions, {found.attrs['confidence']:.0%} {of}"
     set_title(ax, ", ".join(part for part in (found.attrs["selection"], what) if part))
     return ax
 

@@ -28,6 +28,8 @@ from study.wording import title, unit_shown
 
 FEW_LEVELS = 12
 """Up to so many values of a map have a colour each."""
+BAND = (0.05, 0.5, 0.95)
+"""Shares of samples whose lines are drawn."""
 LINE = 0.062
 """Height of a line of the title, as a share of the Axes."""
 
@@ -40,6 +42,8 @@ def plot_map(values: xr.DataArray, *, words: tuple[str, str], ax: Axes | None = 
     ax, ordered, borders = frame(values, ax)
     if str(values.name).startswith(("pga_", "motion_scale_")):
         _draw_smallest(ax, values, ordered, borders, words[1])
+    elif str(values.name).endswith("_share"):
+        _draw_share(ax, values, ordered, borders, words[0])
     else:
         colours = ListedColormap([NOTHING, COLOURS[1]]).with_extremes(bad=UNKNOWN)
         ax.pcolormesh(*borders, np.ma.masked_invalid(ordered), cmap=colours, vmin=0, vmax=1)
@@ -104,6 +108,23 @@ def _draw_smallest(
         patches.append(Patch(facecolor=UNKNOWN, edgecolor="0.4", label="unknown"))
     if patches:
         draw_legend(ax, patches)
+
+
+def _draw_share(
+    ax: Axes, values: xr.DataArray, ordered: np.ndarray, borders: tuple[np.ndarray, np.ndarray], word: str
+) -> None:
+    """Shares of samples, with the lines between which the boundary lies as far as the wall is known."""
+    colours = colormaps[MAP_COLOURS].with_extremes(bad=UNKNOWN)
+    drawn = ax.pcolormesh(*borders, np.ma.masked_invalid(ordered), cmap=colours, vmin=0.0, vmax=1.0)
+    bar = ax.figure.colorbar(drawn, ax=ax)
+    bar.set_label(f"share of the samples that {word}")
+    across, up = (np.sort(positions(values[str(dim)])[0]) for dim in reversed(values.dims))
+    inside = (
+        [level for level in BAND if np.nanmin(ordered) < level < np.nanmax(ordered)] if min(ordered.shape) > 1 else []
+    )
+    if inside:
+        lines = ax.contour(across, up, ordered, levels=inside, colors=COLOURS[1], linewidths=1.2)
+        ax.clabel(lines, fmt=lambda level: f"{level:.0%}", fontsize="small")
 
 
 def _verb(values: xr.DataArray) -> str:

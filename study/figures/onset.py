@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from study.figures.map_figure import draw_legend, plot_map
 from study.figures.style import COLOURS, positions, shown
 from study.maps import default_axes, onset_map
-from study.selection import complete, select
+from study.selection import complete, over_samples, select
 
 THRESHOLD = "threshold without vertical shaking"
 
@@ -31,7 +31,7 @@ def plot_onset_map(
     """
     x, y = default_axes(cube, x, y)
     ax = plot_map(onset_map(cube, x, y, at), words=("rocks", "does not rock"), ax=ax)
-    if y == "pga" and "onset_acceleration" in cube.coords:
+    if y == "pga" and "onset_acceleration" in cube.coords and not over_samples(cube, at, (x, y)):
         threshold = select(cube, complete(cube, at, (x, y)))["onset_acceleration"].squeeze()
         if threshold.dims == (x,):
             low, high = ax.get_ylim()

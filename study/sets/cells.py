@@ -14,7 +14,7 @@ from grids.motions.measures import MEASURES, PREFIX, Measure
 from models.base import FloatArray
 from models.errors import InputError
 from models.errors import nearest as closest
-from study.selection import INTENSITIES, check_axis, complete, place, select
+from study.selection import INTENSITIES, check_axis, complete, over_samples, place, select
 from study.status import OVERTURNED, UNKNOWN
 
 MOTION = "motion"
@@ -49,12 +49,17 @@ def event_of(cube: xr.Dataset, output: str = "overturned", threshold: float | No
 
 
 def chosen_cells(
-    cube: xr.Dataset, at: Mapping[str, Any] | None = None, over: str | None = None, *, nearest: bool = False
+    cube: xr.Dataset,
+    at: Mapping[str, Any] | None = None,
+    over: str | None = None,
+    *,
+    nearest: bool = False,
+    samples: bool = False,
 ) -> tuple[xr.Dataset, str]:
     """The cells over `motion`, the intensity axis if there is one, and ``over``; what was taken of the other axes.
 
-    Selection as in `study.selection`; axes left open take their middle value. Raises InputError without an axis
-    `motion`.
+    Selection as in `study.selection`; axes left open take their middle value. With ``samples`` an axis of samples left
+    open stays whole. Raises InputError without an axis `motion`.
     """
     if MOTION not in cube.dims:
         raise InputError("this cube has no axis 'motion': give [motion] several files, or several seeds")
@@ -62,9 +67,11 @@ def chosen_cells(
         check_axis(cube, over)
         if over in (MOTION, *INTENSITIES):
             raise InputError(f"curves cannot stand for the values of '{over}', which every curve runs over")
-    taken = complete(cube, at, [MOTION, *(d for d in INTENSITIES if d in cube.dims), *([over] if over else [])])
+    whole = [*([over] if over else []), MOTION, *(d for d in INTENSITIES if d in cube.dims)]
+    among = over_samples(cube, at, whole) if samples else []
+    taken = complete(cube, at, [*whole, *among])
     kept = select(cube, taken, nearest=nearest)
-    dims = [d for d in (over, MOTION, *INTENSITIES) if d is not None and d in kept.dims]
+    dims = [d for d in (over, *among, MOTION, *INTENSITIES) if d is not None and d in kept.dims]
     return kept.squeeze([d for d in kept.dims if d not in dims]).transpose(*dims), place(cube, taken)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,11 +10,13 @@ import xarray as xr
 from scipy.stats import beta
 
 from models.base import FloatArray
+from study.selection import SAMPLE
 from study.sets.cells import Event, chosen_cells, happens, intensity, pairs
 from study.sets.lognormal import Lognormal, fit_lognormal
 
 BINS = 10
 POINTS = 200
+ENDS = ("", "_low", "_high")
 
 
 def fragility(
@@ -35,22 +37,29 @@ def fragility(
     `cells` counts those with a valid answer, `unknown` the others. ``why`` names what cannot be fitted; its numbers are
     nan.
 
+    Of an axis of samples left open every sample is fitted: `probability` is the mean of their curves, `median` and
+    `dispersion` are those of the middle sample, and all intervals but those of `share` hold the middle ``confidence``
+    of the samples: what is not known of the wall. What so few motions leave open is not in them.
+
     Raises InputError without an axis `motion`, and for unknown names and values off the grid.
     """
-    cells, selection = chosen_cells(cube, at, over)
+    cells, selection = chosen_cells(cube, at, over, samples=True)
     strength, outcome = intensity(cells, measure), happens(cells, event)
     parts = []
     known = strength.values[np.isfinite(outcome.values) & (strength.values > 0.0)]
     levels = np.geomspace(known.min(), known.max(), POINTS) if known.size else np.full(POINTS, np.nan)
     for k in range(cells.sizes[over] if over else 1):
         of = {over: k} if over else {}
-        x, y, motion = pairs(strength.isel(of), outcome.isel(of))
-        fit = fit_lognormal(x, y, motion, confidence)
-        on_axis = measure in cells.dims
-        parts.append(_curve(fit, levels, _bins(x, y, motion, on_axis, confidence)))
+        strengths, outcomes = strength.isel(of), outcome.isel(of)
+        x, y, motion = pairs(strengths, outcomes)
+        if SAMPLE in outcomes.dims:
+            each = [pairs(strengths.isel({SAMPLE: j}), outcomes.isel({SAMPLE: j})) for j in range(cells.sizes[SAMPLE])]
+            curve = _of_samples([fit_lognormal(*one, confidence) for one in each], levels, confidence)
+        else:
+            curve = _curve(fit_lognormal(x, y, motion, confidence), levels)
+        parts.append(curve.assign(_bins(x, y, motion, measure in cells.dims, confidence)))
         parts[-1]["cells"] = ((), x.size)
-        parts[-1]["unknown"] = ((), int(outcome.isel(of).size - x.size))
-        parts[-1]["why"] = ((), fit.why)
+        parts[-1]["unknown"] = ((), int(outcomes.size - x.size))
     found = (
         xr.concat(parts, cells[over], data_vars="all", coords="minimal", compat="override", join="outer")
         if over
@@ -59,21 +68,50 @@ def fragility(
     found["level"].attrs = found["strength"].attrs = dict(strength.attrs)
     found["median"].attrs["units"] = strength.attrs["units"]
     return found.assign_attrs(
-        event=str(event), measure=measure, selection=selection, confidence=confidence, motions=cells.sizes["motion"]
+        event=str(event),
+        measure=measure,
+        selection=selection,
+        confidence=confidence,
+        motions=cells.sizes["motion"],
+        samples=cells.sizes.get(SAMPLE, 0) if over != SAMPLE else 0,
     )
 
 
-def _curve(fit: Lognormal, levels: FloatArray, bins: dict[str, FloatArray]) -> xr.Dataset:
-    values: dict[str, Any] = {}
-    for name, triple in (("median", fit.median), ("dispersion", fit.dispersion)):
-        values |= {f"{name}{end}": ((), v) for end, v in zip(("", "_low", "_high"), triple, strict=True)}
-    curve = fit.probability(levels)
-    values |= {f"probability{end}": ("level", v) for end, v in zip(("", "_low", "_high"), curve, strict=True)}
-    values |= {name: ("bin", v) for name, v in bins.items()}
-    return xr.Dataset(values, coords={"level": levels, "bin": np.arange(bins["share"].size)})
+def _curve(fit: Lognormal, levels: FloatArray) -> xr.Dataset:
+    return _dataset({"median": fit.median, "dispersion": fit.dispersion}, fit.probability(levels), levels, fit.why)
 
 
-def _bins(x: FloatArray, y: FloatArray, motion: FloatArray, on_axis: bool, confidence: float) -> dict[str, FloatArray]:
+def _of_samples(fits: Sequence[Lognormal], levels: FloatArray, confidence: float) -> xr.Dataset:
+    """The mean of the samples' curves, and between which values the middle ``confidence`` of the samples lie."""
+    fitted = [fit for fit in fits if np.isfinite(fit.median[0])]
+    missing = len(fits) - len(fitted)
+    why = f"{missing} of {len(fits)} samples cannot be fitted: {next(f.why for f in fits if f.why)}" if missing else ""
+    if not fitted:
+        return _curve(fits[0], levels).assign(why=((), why))
+    ends = (0.5 - confidence / 2, 0.5 + confidence / 2)
+    curves = np.array([fit.probability(levels)[0] for fit in fitted])
+    triples: dict[str, tuple[float, float, float]] = {}
+    for name in ("median", "dispersion"):
+        values = [getattr(fit, name)[0] for fit in fitted]
+        triples[name] = (np.median(values), np.quantile(values, ends[0]), np.quantile(values, ends[1]))
+    low, high = (np.quantile(curves, end, axis=0) for end in ends)
+    return _dataset(triples, (curves.mean(axis=0), low, high), levels, why)
+
+
+def _dataset(
+    triples: Mapping[str, tuple[float, float, float]],
+    curve: tuple[FloatArray, FloatArray, FloatArray],
+    levels: FloatArray,
+    why: str,
+) -> xr.Dataset:
+    values: dict[str, Any] = {"why": ((), why)}
+    for name, triple in triples.items():
+        values |= {f"{name}{end}": ((), v) for end, v in zip(ENDS, triple, strict=True)}
+    values |= {f"probability{end}": ("level", v) for end, v in zip(ENDS, curve, strict=True)}
+    return xr.Dataset(values, coords={"level": levels})
+
+
+def _bins(x: FloatArray, y: FloatArray, motion: FloatArray, on_axis: bool, confidence: float) -> dict[str, Any]:
     """Shares with intervals in groups of cells, in the order of intensity."""
     order = np.argsort(x, kind="stable")
     groups = np.split(order, np.flatnonzero(np.diff(x[order])) + 1) if on_axis else np.array_split(order, BINS)
@@ -82,7 +120,8 @@ def _bins(x: FloatArray, y: FloatArray, motion: FloatArray, on_axis: bool, confi
     trials = np.array([np.unique(motion[group]).size for group in groups], dtype=float)
     low, high = binomial_interval(share * trials, trials, confidence)
     strength = np.array([x[group].mean() for group in groups])
-    return {"strength": strength, "share": share, "share_low": low, "share_high": high}
+    found = {"strength": strength, "share": share, "share_low": low, "share_high": high}
+    return {"bin": np.arange(share.size), **{name: ("bin", values) for name, values in found.items()}}
 
 
 def binomial_interval(

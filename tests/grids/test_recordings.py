@@ -296,6 +296,12 @@ def test_suspicions_are_named(kind: str, tmp_path: Path) -> None:
     assert any(words in suspicion for suspicion in found.suspicions), found.suspicions
 
 
+def test_an_upper_body_may_rock_against_the_one_that_carries_it(tmp_path: Path) -> None:
+    turned = {"rotation_2": (-ROTATION, "rad")}
+    assert read_recording(stored(tmp_path, dataset(**turned))).suspicions == ()
+    assert read_recording(stored(tmp_path, dataset(rotation_2=(0 * ROTATION, "rad")))).suspicions != ()
+
+
 @pytest.mark.parametrize("sigma", [1e-4, 1e-2])
 def test_noise_of_white_noise_on_a_smooth_signal(sigma: float) -> None:
     rng = np.random.default_rng(3)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import matplotlib
@@ -54,6 +55,44 @@ def test_yes_or_no_over_the_intensity_equals_the_flags(cube: xr.Dataset) -> None
     status = cube["status"].values[:, 2, :].T
     np.testing.assert_array_equal(drawn.values == 1.0, status == OVERTURNED)
     np.testing.assert_array_equal(np.isnan(drawn.values), np.isin(status, UNKNOWN))
+
+
+def of_samples(count: int = 9) -> xr.Dataset:
+    cubes = [known_cube(np.random.default_rng(seed)) for seed in range(count)]
+    pga = cubes[0]["pga"]  # the same grid for all
+    found = xr.concat([one.assign_coords(pga=pga) for one in cubes], "sample")
+    return found.assign_coords(sample=("sample", np.arange(count), {"units": "1", "axis_of_study": "true"}))
+
+
+def test_a_map_over_samples_is_their_share(tmp_path: Path) -> None:
+    cube = of_samples()
+    assert default_axes(cube, None, None) == ("aspect_ratio", "top_mass")
+    drawn = cube.rocking.overturning_map(x="aspect_ratio", y="pga", top_mass=2000.0)
+    status = cube["status"].values[:, :, 2, :]
+    known = ~np.isin(status, UNKNOWN)
+    np.testing.assert_allclose(drawn.values.T, ((status == OVERTURNED) & known).sum(axis=0) / known.sum(axis=0))
+    assert drawn.name == "overturned_share" and drawn.attrs["selection"].endswith("9 samples")
+    for plot in (plot_overturning_map, plot_onset_map):
+        path = save_figure(partial(plot, cube, "aspect_ratio", "pga"), tmp_path / "share.png")
+        assert path.stat().st_size > 1e4
+    with pytest.raises(InputError, match="'sample' holds 9 equally likely walls"):
+        cube.rocking.output_map("peak_rotation", "aspect_ratio", "pga")
+    assert cube.rocking.output_map("peak_rotation", "aspect_ratio", "pga", sample=0).dims == ("pga", "aspect_ratio")
+
+
+def test_the_smallest_intensity_over_samples_is_that_of_half_of_them() -> None:
+    cube = of_samples()
+    found = cube.rocking.overturning_map(x="aspect_ratio", y="top_mass").values
+    for i, j in np.ndindex(cube.sizes["aspect_ratio"], cube.sizes["top_mass"]):
+        expected = np.nan
+        for k in np.argsort(cube["pga"].values):
+            status = cube["status"].values[:, i, j, k]
+            least, unknown = (status == OVERTURNED).sum(), np.isin(status, UNKNOWN).sum()
+            if least >= 4.5:
+                expected = cube["pga"].values[k]
+            if least + unknown >= 4.5:
+                break
+        np.testing.assert_equal(found[j, i], expected)
 
 
 def test_onset_never_lies_above_overturning(cube: xr.Dataset) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from grids.motions import make_pulse, read_motion
 from grids.motions.measures import MEASURES, measures_of
@@ -53,6 +54,31 @@ def test_fragility_finds_the_capacities() -> None:
     assert half["median"] == pytest.approx(float(found["median"]) / 2, rel=0.1)
     sharp = fragility(CUBE, event_of(CUBE), "pgv")
     assert "one threshold" in str(sharp["why"].values), "PGV decides alone here"
+
+
+def test_fragility_over_samples_holds_what_is_not_known_of_the_wall() -> None:
+    """Walls whose capacities are those of the first times a factor: medians scale with it, dispersions do not."""
+    factors = np.exp(0.2 * np.linspace(-1.0, 1.0, 21))
+    levels = np.geomspace(0.6, 12.0, 40)
+    cube = xr.concat(
+        [cube_of(CAPACITY * factor, levels) for factor in factors], "sample", coords="minimal", compat="override"
+    )
+    cube = cube.assign_coords(sample=("sample", np.arange(21), {"units": "1", "axis_of_study": "true"}))
+    found, each = fragility(cube, event_of(cube)), fragility(cube, event_of(cube), over="sample")
+    assert found.attrs["samples"] == 21 and each.attrs["samples"] == 0
+    one = fragility(cube.isel(sample=10), event_of(cube))
+    assert found["median"] == pytest.approx(float(one["median"]), rel=0.01)
+    for end, factor in (("_low", np.exp(-0.19)), ("_high", np.exp(0.19))):
+        assert found[f"median{end}"] == pytest.approx(factor * float(one["median"]), rel=0.02)
+    assert found["dispersion_high"] - found["dispersion_low"] < 0.1 * found["dispersion"]
+    np.testing.assert_allclose(found["probability"], each["probability"].mean("sample"))
+    low, middle, high = (found[f"probability{end}"] for end in ("_low", "", "_high"))
+    assert (low <= middle).all() and (middle <= high).all()
+    assert found["share"][7] == pytest.approx(np.mean([levels[7] >= CAPACITY * factor for factor in factors]))
+    chosen = fragility(cube, event_of(cube), at={"sample": 3})
+    assert chosen.attrs["samples"] == 0 and chosen["median"] == pytest.approx(float(each["median"][3]))
+    with pytest.raises(InputError, match="'sample' holds 21 equally likely walls"):
+        incremental(cube, "peak_rotation")
 
 
 def test_unanswered_cells_are_left_out() -> None:
