@@ -43,9 +43,13 @@ class Column(Schema):
 
 
 class Layout(Schema):
-    """What the TOML beside a table states; exactly one of ``time_step`` and ``time``."""
+    """What the TOML beside a table states; exactly one of ``time_step`` and ``time``.
+
+    ``channels``: what columns of a recording measure (see `grids.recordings.placed`).
+    """
 
     columns: dict[str, Column] = Field(min_length=1)
+    channels: dict[str, dict[str, Any]] = Field(default_factory=dict)
     time_step: str | float | None = None
     time: Column | None = None
     delimiter: str = Field(default=",", min_length=1, max_length=1)

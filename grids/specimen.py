@@ -18,6 +18,8 @@ formulation = "linear"
 reference_peak = "2 deg"          # that levels of instruments are given over; the run's own without it
 [mechanisms.pivot_inset]
 inset_over_half_width = 0.1
+[channels.lvdt_left]              # instruments on the bodies, to be simulated or thought of (see
+quantity = "displacement"         # `grids.recordings.placed`)
 [[mechanisms.pivot_inset.stages]] # when it acts (see `grids.stages`); always without stages
 recording = "shake_2"
 begins = 4.21
@@ -38,10 +40,13 @@ from grids.files import Schema, check, parse_toml, read_text
 from grids.instruments import INSTRUMENTS
 from grids.law_table import read_law
 from grids.plan_checks import check_cells, check_vertical
+from grids.recordings.base import CHANNELS
+from grids.recordings.placed import read_places
 from grids.stages import Stage, StageTable, read_stages
 from grids.targets import Targets, find_model
 from grids.units import to_si, with_unit
 from models.errors import InputError, nearest
+from models.kinematics import Place
 from models.model import Model
 
 MOST_TOLERANCE = 1.0
@@ -69,6 +74,7 @@ class SpecimenFile(Schema):
     instruments: InstrumentsTable = InstrumentsTable()
     options: dict[str, str] = Field(default_factory=dict)
     mechanisms: dict[str, dict[str, Any]] = Field(default_factory=dict)
+    channels: dict[str, dict[str, Any]] = Field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -76,6 +82,7 @@ class Specimen:
     """A checked specimen in SI. ``calibrate`` holds (low, high); ``vertical`` None: the model decides.
 
     ``stages``: when a mechanism acts, by its name; without an entry always.
+    ``places``: instruments on the bodies that `simulate` writes and that a next experiment may ask for.
     ``reference_peak``: rotation (rad) that levels of instruments are given over; None: the largest of a run itself.
     """
 
@@ -90,6 +97,7 @@ class Specimen:
     mechanisms: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     reference_peak: float | None = None
     stages: Mapping[str, tuple[Stage, ...]] = field(default_factory=dict)
+    places: Mapping[str, Place] = field(default_factory=dict)
 
 
 def read_specimen(path: str | Path) -> Specimen:
@@ -144,6 +152,7 @@ def parse_specimen(text: str, folder: Path = Path()) -> Specimen:
         mechanisms=mechanisms,
         reference_peak=_reference_peak(file.instruments),
         stages=_stages(file),
+        places=read_places(file.channels, CHANNELS),
     )
 
 

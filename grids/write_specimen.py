@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from grids.law_table import LAW_FILE
+from grids.recordings.placed import attributes
 from grids.specimen import Specimen
 from models.mechanisms.table_force import MECHANISM as LAW
 
@@ -29,6 +30,7 @@ def specimen_text(specimen: Specimen) -> str:
     }
     parts = [_lines(head)]
     parts += [f"[{name}]\n{_lines(table)}" for name, table in tables.items() if table or name == "parameters"]
+    parts += [f"[channels.{name}]\n{_lines(attributes(place))}" for name, place in specimen.places.items()]
     for name, values in specimen.mechanisms.items():
         named = {"file": LAW_FILE} if name == LAW.name else values
         parts.append(f"[mechanisms.{name}]\n{_lines(named)}")

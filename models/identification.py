@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from models.base import FloatArray, Mechanism, MechanismParameter
+from models.observed import Observed
 
 Derived = Mapping[str, FloatArray]
 """Auxiliary constants of a model, by the names of its `derived`."""
@@ -302,9 +303,9 @@ class Identification:
     ladder: tuple[Rung, ...] = ()
     exposures: tuple[Exposure, ...] = ()
 
-    def seen(self, observed: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+    def seen(self, observed: Mapping[str, FloatArray]) -> Mapping[str, FloatArray]:
         """The observables of a run, with those that `same` makes of them."""
-        return {**observed, **{name: observed[of] for name, of in self.same.items()}}
+        return Observed.joined(observed, {name: observed[of] for name, of in self.same.items()})
 
     @property
     def free(self) -> tuple[State, ...]:

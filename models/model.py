@@ -16,6 +16,7 @@ from models.errors import InputError, nearest
 from models.identification import Identification
 from models.mechanisms import acting_on, applied
 from models.peaks import peaks
+from models.placing import Placing
 from models.runs import DONE, Request, Run
 from models.shaking import Shaking
 
@@ -35,7 +36,7 @@ class Coefficients(Protocol):
 C = TypeVar("C", bound=Coefficients, default=Any)
 
 
-class Model(ABC, Generic[C]):
+class Model(Placing, ABC, Generic[C]):
     """A model of a wall: its declarations, its coefficients ``C`` and its integrators.
 
     Arrays broadcast; nothing here knows labels, files or dask. A model gives `assemble`, `run_lanes`,
@@ -254,7 +255,7 @@ class Model(ABC, Generic[C]):
         )  # fmt: skip
         run = self.run("lanes", coefficients, request)
         after = self.resume(run.samples[np.arange(n), last - first], run.outputs, request.initial)
-        return self.observe(coefficients, run.samples), after
+        return self.with_poses(self.observe(coefficients, run.samples), coefficients, run.samples), after
 
     def carry(
         self,
@@ -357,7 +358,8 @@ class Model(ABC, Generic[C]):
             samples=samples + 1, log=MOST_LOGGED,
         )  # fmt: skip
         run = self.run(integrator, coefficients, request)
-        channels = self.observe(coefficients, self.settle(run, step))
+        settled = self.settle(run, step)
+        channels = dict(self.with_poses(self.observe(coefficients, settled), coefficients, settled))
         wanted = [quantity for quantity in self.outputs if quantity.peak_of]
         found = dict(run.outputs)
         found |= peaks(lambda *_: channels, request, wanted, found.get("overturning_time", np.full(1, np.nan)))

@@ -35,7 +35,8 @@ def simulate(
     motion, ``duration`` (s) of free motion from the specimen's initial state. The specimen says
     whether the vertical component acts (default: the model's). Its instruments act on what is
     written; the motion is then what the accelerometers of the base read. Mechanisms with stages act as
-    they say for a recording of that name. Raises InputError.
+    they say for a recording of that name. Channels at positions on the bodies are those of the specimen and of a
+    recording. Raises InputError.
     """
     from grids.recordings import Recording, read_recording
     from grids.specimen import read_specimen
@@ -54,7 +55,10 @@ def simulate(
             motion = read_recording(motion, base_only=True)
         shaking = _shaking(specimen, motion, component)
     name = motion.name if isinstance(motion, Recording) else None
-    return simulate_specimen(specimen, shaking, scale=scale, duration=duration, integrator=integrator, recording=name)
+    places = motion.places if isinstance(motion, Recording) else None
+    return simulate_specimen(
+        specimen, shaking, scale=scale, duration=duration, integrator=integrator, recording=name, places=places
+    )
 
 
 def _shaking(specimen: Specimen, motion: Motion | Recording | str | Path, component: str | None) -> Shaking:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -16,10 +16,12 @@ from grids.instruments.base import Surroundings
 from grids.instruments.staged import moved_in_stages, recorded_in_stages
 from grids.netcdf_lock import NETCDF_LOCK
 from grids.recordings.base import SHARE
+from grids.recordings.placed import attributes
 from grids.specimen import Specimen
 from grids.stages import Mechanisms, first_sample, stretches
 from models.base import Event, FloatArray, History
 from models.errors import InputError, nearest
+from models.kinematics import Place, ground_along
 from models.model import Model
 from models.piecewise import Part, simulate
 from models.shaking import Shaking
@@ -38,9 +40,11 @@ def simulate_specimen(
     tail: float = 10.0,
     integrator: str = "lanes",
     recording: str | None = None,
+    places: Mapping[str, Place] | None = None,
 ) -> xr.Dataset:
     """Every observable (and the base acceleration) over ``time``, the events over ``event``.
 
+    So are the channels of the specimen at positions on the bodies, and those of ``places``.
     ``scale`` multiplies the shaking; ``duration`` (s) fixes the length of the run, else it lasts
     the record and at most ``tail`` s of free motion. With instruments among the specimen's mechanisms
     the shaking is what the accelerometers of the base read, and the channels are what is recorded.
@@ -59,18 +63,25 @@ def simulate_specimen(
     read = shaking.scaled(scale)
     ways = [(first_sample(begin, read.time_step), acting) for begin, acting in stretches(specimen, recording)]
     instruments = {name: given for name, given in specimen.mechanisms.items() if name in INSTRUMENTS}
+    moved = moved_in_stages(read, ways)
     history = simulate(
         model,
         _parts(specimen, ways),
-        moved_in_stages(read, ways),
+        moved,
         initial=dict(specimen.initial) or None,
         duration=duration,
         tail=tail,
         options=dict(specimen.options),
         integrator=integrator,
     )
+    placed = {**specimen.places, **(places or {})}
+    _check_places(model, specimen, placed)
+    along = tuple(x[0] for x in ground_along(moved, np.zeros(1, np.int64), history.time.size))
+    read_off = {name: one.read(history.channels, read.time_step, (along[0], along[1])) for name, one in placed.items()}
+    observed = {quantity.name: history.channels[quantity.name] for quantity in model.observables}
+    history = replace(history, channels={**observed, **read_off})
     channels = _recorded(model, history, read, ways, specimen.reference_peak)
-    dataset = _label(model, replace(history, channels=channels), read)
+    dataset = _label(model, replace(history, channels=channels), read, placed)
     dataset.attrs = {
         "Conventions": "CF-1.11",
         "title": specimen.title,
@@ -92,6 +103,17 @@ def simulate_specimen(
     if instruments:
         dataset.attrs["instruments"] = as_json(instruments)
     return dataset
+
+
+def _check_places(model: Model, specimen: Specimen, placed: Mapping[str, Place]) -> None:
+    """Raises InputError for channels that the model does not predict with this specimen's mechanisms."""
+    for name, place in placed.items():
+        model.check_place(name, place)
+        if bends := [m for m in model.not_placed if m in specimen.mechanisms]:
+            raise InputError(
+                f"channel {name} is at a position of a rigid body, which a body with {bends[0]} is not: leave the "
+                f"channel or {bends[0]} out."
+            )
 
 
 Ways = Sequence[tuple[int, Mechanisms]]
@@ -123,7 +145,7 @@ def _recorded(
     """The channels as the instruments record them; shares of contact stay as they are."""
     units = {quantity.name: quantity.unit for quantity in model.observables}
     around = Surroundings(read.time_step, _at(history, read, read.horizontal), reference_peak)
-    signals = {name: x for name, x in history.channels.items() if units[name] != SHARE}
+    signals = {name: x for name, x in history.channels.items() if units.get(name) != SHARE}
     return {**history.channels, **recorded_in_stages(signals, ways, around)}
 
 
@@ -132,10 +154,16 @@ def _at(history: History, read: Shaking, component: FloatArray) -> FloatArray:
     return np.asarray(np.interp(history.time, read.time, component, left=0.0, right=0.0))
 
 
-def _label(model: Model, history: History, read: Shaking) -> xr.Dataset:
+def _label(model: Model, history: History, read: Shaking, placed: Mapping[str, Place]) -> xr.Dataset:
     variables: dict[str, Any] = {}
+    about: dict[str, Any]
     declared = {quantity.name: quantity for quantity in model.observables}
     for name, values in history.channels.items():
+        if name in placed:
+            place = placed[name]
+            about = {"units": place.unit, "long_name": place.meaning, **attributes(place)}
+            variables[name] = (("time",), values, about)
+            continue
         quantity = declared[name]
         dims = ("time",) if values.ndim == 1 else ("level", "time")
         about = {"units": quantity.unit, "long_name": quantity.meaning}

@@ -116,7 +116,7 @@ def visited(measured: Measured, action: Action) -> Visited:
     if action.kind == "error":
         what, value, of_value = (
             f"error of {lead.replace('_', ' ')}",
-            action.amount[:, measured.channels.index(lead)],
+            action.amount[:, measured.lead],
             unit,
         )
     elif share_at_events(size, action.event) >= MOSTLY:

@@ -12,6 +12,7 @@ from diagnosis.answer.heldout import frozen, relative_misfit
 from diagnosis.answer.posterior import posterior
 from diagnosis.data.measured import Measured
 from diagnosis.errors.model import Errors, calibrated
+from diagnosis.fit.channels import added_by_channels
 from diagnosis.fit.intervals import Estimate, correlation, estimates, profile_rise, settled
 from diagnosis.fit.setup import as_recorded, measure
 from diagnosis.fit.solver import Fitted
@@ -51,6 +52,8 @@ class Calibration:
     drifts: tuple[Drift, ...] = ()
     posterior: Mapping[str, FloatArray] = field(default_factory=dict)
     """Samples of the parameters that a study can vary (`diagnosis.answer.posterior`)."""
+    channels: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    """By channel and parameter: how many times wider the interval would be without the channel."""
     seen: tuple[str, ...] = ()
     """What the recordings show of their instruments by themselves."""
     instruments: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
@@ -196,6 +199,7 @@ def _summary(
         profiles=profiles,
         by_recording=by_recording,
         posterior=posterior(fitted, measured.model),
+        channels=added_by_channels(fitted),
     )
 
 

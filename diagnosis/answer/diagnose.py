@@ -25,6 +25,7 @@ from diagnosis.answer.whole_runs import with_runs_from_rest
 from diagnosis.data.measured import Measured
 from diagnosis.errors.model import calibrated
 from diagnosis.errors.summary import summary
+from diagnosis.fit.channels import added_by_channels
 from diagnosis.fit.intervals import Estimate, settled
 from diagnosis.fit.setup import as_recorded, measure
 from diagnosis.forces.columns import Forces, forces
@@ -178,7 +179,9 @@ def _assemble(
 
     experiment, force = None, None
     if finished and verdict == "cannot_tell_apart":
-        experiment = stages.optional("the next experiment", lambda: next_experiment(found, near), lambda: None)
+        experiment = stages.optional(
+            "the next experiment", lambda: next_experiment(found, near, specimen.places), lambda: None
+        )
     if law:
         force = missing_force(found, law)
 
@@ -216,6 +219,7 @@ def _assemble(
         held_stages=held.held_stages if held else (),
         other_model=other_model(climbed, final) if climbed else None,
         errors=errors,
+        channels=stages.optional("what each channel adds", lambda: added_by_channels(final.fitted), dict),
         posterior=drawn,
         not_tried=not_tried(found),
         reference_peak=true_peak(chosen),

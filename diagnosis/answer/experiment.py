@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from diagnosis.answer.whole_runs import sensed_run
-from diagnosis.data.measured import arrange
+from diagnosis.data.measured import Measured, arrange
 from diagnosis.errors.model import Errors
 from diagnosis.fit.intervals import covariances
 from diagnosis.fit.misfit import Misfit, reduce
@@ -25,14 +25,20 @@ from diagnosis.search.found import Search
 from diagnosis.search.refit import Explanation
 from grids.recordings.base import REQUIRED, SHARE, Recording
 from models.errors import InputError
+from models.kinematics import Place
 
 SCALES = (0.7, 1.0, 1.4)
 NEW_SENSOR_NOISE = 0.01
 """Noise assumed of a channel that is not measured yet, over its peak."""
 
 
-def next_experiment(found: Search, near: Sequence[tuple[Explanation, Candidate, float]]) -> Mapping[str, Any] | None:
-    """The best recording, the best extra sensor and a static test that would separate the first rivals."""
+def next_experiment(
+    found: Search, near: Sequence[tuple[Explanation, Candidate, float]], planned: Mapping[str, Place] | None = None
+) -> Mapping[str, Any] | None:
+    """The best recording, the best extra sensor and a static test that would separate the first rivals.
+
+    ``planned``: channels at positions on the bodies that could be recorded as well.
+    """
     best = found.chosen
     own = set(best.classes)
     other = next((e for e, c, _ in near if c.effect_class not in own), None)
@@ -54,18 +60,21 @@ def next_experiment(found: Search, near: Sequence[tuple[Explanation, Candidate, 
     return {
         "separates": [c.name for c in pair],
         "recording": {"base_motion": name, "scale": scale, "expected_evidence": expected},
-        "sensor": _sensor(best, other, found.errors),
+        "sensor": _sensor(best, other, found.errors, planned or {}),
         "static_test": "; or ".join(dict.fromkeys(c.mechanism.static_test for c in pair if c.mechanism.static_test)),
     }
 
 
-def _sensor(best: Explanation, other: Explanation, errors: Errors) -> Mapping[str, Any] | None:
-    """The channel of the model that is not recorded yet and would add most evidence, on the same runs."""
+def _sensor(
+    best: Explanation, other: Explanation, errors: Errors, planned: Mapping[str, Place]
+) -> Mapping[str, Any] | None:
+    """The channel that is not recorded yet and would add most evidence, on the same runs."""
     measured = best.measured
     free = [q.name for q in measured.model.observables if q.name not in measured.channels and q.unit != SHARE]
+    free += [name for name, place in planned.items() if place.body <= measured.model.bodies and name not in free]
     gains = {}
-    for name in free:
-        made = [_made(best, r, 1.0, (*measured.channels, name)) for r in measured.recordings]
+    for name in (name for name in free if name not in measured.channels):
+        made = [_made(best, r, 1.0, (*measured.channels, name), planned) for r in measured.recordings]
         gains[name] = sum(_expected(best, other, m, errors) for m in made if m is not None)
     if not gains:
         return None
@@ -73,12 +82,18 @@ def _sensor(best: Explanation, other: Explanation, errors: Errors) -> Mapping[st
     return {"channel": name, "noise": f"{NEW_SENSOR_NOISE:.0%} of its peak", "expected_evidence": expected}
 
 
-def _made(explanation: Explanation, recording: Recording, scale: float, channels: Sequence[str]) -> Recording | None:
+def _made(
+    explanation: Explanation, recording: Recording, scale: float, channels: Sequence[str],
+    planned: Mapping[str, Place] | None = None,
+) -> Recording | None:  # fmt: skip
     """What the explanation predicts for a base motion, with noise as recorded or assumed."""
     measured = explanation.measured
     base = {k: v * scale for k, v in recording.channels.items() if k.startswith("base_acceleration")}
     motion = replace(recording, channels={**recording.channels, **base})
-    ran = sensed_run(explanation, measured, motion, channels)
+    places = {**(planned or {}), **recording.places}
+    # rotations that were estimated from channels as recorded follow the new motion
+    follow = [name for name in recording.estimated if name not in channels]
+    ran = sensed_run(explanation, measured, motion, (*channels, *follow), more=places)
     rng = np.random.default_rng(0)
     found = dict(base)
     for name, values in ran.items():
@@ -86,9 +101,16 @@ def _made(explanation: Explanation, recording: Recording, scale: float, channels
         sigma = float(measured.sigma[:, measured.channels.index(name)].mean()) if known else 0.0
         sigma = sigma or NEW_SENSOR_NOISE * float(np.max(np.abs(values)))
         found[name] = values + sigma * rng.normal(size=values.size)
-    if not np.all(np.isfinite(found[measured.channels[0]])) or np.max(np.abs(ran[measured.channels[0]])) > 1.0:
+    if not np.all(np.isfinite(ran[_leading(measured)])) or np.max(np.abs(ran[_leading(measured)])) > 1.0:
         return None
-    return replace(recording, channels={**found, REQUIRED: base[REQUIRED]})
+    used = {name: place for name, place in places.items() if name in found}
+    return replace(recording, channels={**found, REQUIRED: base[REQUIRED]}, places=used)
+
+
+def _leading(measured: Measured) -> str:
+    """A channel in which a fall shows."""
+    lead = measured.identification.leads[0].channel
+    return lead if any(lead in r.estimated for r in measured.recordings) else measured.channels[0]
 
 
 def _expected(truth: Explanation, rival: Explanation, made: Recording, errors: Errors) -> float:

@@ -266,6 +266,8 @@ class Diagnosis:
     """Of the specimen, those seen included."""
     extrapolated: tuple[Extrapolated, ...] = ()
     """Recordings held out that lie beyond the amplitudes learned from."""
+    channels: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    """By channel and parameter: how many times wider the interval would be without the channel; with several."""
     posterior: Mapping[str, FloatArray] = field(default_factory=dict)
     """Samples (n,) of what a study can vary, by name; none where another model is the answer."""
     skipped: tuple[str, ...] = ()

@@ -16,6 +16,7 @@ from grids.instruments.base import Surroundings
 from grids.instruments.staged import moved_in_stages, recorded_in_stages
 from grids.recordings.base import REQUIRED, FloatArray, Recording
 from grids.specimen import Specimen
+from models.kinematics import Place, ground_along
 from models.piecewise import simulate
 
 
@@ -47,8 +48,12 @@ def sensed_run(
     channels: Sequence[str],
     initial: Mapping[str, float] | None = None,
     held: Sequence[HeldStage] = (),
+    more: Mapping[str, Place] | None = None,
 ) -> dict[str, FloatArray]:
-    """Channels of one run under the recording's base motion, as the instruments would record them."""
+    """Channels of one run under the recording's base motion, as the instruments would record them.
+
+    ``more``: places of channels that the recording does not hold.
+    """
     measured = seen_as(measured, explanation.measured)
     misfit, values = explanation.fitted.misfit, explanation.fitted.point.values
     like = measured.shakings[0]
@@ -57,15 +62,20 @@ def sensed_run(
     sets = predictor.sets(instruments_of(values), recording)
     begins = dict(initial or {})
     begins |= {name: begins[of] for name, of in measured.alike.items() if of in begins}
+    moved = moved_in_stages(shaking, sets)
     history = simulate(
         measured.model,
         predictor.parts(values, recording),
-        moved_in_stages(shaking, sets),
+        moved,
         initial=begins or None,
         duration=shaking.duration,
         options=predictor.options,
     )
     seen = measured.identification.seen(history.channels)
-    found = {c: np.asarray(seen[c]).reshape(-1) for c in channels}
+    places, ground = {**recording.places, **(more or {})}, ground_along(moved, np.zeros(1, np.int64), history.time.size)
+    found = {
+        c: np.ravel(places[c].read(seen, shaking.time_step, (ground[0][0], ground[1][0])) if c in places else seen[c])
+        for c in channels
+    }
     around = Surroundings(shaking.time_step, recording.channels[REQUIRED], measured.reference_peak)
     return dict(recorded_in_stages(found, sets, around))

@@ -13,11 +13,12 @@ from numpy.typing import NDArray
 from diagnosis.data.averaging import averaged, stride
 from diagnosis.data.noise import base_noise, response_noise, smooth
 from diagnosis.data.windows import ABOVE_NOISE, Window, cut, over_noise
-from grids.recordings.base import CHANNELS, REQUIRED, SHARE, FloatArray, Recording
+from grids.recordings.base import REQUIRED, SHARE, FloatArray, Recording
 from grids.recordings.levels import stem
 from models import MODELS, get
 from models.errors import InputError
 from models.identification import NARROWEST, Identification, Largest, State, Stretches, WindowLengths
+from models.kinematics import Place
 from models.model import Model
 from models.shaking import Shaking
 
@@ -72,12 +73,45 @@ class Measured:
 
     @property
     def lead(self) -> int:
-        """Index of the leading channel."""
-        name = self.identification.leads[0].channel
-        return next(k for k, channel in enumerate(self.channels) if stem(channel) == name)
+        """Index of the leading channel, or of what stands for it (`standing_for`)."""
+        return self.standing_for(self.identification.leads[0].channel)
+
+    def standing_for(self, channel: str) -> int:
+        """Index of a channel; where it is not compared, of the first channel of the body that it leads."""
+        own = [k for k, name in enumerate(self.channels) if stem(name) == channel]
+        body = next((lead.body for lead in self.identification.leads if lead.channel == channel), 0)
+        own += [k for k, name in enumerate(self.channels) if name in self.places and self.places[name].body == body]
+        return own[0] if own else 0
+
+    @property
+    def leading(self) -> FloatArray:
+        """The leading channel (W, N) as measured, or as estimated from others where it was not recorded."""
+        lead = self.identification.leads[0].channel
+        if not any(lead in r.estimated for r in self.recordings):
+            return self.values[:, self.lead]
+        found = np.zeros((len(self.windows), self.values.shape[2]))
+        for w, window in enumerate(self.windows):
+            part = self.recordings[window.recording].channels[lead][window.first : window.first + window.samples]
+            found[w, : part.size] = part
+        return found
+
+    @property
+    def places(self) -> Mapping[str, Place]:
+        """What the compared channels measure that are no observables of the model."""
+        known = self.recordings[0].places
+        return {name: known[name] for name in self.channels if name in known}
+
+    def sensed(
+        self, ran: Mapping[str, FloatArray], time_step: float, ground: tuple[FloatArray, FloatArray]
+    ) -> dict[str, FloatArray]:
+        """The compared channels before any instrument, of a run's observables and poses (..., samples)."""
+        seen, places = self.identification.seen(ran), self.places
+        return {c: places[c].read(seen, time_step, ground) if c in places else seen[c] for c in self.channels}
 
     def unit_of(self, channel: str) -> str:
         """SI unit of a compared channel."""
+        if channel in self.places:
+            return self.places[channel].unit
         name = self.identification.same.get(channel, stem(channel))
         return next(q.unit for q in self.model.observables if q.name == name)
 
@@ -167,7 +201,8 @@ def arrange(
     """
     declared = identification_of(model)
     observed = [*(q.name for q in model.observables if q.unit != SHARE), *declared.same]
-    channels = tuple(c for c in observed if all(c in r.channels for r in recordings))
+    placed = placed_in(model, recordings)
+    channels = tuple(c for c in (*observed, *placed) if all(c in r.responses for r in recordings))
     for state in declared.free:
         lacking = [r.name for r in recordings if state.channel not in r.channels]
         if lacking:
@@ -232,9 +267,22 @@ def for_model(measured: Measured, model: Model, alike: Mapping[str, str], bonded
 
 def left_out(recordings: Sequence[Recording]) -> dict[str, tuple[str, ...]]:
     """Responses that only some recordings hold, so that none is compared by them; with those that lack them."""
-    held = dict.fromkeys(c for r in recordings for c in r.responses if CHANNELS[c].unit != SHARE)
+    held = dict.fromkeys(c for r in recordings for c in r.responses if r.channel(c).unit != SHARE)
     lacking = {c: tuple(r.name for r in recordings if c not in r.channels) for c in held}
     return {c: names for c, names in lacking.items() if names}
+
+
+def placed_in(model: Model, recordings: Sequence[Recording]) -> tuple[str, ...]:
+    """Channels that say what they measure; InputError where recordings differ or the model lacks the body."""
+    found: dict[str, Place] = {}
+    for recording in recordings:
+        for name, place in recording.places.items():
+            if found.setdefault(name, place) != place:
+                raise InputError(
+                    f"{name} is '{place.meaning}' in {recording.name} and another channel before: rename it."
+                )
+            model.check_place(name, place)
+    return tuple(found)
 
 
 def gather(recordings: Sequence[Recording], windows: Sequence[Window], channels: Sequence[str]) -> dict[str, Any]:
@@ -250,6 +298,9 @@ def gather(recordings: Sequence[Recording], windows: Sequence[Window], channels:
         for c, name in enumerate(channels):
             values[w, c, : window.samples] = recording.channels[name][part]
             mask[w, c, : window.samples] = True
+            if name in recording.places and recording.places[name].order:  # a difference over both neighbours
+                mask[w, c, 0] = False
+                mask[w, c, window.samples - 1] &= window.first + window.samples < recording.time.size
             sigma[w, c] = noise[window.recording, name]
         last = min(window.first + longest, recording.time.size)
         base[w, : last - window.first] = recording.channels[REQUIRED][window.first : last]

@@ -8,6 +8,7 @@ the responses to short pulses of base acceleration is 15-20 % low).
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,8 @@ from grids.instruments.base import Surroundings
 from grids.instruments.staged import moved_in_stages, recorded_in_stages
 from grids.instruments.windowed import moved_in_windows, recorded_in_windows
 from models.base import FloatArray
+from models.kinematics import ground_along
+from models.observed import Observed
 from models.piecewise import Part, trajectories
 from models.shaking import Shaking
 
@@ -52,11 +55,10 @@ def kicks(predictor: Predictor, point: Point) -> FloatArray:
             initial = dict(zip(m.model.states, states.T, strict=True)) | {k: v[windows] for k, v in m.memory.items()}
             first = m.first[windows] + after
             instants = np.tile(np.array([part.first for part in parts[1:]], np.int64), (first.size, 1))
-            ran = trajectories(
+            return trajectories(
                 m.model, [part.values for part in parts], instants, shaking, first=first, samples=samples,
                 initial=initial, options=predictor.options,
             )  # fmt: skip
-            return m.identification.seen(ran)
 
         plain = run(own, np.zeros(own.size, np.int64), point.states[own])
         sign = np.sign(plain[declared.coordinate])
@@ -75,7 +77,8 @@ def kicks(predictor: Predictor, point: Point) -> FloatArray:
             changed = states.copy()
             changed[:, rate] *= share
             ran = run(own[window], after, changed)
-            channels = {c: _from(plain[c][window], ran[c], after) for c in m.channels}
+            spliced = Observed({c: partial(_spliced, plain, ran, c, window, after) for c in ran})
+            channels = m.sensed(spliced, shaking.time_step, ground_along(shaking, m.first[own[window]], samples))
             found = recorded_in_stages(channels, sets, around, recorded_in_windows)
             recorded.append(np.stack([found[c] for c in m.channels], axis=1))
         slope = (recorded[0] - recorded[1]) / (2.0 * CHANGE)
@@ -89,7 +92,11 @@ def kicks(predictor: Predictor, point: Point) -> FloatArray:
     return found_all
 
 
-def _from(before: FloatArray, later: FloatArray, after: NDArray[np.intp]) -> FloatArray:
-    """Rows of ``before`` (n, N) with ``later`` in their place from sample ``after`` (n,) on."""
+def _spliced(
+    plain: Mapping[str, FloatArray], ran: Mapping[str, FloatArray], name: str, window: NDArray[np.intp],
+    after: NDArray[np.intp],
+) -> FloatArray:  # fmt: skip
+    """Rows ``window`` of ``plain`` with those of ``ran`` (n, N) in their place from sample ``after`` (n,) on."""
+    before, later = plain[name][window], ran[name]
     index = np.arange(before.shape[1])[None, :] - after[:, None]
     return np.where(index >= 0, np.take_along_axis(later, np.maximum(index, 0), axis=1), before)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +26,8 @@ from grids.recordings.base import Recording
 from grids.stages import Stage, changes, first_sample
 from models.base import FloatArray
 from models.identification import Rung
+from models.kinematics import ground_along
+from models.observed import Observed
 from models.piecewise import Part, trajectories
 from models.shaking import Shaking
 
@@ -83,11 +86,13 @@ class Predictor:
                     plain = (m.shakings if shakings is None else shakings)[r]
                     self._through(r, members, windows, moved_in_stages(plain, sets), complete, instruments, out)
                     continue
-                shaking = moved_in_stages(m.shakings[r], sets, moved_in_windows)
+                shaking = ground = moved_in_stages(m.shakings[r], sets, moved_in_windows)
                 carried = self._carried(members, windows, shaking, complete, recording, instruments)
                 if shakings is not None:
                     shaking = moved_in_stages(shakings[r], sets, moved_in_windows)
-                self._run(points, members, windows, shaking, complete, recording, instruments, carried, out)
+                # probes of the base are disturbances of the model: accelerometers are on the base as it moves
+                around = shaking, ground
+                self._run(points, members, windows, around, complete, recording, instruments, carried, out)
         return out
 
     def declared(self, points: Sequence[Point]) -> list[Point]:
@@ -157,7 +162,7 @@ class Predictor:
         points: Sequence[Point],
         members: Sequence[int],
         windows: NDArray[np.intp],
-        shaking: Shaking,
+        shakings: tuple[Shaking, Shaking],
         complete: Sequence[Mapping[str, float]],
         recording: Recording,
         instruments: Sequence[Switched],
@@ -165,9 +170,10 @@ class Predictor:
         out: FloatArray,
     ) -> None:
         m, time_step, ways = self.measured, recording.time_step, self._ways(recording)
+        shaking, ground = shakings
         compared = max(m.windows[w].samples for w in windows)
         ahead = max(seconds_ahead(instruments[p]) for p in members)
-        samples = compared + int(np.ceil(ahead / time_step))
+        samples = compared + int(np.ceil(ahead / time_step)) + any(place.order for place in m.places.values())
         n, count = len(windows), len(members)
         parts = [self._values([complete[p] for p in members], off, n) for _, off in ways]
         instants = np.tile(np.array([first for first, _ in ways[1:]], np.int64), (n * count, 1))
@@ -180,8 +186,8 @@ class Predictor:
         ran = trajectories(
             m.model, parts, instants, shaking, first=first, samples=samples, initial=initial, options=self.options
         )
-        seen = m.identification.seen(ran)
-        found = {c: _held(seen[c].reshape(count, n, samples), shaking, m.first[windows]) for c in m.channels}
+        held = Observed({c: partial(_held, ran, c, (count, n, samples), shaking, m.first[windows]) for c in ran})
+        found = m.sensed(held, shaking.time_step, ground_along(ground, m.first[windows], samples))
         base = np.pad(m.base[windows][:, :compared], ((0, 0), (0, samples - compared)))
         start = np.asarray(time_step * m.first[windows, None], float)
         around = Surroundings(time_step, base, m.reference_peak, start)
@@ -251,8 +257,11 @@ class Predictor:
         return values
 
 
-def _held(channel: FloatArray, shaking: Shaking, first: NDArray[np.int64]) -> FloatArray:
-    """Channel (P, n, samples) with the last value held beyond the end of the recording."""
+def _held(
+    ran: Mapping[str, FloatArray], name: str, shape: tuple[int, ...], shaking: Shaking, first: NDArray[np.int64]
+) -> FloatArray:
+    """A channel in the shape (P, n, samples) with the last value held beyond the end of the recording."""
+    channel = ran[name].reshape(shape)
     left = shaking.horizontal.size - 1 - first
     if np.all(left >= channel.shape[2] - 1):
         return channel

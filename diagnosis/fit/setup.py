@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import models
 from diagnosis.data.measured import Measured, arrange, identification_of
+from diagnosis.data.pose import with_rotations
 from diagnosis.data.stretches import arrange_stretches
 from diagnosis.fit.memory import counted
 from diagnosis.fit.misfit import Misfit
@@ -50,9 +51,13 @@ def measure(specimen: Specimen, recordings: Sequence[Recording], reference_peak:
                 "windows: leave it out, and the displacements too."
             )
         vertical = vertical_acts(specimen, model, recordings)
+        plain = without_instruments(values)
+        recordings = with_rotations(model, declared, plain, specimen.options, recordings)
         return arrange(model, recordings, vertical, declared.windows.in_seconds(derived), peak)
     if declared.stretches is None:
         raise InputError(f"model {model.name} declares neither windows nor stretches of whole runs.")
+    for name, place in ((n, p) for r in recordings for n, p in r.places.items()):
+        model.check_place(name, place)
     left = [acceleration for _, acceleration in declared.stretches.integrals if INTEGRATED.name in specimen.mechanisms]
     stretches = declared.stretches.in_seconds(derived)
     return arrange_stretches(model, recordings, stretches, model.points(values), left, peak)

@@ -29,6 +29,7 @@ from grids.instruments.windowed import moved_in_windows, recorded_in_windows
 from grids.stages import intervals
 from models.base import FloatArray
 from models.identification import Largest, Motion
+from models.kinematics import ground_along
 from models.piecewise import trajectories
 
 Kind = Literal["force", "error"]
@@ -54,7 +55,7 @@ def action(predictor: Predictor, point: Point, effect: str) -> Action:
     """What ``effect``, one of those that act at ``point``, does along the motion there."""
     m = predictor.measured
     inside = np.asarray(m.mask.all(axis=1))
-    states = _states(predictor, point)
+    states = states_along(predictor, point)
     lead = states[m.identification.leads[0].channel]
     step = np.array([m.recordings[w.recording].time_step for w in m.windows])[:, None]
     rates = [s for s in m.identification.states if s.rate]
@@ -68,9 +69,8 @@ def action(predictor: Predictor, point: Point, effect: str) -> Action:
     ahead = _one_step(predictor, _without(predictor, point, effect), states, _carried(predictor, point, states))
     both = inside[:, :-1] & inside[:, 1:]
     for state in rates:
-        if state.channel in m.channels:
-            lacking = np.where(both, states[state.name][:, 1:] - ahead[state.name], 0.0)
-            amount[:, m.channels.index(state.channel), :-1] = np.where(np.isfinite(lacking), lacking, 0.0)
+        lacking = np.where(both, states[state.name][:, 1:] - ahead[state.name], 0.0)
+        amount[:, m.standing_for(state.channel), :-1] += np.where(np.isfinite(lacking), lacking, 0.0)
     return Action(effect, "force", amount, _events(predictor, motion), motion)
 
 
@@ -83,10 +83,11 @@ def _without(predictor: Predictor, point: Point, effect: str) -> Point:
     return Point(values, point.states)
 
 
-def _states(predictor: Predictor, point: Point) -> dict[str, FloatArray]:
+def states_along(predictor: Predictor, point: Point) -> dict[str, FloatArray]:
     """The model's states and leading channels (W, N) along the windows, before any sensor of the responses."""
     m = predictor.measured
-    names = dict.fromkeys([*m.free, *(lead.channel for lead in m.identification.leads), *m.channels])
+    leads = [lead.channel for lead in m.identification.leads]
+    names = dict.fromkeys([*m.free, *leads, *m.channels])
     found = {name: np.zeros((len(m.windows), m.values.shape[2])) for name in names}
     carried = predictor.carried(point)
     for r in range(len(m.recordings)):
@@ -95,8 +96,10 @@ def _states(predictor: Predictor, point: Point) -> dict[str, FloatArray]:
             initial = {name: point.states[own, k] for k, name in enumerate(m.free)}
             initial |= {name: before[own] for name, before in (m.memory | carried).items()}
             ran = _run(predictor, point.values, r, m.first[own], m.values.shape[2], initial)
+            step, samples = m.recordings[r].time_step, m.values.shape[2]
+            sensed = m.sensed(ran, step, ground_along(m.shakings[r], m.first[own], samples))
             for name in names:
-                found[name][own] = ran[name]
+                found[name][own] = sensed[name] if name in sensed else ran[name]
     return found
 
 

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from diagnosis.fit.linearisation import Linearisation, linearise_about
 from diagnosis.fit.solver import Fitted
 from diagnosis.fit.whitening import HALF_WIDTH, Responses, responses
+from diagnosis.forces.action import states_along
 from models.base import FloatArray
 from models.identification import Force, Motion
 
@@ -63,8 +64,11 @@ class Forces:
 def motion_of(fitted: Fitted) -> Motion:
     """The leading coordinate along the windows of a fit."""
     m = fitted.measured
-    lead = m.lead
-    coordinate = fitted.misfit.predictor.predict([fitted.point])[0][:, lead]
+    lead, name = m.lead, m.identification.leads[0].channel
+    if any(name in r.estimated for r in m.recordings):
+        coordinate = states_along(fitted.misfit.predictor, fitted.point)[name]
+    else:
+        coordinate = fitted.misfit.predictor.predict([fitted.point])[0][:, lead]
     step = np.array([m.recordings[w.recording].time_step for w in m.windows])[:, None]
     reach = float(np.max(np.abs(coordinate) * m.mask[:, lead]))
     return Motion(coordinate, np.gradient(coordinate, axis=1) / step, m.base, reach)

@@ -35,6 +35,7 @@ def as_mapping(diagnosis: Diagnosis) -> dict[str, Any]:
         "missing_force": diagnosis.missing_force,
         "p_value": diagnosis.p_value,
         "reference_peak": diagnosis.reference_peak,
+        "channels": {name: dict(wider) for name, wider in diagnosis.channels.items()},
         "fit": {
             "train": _fit(diagnosis.train),
             "holdout": None if diagnosis.holdout is None else _holdout(diagnosis.holdout, diagnosis.held_stages),

@@ -63,6 +63,8 @@ def report_page(
     meanings = {name: channel.meaning for name, channel in CHANNELS.items()} | {
         quantity.name: quantity.meaning for quantity in model.observables
     }
+    meanings |= {name: place.meaning for name, place in specimen.places.items()}
+    meanings |= {name: place.meaning for r in (*train, *holdout) for name, place in r.places.items()}
     meanings |= {trace.channel: meanings[stem(trace.channel)] for trace in diagnosis.traces}
     return (
         environment()
@@ -123,7 +125,7 @@ def environment() -> Environment:
 def _read_row(recording: Recording, held_out: bool) -> dict[str, Any]:
     channels = []
     for name, noises in noise_levels(recording).items():
-        unit = CHANNELS[name].unit
+        unit = recording.channel(name).unit
         peak = float(np.max(np.abs(recording.channels[name])))
         sigma = float(np.median([noise.sigma for noise in noises]))
         channels.append(

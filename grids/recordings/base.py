@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.errors import InputError, nearest
+from models.kinematics import Place
 from models.shaking import Shaking
 
 FloatArray = NDArray[np.float64]
@@ -48,8 +49,9 @@ SHARE = "1"
 class Recording:
     """Channels ``(n_times,)``, or ``(n_levels, n_times)`` over ``levels``, at a uniform ``time_step``.
 
-    ``time`` (n_times,) starts at 0 s. ``notes`` say what was done while reading, ``suspicions`` what
-    looks wrong with the data but may be right; ``source`` names the file and what it says of itself.
+    ``places``: what channels measure that are no standard ones. ``estimated``: channels that were not recorded but
+    follow from those that were. ``time`` (n_times,) starts at 0 s. ``notes`` say what was done while reading,
+    ``suspicions`` what looks wrong with the data but may be right; ``source``: the file and what it says of itself.
     """
 
     name: str
@@ -60,6 +62,8 @@ class Recording:
     notes: tuple[str, ...] = ()
     suspicions: tuple[str, ...] = ()
     source: Mapping[str, str] = field(default_factory=dict)
+    places: Mapping[str, Place] = field(default_factory=dict)
+    estimated: frozenset[str] = frozenset()
 
     def __repr__(self) -> str:
         lines = [
@@ -73,7 +77,12 @@ class Recording:
     @property
     def responses(self) -> tuple[str, ...]:
         """The channels that a model is compared with."""
-        return tuple(name for name in self.channels if CHANNELS[name].response)
+        return tuple(name for name in self.channels if self.channel(name).response and name not in self.estimated)
+
+    def channel(self, name: str) -> Channel:
+        """What a channel is, by its name or by its place."""
+        place = self.places.get(name)
+        return CHANNELS[name] if place is None else Channel(place.unit, place.meaning)
 
     def shaking(self, vertical: bool, *, vertical_acts: bool = True) -> Shaking:
         """The measured motion of the base, with its vertical component or without; see `Shaking`.
@@ -102,8 +111,9 @@ class Raw:
     levels: tuple[str, ...]
     notes: tuple[str, ...]
     source: Mapping[str, str]
+    places: Mapping[str, Place]
 
 
 def unknown_channel(name: str) -> str:
     """End of a sentence about a name that is no standard channel."""
-    return f"'{name}' is no standard channel; {nearest(name, CHANNELS)}"
+    return f"'{name}' is no standard channel and does not say its quantity; {nearest(name, CHANNELS)}"

@@ -5,6 +5,9 @@ time = { column = "t", unit = "ms" }          # or time_step = "0.005 s"
 base_acceleration_x = { column = "acc table", unit = "g" }
 rotation_1 = { column = "inclinometer", unit = "mrad", sign = -1 }
 level_acceleration_x_0 = { column = "slab", unit = "g" }      # levels end in _0, _1 ...
+lvdt_left = { column = "W3", unit = "mm" }    # any other name has a table that says what it measures
+[channels.lvdt_left]
+quantity = "displacement"                     # ... (see `grids.recordings.placed`)
 """
 
 from __future__ import annotations
@@ -16,8 +19,9 @@ import numpy as np
 from grids.columns import read_columns, read_layout
 from grids.recordings.base import CHANNELS, FloatArray, Raw, unknown_channel
 from grids.recordings.levels import BY_LEVEL, stem
+from grids.recordings.placed import read_places
 from grids.units import factor_to_si
-from models.errors import InputError
+from models.errors import InputError, nearest
 
 SUFFIXES = (".csv", ".txt")
 
@@ -25,15 +29,25 @@ SUFFIXES = (".csv", ".txt")
 def read(path: Path) -> Raw:
     """The channels of a CSV file in SI; raises InputError."""
     layout = read_layout(path, {})
+    places = read_places(layout.channels, CHANNELS)
+    where = path.with_suffix(".toml").name
+    if lost := [name for name in places if name not in layout.columns]:
+        raise InputError(f"{where}: [channels.{lost[0]}] has no column; {nearest(lost[0], layout.columns)}")
     for name in layout.columns:
+        if name in places:
+            continue
         if stem(name) not in CHANNELS or (stem(name) in BY_LEVEL) != (stem(name) != name):
             cure = (
                 f"'{name}' is recorded level by level; name it {name}_0, {name}_1 ..."
                 if name in BY_LEVEL
                 else unknown_channel(name)
             )
-            raise InputError(f"{path.with_suffix('.toml').name}: [columns] {cure}")
-    table = read_columns(path, layout, _factor)
+            raise InputError(f"{where}: [columns] {cure}")
+
+    def factor(name: str, unit: str, at: str) -> float:
+        return factor_to_si(unit, places[name].unit if name in places else CHANNELS[stem(name)].unit, at)
+
+    table = read_columns(path, layout, factor)
     channels: dict[str, FloatArray] = {n: v for n, v in table.values.items() if stem(n) == n}
     levels: tuple[str, ...] = ()
     for channel in BY_LEVEL:
@@ -50,8 +64,4 @@ def read(path: Path) -> Raw:
     signs = [name for name, column in layout.columns.items() if column.sign == -1]
     notes = (f"sign turned as stated: {', '.join(signs)}",) if signs else ()
     source = {k: getattr(layout, k) for k in ("title", "source", "licence") if getattr(layout, k)}
-    return Raw(table.time_step, table.start, channels, levels, notes, source)
-
-
-def _factor(name: str, unit: str, where: str) -> float:
-    return factor_to_si(unit, CHANNELS[stem(name)].unit, where)
+    return Raw(table.time_step, table.start, channels, levels, notes, source, places)

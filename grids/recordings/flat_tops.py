@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from grids.recordings.base import CHANNELS, FloatArray, Recording
+from grids.recordings.base import FloatArray, Recording
 
 FEWEST = 6
 """Samples at a level that no chance of the noise puts there."""
@@ -61,7 +61,7 @@ def flat_tops(values: FloatArray) -> dict[float, list[tuple[int, int]]]:
 def suspected(recording: Recording) -> Iterator[str]:
     """A sentence about every response channel with flat tops."""
     for name in recording.responses:
-        channel, rows = CHANNELS[name], np.atleast_2d(recording.channels[name])
+        channel, rows = recording.channel(name), np.atleast_2d(recording.channels[name])
         for k, row in enumerate(rows):
             tops = flat_tops(row)
             if not tops:

@@ -8,9 +8,11 @@ import numpy as np
 
 from grids.netcdf_file import Variable, read_netcdf
 from grids.recordings.base import CHANNELS, FloatArray, Raw, unknown_channel
+from grids.recordings.placed import KEYS, read_places
 from grids.sampling import uniform_step
 from grids.units import factor_to_si
 from models.errors import InputError
+from models.kinematics import Place
 
 SUFFIXES = (".nc", ".nc4", ".cdf", ".netcdf")
 
@@ -25,7 +27,13 @@ def read(path: Path) -> Raw:
     channels: dict[str, FloatArray] = {}
     notes: list[str] = []
     levels: tuple[str, ...] = ()
+    places: dict[str, Place] = {}
     for name, variable in data.variables.items():
+        if name not in CHANNELS and "quantity" in variable.attributes and variable.dimensions == ("time",):
+            stated = {key: _plain(variable.attributes[key]) for key in KEYS if key in variable.attributes}
+            places |= read_places({name: stated}, CHANNELS)
+            channels[name] = _si(variable, name, places[name].unit, ("time",))
+            continue
         if name not in CHANNELS:
             if "time" in variable.dimensions and name not in variable.dimensions:
                 notes.append(f"{unknown_channel(name)} It is left out.")
@@ -34,7 +42,17 @@ def read(path: Path) -> Raw:
         channels[name] = _si(variable, name, CHANNELS[name].unit, wanted)
         if "level" in wanted:
             levels = _levels(data.variables.get("level"), len(channels[name]))
-    return Raw(uniform_step(times, "time"), float(times[0]), channels, levels, tuple(notes), dict(data.attributes))
+    return Raw(
+        uniform_step(times, "time"), float(times[0]), channels, levels, tuple(notes), dict(data.attributes), places
+    )
+
+
+def _plain(attribute: str) -> str | float:
+    """An attribute as a number where it is one."""
+    try:
+        return float(attribute)
+    except ValueError:
+        return attribute
 
 
 def _levels(stored: Variable | None, count: int) -> tuple[str, ...]:

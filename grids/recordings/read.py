@@ -55,9 +55,12 @@ def _checked(name: str, raw: Raw, base_only: bool) -> Recording:
         raise InputError(
             f"has no {REQUIRED} (found: {found or 'no channel'}); name or map it so, zeros for free rocking."
         )
-    if not base_only and not any(CHANNELS[channel].response for channel in raw.channels):
+    if not base_only and not any(c in raw.places or CHANNELS[c].response for c in raw.channels):
         responses = [channel for channel, declared in CHANNELS.items() if declared.response]
-        raise InputError(f"has no response (channels: {', '.join(raw.channels)}); add one of {', '.join(responses)}.")
+        raise InputError(
+            f"has no response (channels: {', '.join(raw.channels)}); add one of {', '.join(responses)}, or a channel "
+            "that says its quantity."
+        )
     first, last = _measured_span(raw)
     notes = list(raw.notes)
     count = raw.channels[REQUIRED].shape[-1]
@@ -72,7 +75,7 @@ def _checked(name: str, raw: Raw, base_only: bool) -> Recording:
         kept.flags.writeable = False
         channels[channel] = kept
     time = np.arange(last - first + 1, dtype=np.float64) * raw.time_step
-    return Recording(name, raw.time_step, time, channels, raw.levels, tuple(notes), (), raw.source)
+    return Recording(name, raw.time_step, time, channels, raw.levels, tuple(notes), (), raw.source, raw.places)
 
 
 def _measured_span(raw: Raw) -> tuple[int, int]:

@@ -37,6 +37,8 @@ class Housner(Model[Block]):
     states = declaration.STATES
     identification = IDENTIFICATION
     integrators = ("lanes", "reference", "newmark")
+    bodies = 1
+    not_placed = ("bounce", "wall_flexibility")
     resumes_with = declaration.RESUMES_WITH
 
     def assemble(self, values: Values, options: Mapping[str, str], *, vertical: bool, size: int) -> Block:
@@ -112,6 +114,18 @@ class Housner(Model[Block]):
             "rotation_rate_1": rate,
             "displacement_1_x": across + shift,
             "contact_1": ((rotation == 0.0) & (rate == 0.0)).astype(float),
+        }
+
+    def poses(self, coefficients: Block, samples: FloatArray) -> Mapping[str, FloatArray]:
+        """The underside turns about the pivot it stands on, rolls on a rounded corner, and slides."""
+        rotation, _, shift = np.moveaxis(samples, -1, 0)
+        rho = coefficients.corner_radius[:, None]
+        half = 0.5 * (coefficients.right + coefficients.left)[:, None] - rho
+        less = 1.0 - np.cos(rotation)
+        return {
+            "underside_1_x": rho * (rotation - np.sin(rotation)) + np.sign(rotation) * half * less + shift,
+            "underside_1_z": half * np.abs(np.sin(rotation)) + rho * less,
+            "underside_1_height": np.zeros_like(rotation),
         }
 
     def resume(

@@ -16,6 +16,7 @@ from models.interface.effects import STATES as OTHER_STATES
 from models.interface.identification import IDENTIFICATION
 from models.interface.layered import LayeredWall
 from models.interface.observe import observe
+from models.interface.poses import poses
 from models.interface.tangent import unstressed
 from models.model import Model
 from models.runs import Request, Run
@@ -41,6 +42,8 @@ class Interface(Model[LayeredWall]):
     observables = declaration.OBSERVABLES
     states = declaration.STATES
     identification = IDENTIFICATION
+    bodies = 2
+    not_placed = ("wall_flexibility",)
     vertical_by_default = True
     resumes_with: tuple[str, ...] | None = (
         "vertical_acceleration", "pivot_inset", "hardening", "locking", "tilt", "eccentricity", "contact_length",
@@ -92,6 +95,9 @@ class Interface(Model[LayeredWall]):
 
     def observe(self, coefficients: LayeredWall, samples: FloatArray) -> Mapping[str, FloatArray]:
         return observe(coefficients, samples)
+
+    def poses(self, coefficients: LayeredWall, samples: FloatArray) -> Mapping[str, FloatArray]:
+        return poses(coefficients, samples)
 
     def resume(
         self, states: FloatArray, outputs: Mapping[str, NDArray[Any]], initial: Mapping[str, FloatArray]

@@ -11,6 +11,7 @@ from models.interface.model import Interface
 from models.interface_linear import declaration, equation
 from models.interface_linear.identification import IDENTIFICATION
 from models.interface_linear.observe import observe
+from models.interface_linear.poses import poses
 from models.runs import Request, Run
 
 
@@ -29,6 +30,7 @@ class InterfaceLinear(Interface):
     options = declaration.OPTIONS
     outputs = declaration.OUTPUTS
     identification = IDENTIFICATION
+    bodies = 2
     resumes_with = ("vertical_acceleration", "pivot_inset")
 
     def resolve_options(self, options: Mapping[str, str] | None) -> dict[str, str]:
@@ -50,6 +52,9 @@ class InterfaceLinear(Interface):
 
     def observe(self, coefficients: LayeredWall, samples: FloatArray) -> Mapping[str, FloatArray]:
         return observe(coefficients, samples)
+
+    def poses(self, coefficients: LayeredWall, samples: FloatArray) -> Mapping[str, FloatArray]:
+        return poses(coefficients, samples)
 
 
 MODEL = InterfaceLinear()

@@ -14,6 +14,7 @@ from models.runs import Request, Run
 from models.stacked import declaration
 from models.stacked.identification import IDENTIFICATION
 from models.stacked.observe import observe
+from models.stacked.poses import poses
 from models.stacked.stack import Stack, assemble
 
 
@@ -38,6 +39,7 @@ class Stacked(Model[Stack]):
     observables = declaration.OBSERVABLES
     states = declaration.STATES
     identification = IDENTIFICATION
+    bodies = 2
     resumes_with = ("pivot_inset", "tilt", "eccentricity", "restitution", "viscous_damping")
 
     def assemble(self, values: Values, options: Mapping[str, str], *, vertical: bool, size: int) -> Stack:
@@ -95,6 +97,9 @@ class Stacked(Model[Stack]):
 
     def observe(self, coefficients: Stack, samples: FloatArray) -> dict[str, FloatArray]:
         return observe(coefficients, samples)
+
+    def poses(self, coefficients: Stack, samples: FloatArray) -> Mapping[str, FloatArray]:
+        return poses(coefficients, samples)
 
     def resume(
         self, states: FloatArray, outputs: Mapping[str, NDArray[Any]], initial: Mapping[str, FloatArray]

@@ -58,6 +58,8 @@ def calibrate(
     console.print(parameter_table(wall.title, found))
     if len(found.parameters) > 1:
         console.print(correlation_table(found))
+    if found.channels:
+        console.print(channel_table(found))
     if found.by_recording:
         console.print(drift_table(found))
     for seen in found.seen:
@@ -115,6 +117,16 @@ def correlation_table(found: Calibration) -> Table:
     table = Table("correlation", *names[:-1])
     for i, name in enumerate(names[1:], start=1):
         table.add_row(name, *(f"{found.correlation[i, j]:+.2f}" for j in range(i)))
+    return table
+
+
+def channel_table(found: Calibration) -> Table:
+    """What each channel adds: how many times wider the intervals would be without it."""
+    from rich.table import Table
+
+    table = Table("without channel", *found.parameters, caption="width of the intervals over that with all channels")
+    for channel, wider in found.channels.items():
+        table.add_row(channel, *(f"{wider[name]:.3g}" for name in found.parameters))
     return table
 
 

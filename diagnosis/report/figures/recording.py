@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from diagnosis.report.figures.curve import thin
 from diagnosis.report.figures.palette import PAPER, Palette
 from diagnosis.report.figures.panels import WIDE, in_milli, is_narrow, name_panel, new_panels
-from grids.recordings import CHANNELS, Recording
+from grids.recordings import Recording
 
 GRAVITY = 9.80665
 
@@ -18,7 +18,7 @@ def plot_recording(recording: Recording, *, width: float = WIDE, palette: Palett
     names = list(recording.channels)
     panels = new_panels([1.4] * len(names), width, palette, sharex=True, below=0.5)
     for ax, name in zip(panels, names, strict=True):
-        channel = CHANNELS[name]
+        channel = recording.channel(name)
         values, unit = in_milli(recording.channels[name], channel.unit)
         if channel.unit == "m s-2":
             values, unit = recording.channels[name] / GRAVITY, "g"

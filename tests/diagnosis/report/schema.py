@@ -220,4 +220,5 @@ class AnswerFile(Part):
     other_model: OtherModelPart | None
     errors: ErrorsPart | None
     not_tried: list[NotTriedPart]
+    channels: dict[str, dict[str, float | None]]
     provenance: dict[str, Any]

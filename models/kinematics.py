@@ -1,0 +1,151 @@
+"""What an instrument on a rigid body reads, from the pose of the body: once for all models, for rotations of any size.
+
+A point p = (x, z) of a body, from the middle of its underside, is displaced against the base by
+
+    d = U + Rot(theta) p - p,      Rot(t)(x, z) = (x cos t + z sin t, -x sin t + z cos t),
+
+U the displacement of that middle, theta the rotation, clockwise positive. Models give U and theta (`Model.poses`).
+
+Rates are differences of samples: velocity (d_k+1 - d_k-1)/(2 dt), acceleration (d_k+1 - 2 d_k + d_k-1)/dt^2. The latter
+is exactly the mean of the true acceleration over one sample on either side, weighted by a triangle, so an impact's jump
+of velocity dv is a reading of dv/dt and the sum over time keeps it. Both are in error by O(dt^2) between impacts. The
+first and last sample repeat their neighbours' (`Place.order`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.base import FloatArray
+from models.shaking import Shaking
+
+GRAVITY = 9.80665
+"""m s-2, in the readings of accelerometers."""
+UNITS = {
+    "displacement": "m", "velocity": "m s-1", "acceleration": "m s-2", "rotation": "rad",
+    "angular_velocity": "rad s-1", "uplift": "m", "compression": "m",
+}  # fmt: skip
+DIRECTIONS = ("x", "z", "across", "along")
+REFERENCES = ("base", "body_below", "absolute")
+
+Poses = Mapping[str, FloatArray]
+"""``underside_k_x``, ``underside_k_z``: U of body k (m); ``underside_k_height``: of its underside over the base at rest
+(m); ``rotation_k`` (rad): arrays (..., samples)."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """What one instrument measures: a ``quantity`` of a ``body`` at (``x``, ``z``) m, in a ``direction``.
+
+    Position from the middle of the body's underside, turning with it. Directions ``x`` (right) and ``z`` (up) stay,
+    ``across`` and ``along`` are the body's own x and z. ``relative_to`` base, absolute, or body_below (in the axes of
+    that body, from the point of it that lay there at rest). An accelerometer that turns (across, along) feels gravity,
+    less its reading at rest: across (a_x cos - (a_z + g) sin), along (a_x sin + (a_z + g) cos - g), sin, cos of theta.
+    Uplift is the opening of the joint under the body at x, compression its opposite.
+    """
+
+    quantity: str
+    body: int = 1
+    x: float = 0.0
+    z: float = 0.0
+    direction: str = "x"
+    relative_to: str = "base"
+
+    @property
+    def unit(self) -> str:
+        return UNITS[self.quantity]
+
+    @property
+    def order(self) -> int:
+        """How many times the pose is differentiated."""
+        return {"velocity": 1, "angular_velocity": 1, "acceleration": 2}.get(self.quantity, 0)
+
+    @property
+    def meaning(self) -> str:
+        """In words, for a label."""
+        of = f"{self.quantity.replace('_', ' ')} of body {self.body}"
+        if self.quantity in ("rotation", "angular_velocity"):
+            return f"{of}, clockwise positive"
+        if self.quantity in ("uplift", "compression"):
+            return f"{self.quantity} of the joint under body {self.body} at x = {self.x:g} m"
+        relative = "" if self.relative_to == "absolute" else f", relative to the {self.relative_to.replace('_', ' ')}"
+        return f"{of} at ({self.x:g}, {self.z:g}) m, {self.direction}{relative}"
+
+    def read(self, poses: Poses, time_step: float, ground: tuple[FloatArray, FloatArray]) -> FloatArray:
+        """Readings (..., samples); ``ground``: accelerations of the base (`ground_along`), that broadcast."""
+        theta = poses[f"rotation_{self.body}"]
+        if self.quantity == "rotation":
+            return theta
+        if self.quantity == "angular_velocity":
+            return first_difference(theta, time_step)
+        if self.quantity in ("uplift", "compression"):
+            opening = displaced(poses, self.body, self.x, 0.0, "body_below")[1]
+            return opening if self.quantity == "uplift" else -opening
+        moved = displaced(poses, self.body, self.x, self.z, self.relative_to)
+        if self.order:
+            differ = first_difference if self.order == 1 else second_difference
+            moved = differ(moved[0], time_step), differ(moved[1], time_step)
+        turns = self.direction in ("across", "along")
+        rest = 0.0
+        if self.quantity == "acceleration" and self.relative_to == "absolute":
+            rest = GRAVITY if turns else 0.0
+            moved = moved[0] + ground[0], moved[1] + ground[1] + rest
+        if not turns:
+            return moved[0] if self.direction == "x" else moved[1]
+        sine, cosine = np.sin(theta), np.cos(theta)
+        if self.direction == "across":
+            return np.asarray(moved[0] * cosine - moved[1] * sine)
+        return np.asarray(moved[0] * sine + moved[1] * cosine - rest)
+
+
+def displaced(poses: Poses, body: int, x: float, z: float, relative_to: str) -> tuple[FloatArray, FloatArray]:
+    """Displacement (m) of a point of a body against the base, or in the axes of the body below against that."""
+    here = _displaced(poses, body, x, z)
+    if relative_to != "body_below" or body == 1:
+        return here
+    below = body - 1
+    height = poses[f"underside_{body}_height"] - poses[f"underside_{below}_height"]
+    there = _displaced(poses, below, x, z + height)
+    turn = poses[f"rotation_{below}"]
+    dx, dz, sine, cosine = here[0] - there[0], here[1] - there[1], np.sin(turn), np.cos(turn)
+    return np.asarray(dx * cosine - dz * sine), np.asarray(dx * sine + dz * cosine)
+
+
+def _displaced(poses: Poses, body: int, x: float, z: float | FloatArray) -> tuple[FloatArray, FloatArray]:
+    theta = poses[f"rotation_{body}"]
+    sine, less = np.sin(theta), 2.0 * np.sin(0.5 * theta) ** 2  # 1 - cos, without cancellation
+    across = poses[f"underside_{body}_x"] + z * sine - x * less
+    return np.asarray(across), np.asarray(poses[f"underside_{body}_z"] - x * sine - z * less)
+
+
+def first_difference(values: FloatArray, time_step: float) -> FloatArray:
+    """Central difference (..., samples) over two samples."""
+    inner = (values[..., 2:] - values[..., :-2]) / (2.0 * time_step)
+    return _with_ends(inner)
+
+
+def second_difference(values: FloatArray, time_step: float) -> FloatArray:
+    """Second difference (..., samples): the acceleration's mean under a triangle of one sample on either side."""
+    inner = (values[..., 2:] - 2.0 * values[..., 1:-1] + values[..., :-2]) / time_step**2
+    return _with_ends(inner)
+
+
+def _with_ends(inner: FloatArray) -> FloatArray:
+    return np.pad(inner, [(0, 0)] * (inner.ndim - 1) + [(1, 1)], mode="edge")
+
+
+def ground_along(shaking: Shaking, first: NDArray[np.int64], samples: int) -> tuple[FloatArray, FloatArray]:
+    """Accelerations (n, samples) of the base to the right and up from each of the samples ``first`` (n,) on.
+
+    m s-2; whether the vertical one acts on the wall or not; 0 without one and beyond the end.
+    """
+    index = first[:, None] + np.arange(samples)
+    inside, last = index < shaking.horizontal.size, shaking.horizontal.size - 1
+    across = np.where(inside, shaking.horizontal[np.minimum(index, last)], 0.0)
+    if shaking.vertical is None:
+        return across, np.zeros_like(across)
+    return across, np.where(inside, shaking.vertical[np.minimum(index, last)], 0.0)

@@ -1,0 +1,46 @@
+"""Where the bodies of a model are, so that instruments at any point of them can be predicted."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from models.base import FloatArray
+from models.errors import InputError
+from models.kinematics import Place
+from models.observed import Observed
+
+
+class Placing:
+    """The part of a model that says where its bodies are.
+
+    ``bodies``: how many rigid bodies `poses` places; ``not_placed``: mechanisms with which a body is not rigid or not
+    on its pivots, so that `poses` does not hold.
+    """
+
+    name: str
+    bodies: int = 0
+    not_placed: tuple[str, ...] = ()
+
+    def poses(self, coefficients: Any, samples: FloatArray) -> Mapping[str, FloatArray]:
+        """Poses ``(n, samples)`` of states as integrators return them (`models.kinematics.Poses`), without rotations.
+
+        For body k = 1, 2 the displacement of the middle of its underside against the base, ``underside_k_x`` and
+        ``underside_k_z`` (m), counted from rest, and its height over the base at rest, ``underside_k_height`` (m).
+        """
+        return {}
+
+    def with_poses(
+        self, observables: Mapping[str, FloatArray], coefficients: Any, samples: FloatArray
+    ) -> Mapping[str, FloatArray]:
+        """The observables of states and the poses, each computed when it is asked for."""
+        return Observed.joined(observables, self.poses(coefficients, samples))
+
+    def check_place(self, name: str, place: Place) -> None:
+        """Raises InputError where the model has no body that the channel ``name`` could be on."""
+        if place.body > self.bodies:
+            has = {0: "places no rigid body", 1: "has one body"}.get(self.bodies, f"has {self.bodies} bodies")
+            raise InputError(
+                f"channel {name} is on body {place.body} and model {self.name} {has}: leave the channel out, or use "
+                "another model."
+            )

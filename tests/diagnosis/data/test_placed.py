@@ -1,0 +1,89 @@
+"""Recordings without a rotation: gauges under the corners and an accelerometer on top tell the same block."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import models
+from diagnosis.answer.calibration import Calibration, calibrate
+from diagnosis.fit.setup import measure
+from grids.recordings.base import Recording
+from models.errors import InputError
+from models.kinematics import Place
+from tests.diagnosis.made import SPECIMEN, TRUE, motion
+
+PLACES = {
+    "lvdt_left": Place("displacement", 1, -0.12, 0.0, "z"),
+    "lvdt_right": Place("displacement", 1, 0.12, 0.0, "z"),
+    "string": Place("displacement", 1, 0.0, 1.5, "x"),
+    "top": Place("acceleration", 1, 0.0, 1.8, "across", "absolute"),
+}
+UNKNOWN = replace(SPECIMEN, calibrate={"restitution": (0.8, 1.0)})
+SHARE = 1.0 - 1.5 * TRUE["width"] ** 2 / (TRUE["width"] ** 2 + TRUE["height"] ** 2)
+
+
+def recorded(names: Sequence[str], noise: float = 0.01) -> Recording:
+    shaking = motion(3)
+    ran = models.get("housner").simulate(TRUE, shaking, duration=shaking.duration)
+    rng = np.random.default_rng(3)
+    ground = shaking.horizontal, np.zeros_like(shaking.horizontal)
+    channels = {"base_acceleration_x": shaking.horizontal + 0.003 * shaking.pga * rng.normal(size=ran.time.size)}
+    for name in names:
+        true = PLACES[name].read(ran.channels, shaking.time_step, ground) if name in PLACES else ran.channels[name]
+        channels[name] = true + noise * np.max(np.abs(true)) * rng.normal(size=true.size)
+    return Recording("run", shaking.time_step, ran.time, channels, places={n: PLACES[n] for n in names if n in PLACES})
+
+
+@pytest.fixture(scope="module")
+def by_gauges() -> Calibration:
+    return calibrate(UNKNOWN, [recorded(("lvdt_left", "lvdt_right", "top"))], profile=False)
+
+
+def test_rotations_are_estimated_from_gauges_and_not_compared() -> None:
+    rotation = recorded(("rotation_1",), 0.0).channels["rotation_1"]
+    for names in (("lvdt_left", "lvdt_right"), ("string",)):
+        measured = measure(UNKNOWN, [recorded(names, 1e-6)])
+        assert measured.channels == names
+        # at the nominal width, .2 % off
+        error = measured.recordings[0].channels["rotation_1"] - rotation
+        assert np.max(np.abs(error)) < 0.003 * np.max(np.abs(rotation))
+
+
+def test_a_calibration_by_gauges_finds_the_block(by_gauges: Calibration) -> None:
+    found = by_gauges.parameters
+    assert found["width"].low95 < TRUE["width"] < found["width"].high95
+    assert found["height"].low95 < TRUE["height"] < found["height"].high95
+    assert found["restitution"].low95 < SHARE < found["restitution"].high95
+    assert by_gauges.misfit < 1.2 * by_gauges.noise_floor
+
+
+def test_a_calibration_by_rotation_agrees_with_it(by_gauges: Calibration) -> None:
+    rotation = calibrate(UNKNOWN, [recorded(("rotation_1",))], profile=False).parameters
+    for name, one in by_gauges.parameters.items():
+        assert one.low95 < rotation[name].high95
+        assert rotation[name].low95 < one.high95
+
+
+@pytest.mark.parametrize(("names", "said"), ((("lvdt_left",), "on both sides"), (("top",), "rotation_1 is missing")))
+def test_channels_that_do_not_tell_the_rotation_are_refused(names: tuple[str, ...], said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        measure(UNKNOWN, [recorded(names)])
+
+
+def test_a_channel_on_a_body_that_the_model_lacks_is_refused() -> None:
+    one = recorded(("rotation_1", "string"))
+    other = replace(one, places={"string": replace(PLACES["string"], body=2)})
+    with pytest.raises(InputError, match="body 2 and model housner has one body"):
+        measure(UNKNOWN, [other])
+
+
+def test_what_a_channel_adds_is_the_width_of_the_intervals_without_it(by_gauges: Calibration) -> None:
+    added = by_gauges.channels
+    assert set(added) == {"lvdt_left", "lvdt_right", "top"}
+    assert all(wider >= 1.0 - 1e-6 for each in added.values() for wider in each.values())
+    # the accelerometer sees every impact: without it the restitution is far less certain
+    assert added["top"]["restitution"] > 3.0

@@ -1,0 +1,70 @@
+"""Channels at positions on the bodies: written, read back, and refused in a sentence."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from grids.recordings import read_recording
+from grids.recordings.placed import attributes, read_place
+from grids.specimen import parse_specimen
+from grids.write_specimen import specimen_text
+from models.errors import InputError
+from models.kinematics import Place
+
+TABLE = {"quantity": "displacement", "position_x": "-12 cm", "direction": "z"}
+
+
+def test_a_csv_with_a_table_for_its_gauge(tmp_path: Path) -> None:
+    (tmp_path / "run.csv").write_text("a,w\n" + "0.1,2.5\n" * 20)
+    (tmp_path / "run.toml").write_text(
+        'time_step = "5 ms"\n[columns]\nbase_acceleration_x = { column = "a", unit = "g" }\n'
+        'lvdt_left = { column = "w", unit = "mm", sign = -1 }\n'
+        '[channels.lvdt_left]\nquantity = "displacement"\nposition_x = "-12 cm"\ndirection = "z"\n'
+    )
+    read = read_recording(tmp_path / "run.csv")
+    assert read.places["lvdt_left"] == Place("displacement", 1, -0.12, 0.0, "z", "base")
+    np.testing.assert_allclose(read.channels["lvdt_left"], -2.5e-3)
+    assert read.responses == ("lvdt_left",)
+
+
+@pytest.mark.parametrize(
+    "place",
+    (
+        Place("displacement", 2, -0.1, 0.3, "along", "body_below"),
+        Place("acceleration", 1, 0.0, 1.8, "across", "absolute"),
+        Place("angular_velocity", 2),
+        Place("uplift", 1, 0.125),
+    ),
+)
+def test_attributes_say_all_of_a_place(place: Place) -> None:
+    assert read_place("gauge", attributes(place)) == place
+
+
+def test_a_specimen_with_channels_is_written_and_read_back() -> None:
+    text = 'title = "b"\nmodel = "housner"\n[parameters]\nwidth = 0.4\nheight = 1.6\nmass = 1000.0\n'
+    text += '[channels.top]\nquantity = "acceleration"\nposition_z = "1.6 m"\ndirection = "across"\n'
+    specimen = parse_specimen(text)
+    assert specimen.places["top"].relative_to == "absolute"
+    assert parse_specimen(specimen_text(specimen)) == specimen
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    (
+        ({"quantity": "displacment"}, "displacement"),
+        ({"quantity": "force"}, "force"),
+        ({"body": 3}, "body = 3"),
+        ({"direction": "up"}, "direction"),
+        ({"relative_to": "absolute"}, "subtract"),
+        ({"position_x": "12 kg"}, "position_x"),
+        ({"quantity": "uplift"}, "no direction"),
+        ({"poition_x": 1.0}, "position_x"),
+    ),
+)
+def test_what_is_wrong_is_said_with_the_channel_and_a_cure(changed: dict[str, object], said: str) -> None:
+    with pytest.raises(InputError, match="channel lvdt_left") as error:
+        read_place("lvdt_left", {**TABLE, **changed})
+    assert said in str(error.value)
