@@ -95,3 +95,19 @@ def test_both_blocks_of_a_stack_are_where_their_mass_centres_say() -> None:
     np.testing.assert_allclose(np.arcsin((left - right) / 0.5), ran["rotation_2"] - ran["rotation_1"], atol=1e-12)
     assert np.min(np.minimum(left, right)) > -1e-12
     np.testing.assert_allclose(np.minimum(left, right), 0.0, atol=1e-12)  # one corner always stands
+
+
+@pytest.mark.parametrize(("name", "size"), (("interface", 0.1), ("interface_linear", 1e-4)))
+def test_a_wall_on_layers_is_where_its_mass_centres_and_its_compression_say(name: str, size: float) -> None:
+    model = models.get(name)
+    layers = {"wall_thickness": 0.4, "layer_thickness": 0.01, "layer_modulus": 3e6, "damping_ratio": 0.05}
+    wall = model.build({**STACK, **layers})
+    state = size * np.random.default_rng(1).normal(size=(1, 6, 8))
+    state[:, :, 2:4] -= 2e-4
+    seen = {**model.observe(wall, state), **model.poses(wall, state)}
+    for body, height in ((1, 0.9), (2, 0.2)):
+        moved = Place("displacement", body, 0.0, height).read(seen, 0.005, STILL)
+        np.testing.assert_allclose(moved, seen[f"displacement_{body}_x"], atol=1e-11)
+    rest = model.derive({**STACK, **layers})["static_compression_base"]
+    closed = Place("compression", 1).read(seen, 0.005, STILL)
+    np.testing.assert_allclose(closed, seen["compression_base"] - rest, atol=1e-12)
