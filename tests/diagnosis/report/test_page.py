@@ -134,3 +134,11 @@ def test_words_of_a_user_are_no_markup() -> None:
 def test_drawn_twice_is_the_same() -> None:
     first, second = (picture(partial(plot_raster, diagnosis().windows), "raster") for _ in range(2))
     assert first == second
+
+
+def test_page_says_what_each_channel_adds() -> None:
+    wider = {"rotation_1": {"width": 3.25, "height": float("inf")}, "displacement_1_x": {"width": 1.5, "height": 1.0}}
+    page = render(replace(diagnosis(), channels=wider))
+    section = page.partition("What each channel adds")[2].partition("</section>")[0]
+    assert "×3.25" in section
+    assert "not told" in section
