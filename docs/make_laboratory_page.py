@@ -1,6 +1,6 @@
 """What each property of a laboratory's recordings does to a calibration: tables and figure of docs/laboratory.md.
 
-    python docs/make_laboratory_page.py
+    PYTHONPATH=. python docs/make_laboratory_page.py
 
 One block is shaken by strong parts of the shipped records, moved by a program that shares nothing with the models
 (`benchmarks.diagnosis.truth`), recorded with one property changed at a time, and calibrated: how well is its

@@ -21,6 +21,8 @@ from grids.units import factor_to_si
 from models.errors import InputError
 
 NAME = "sample"
+MEANING = "sample of what was found"
+"""Marks the axis in a cube: a list of design points may be called `sample` too."""
 
 
 class SamplesTable(Schema):
@@ -57,4 +59,4 @@ def read_samples(table: SamplesTable, targets: Targets, folder: Path) -> Axis:
     if count > held:
         raise InputError(f"[samples] count = {count}: the file holds {held} samples; give at most these.")
     points = {name: values[:count] for name, values in points.items()}
-    return Axis(NAME, np.arange(count), "1", "sample of what was found", points)
+    return Axis(NAME, np.arange(count), "1", MEANING, points)

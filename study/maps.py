@@ -16,7 +16,7 @@ import xarray as xr
 import models
 from models.errors import InputError
 from models.errors import nearest as closest
-from study.selection import INTENSITIES, SAMPLE, check_axis, complete, over_samples, place, select
+from study.selection import INTENSITIES, SAMPLE, check_axis, complete, is_samples, over_samples, place, select
 from study.status import OVERTURNED, ROCKING, UNKNOWN
 
 At = Mapping[str, Any]
@@ -83,7 +83,8 @@ def slices(cube: xr.Dataset, output: str, x: str, at: At | None = None, *, neare
     """
     _check_output(cube, output)
     check_axis(cube, x)
-    others = [str(d) for d, size in cube.sizes.items() if size > 1 and d != x and d not in (at or {})][:1]
+    free = [str(d) for d, size in cube.sizes.items() if size > 1 and d != x and d not in (at or {})]
+    others = [name for name in free if not is_samples(cube, name)][:1]
     taken = complete(cube, at, (x, *others), nearest=nearest)
     chosen = select(cube, taken)[output]
     curves = chosen.squeeze([d for d in chosen.dims if d not in (x, *others)]).transpose(*others, x)
@@ -96,8 +97,8 @@ def default_axes(cube: xr.Dataset, x: str | None, y: str | None) -> tuple[str, s
         if axis is not None:
             check_axis(cube, axis)
     long = [str(dim) for dim, size in cube.sizes.items() if size > 1]
-    last = [*INTENSITIES, SAMPLE]
-    free = sorted(long, key=lambda d: last.index(d) if d in last else -1)
+    long = [name for name in long if name in (x, y) or not is_samples(cube, name)]
+    free = [*(d for d in long if d not in INTENSITIES), *(d for d in long if d in INTENSITIES)]
     x = x or next((d for d in free if d != y), None)
     y = y or next((d for d in free if d != x), None)
     if x is None or y is None:

@@ -50,7 +50,7 @@ def complete(
     if both := [name for name in given if name in keep]:
         raise InputError(f"'{both[0]}' is shown over its whole range: leave it out of the selection")
     left = [str(d) for d, size in cube.sizes.items() if size > 1 and d not in given and d not in keep]
-    if SAMPLE in left:
+    if any(is_samples(cube, name) for name in left):
         raise InputError(
             f"axis '{SAMPLE}' holds {cube.sizes[SAMPLE]} equally likely walls, and this shows one: choose it, for "
             f"instance {SAMPLE}=0, or draw an overturning map or a fragility, which take all of them"
@@ -60,7 +60,12 @@ def complete(
 
 def over_samples(cube: xr.Dataset, at: Mapping[str, Any] | None, shown: Collection[str]) -> list[str]:
     """The axis of samples, if all of it is asked for: neither shown nor selected."""
-    return [SAMPLE] if cube.sizes.get(SAMPLE, 1) > 1 and SAMPLE not in {*shown, *(at or {})} else []
+    return [str(d) for d in cube.dims if is_samples(cube, str(d)) and d not in {*shown, *(at or {})}]
+
+
+def is_samples(cube: xr.Dataset, name: str) -> bool:
+    """Whether an axis holds several equally likely walls (`grids.samples`)."""
+    return name == SAMPLE and cube.sizes[name] > 1 and cube[name].attrs.get("comment") == samples.MEANING
 
 
 def place(cube: xr.Dataset, at: Mapping[str, Any]) -> str:

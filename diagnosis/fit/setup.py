@@ -13,7 +13,7 @@ from diagnosis.fit.memory import counted
 from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.prediction import Predictor
 from diagnosis.fit.solver import Fitted, fit_thoroughly
-from diagnosis.fit.starts import led
+from diagnosis.fit.starts import best_start
 from diagnosis.fit.unknowns import fixed_values, of_specimen, without_instruments
 from diagnosis.fit.whitening import responses, sensor_noise_only, with_base_noise
 from grids.instruments.integrated_displacement import MECHANISM as INTEGRATED
@@ -81,7 +81,7 @@ def base_fit(specimen: Specimen, measured: Measured, seed: int = 0) -> Fitted:
     coordinates = tuple(name for name in measured.identification.coordinates if name in ranged)
     predictor = Predictor(measured, specimen.options, specimen.stages, coordinates)
     plain = Misfit(predictor, sensor_noise_only(predictor), unknowns, fixed_values(specimen))
-    start = led(plain, seed)
+    start = best_start(plain, seed)
     return with_noise_of_the_base(fit_thoroughly(plain, start.u, start.states))
 
 

@@ -26,7 +26,7 @@ class Origin:
     known: np.ndarray
 
 
-def led(misfit: Misfit, seed: int = 0, origins: Sequence[Origin] = ()) -> Fitted:
+def best_start(misfit: Misfit, seed: int = 0, origins: Sequence[Origin] = ()) -> Fitted:
     """The best start, a few iterations on where there were several.
 
     Unknowns with a range are those of a Sobol set, the others nominal; from ``origins`` what is not known there.

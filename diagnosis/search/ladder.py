@@ -24,7 +24,7 @@ from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.prediction import Predictor
 from diagnosis.fit.setup import with_noise_of_the_base
 from diagnosis.fit.solver import fit, fit_thoroughly
-from diagnosis.fit.starts import Origin, led
+from diagnosis.fit.starts import Origin, best_start
 from diagnosis.fit.unknowns import clip, fixed_values, in_range, of_specimen
 from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.progress import Progress
@@ -45,6 +45,7 @@ LEFT = 1.5
 """Misfit per sample, over the sensors' noise, from which on other base models are tried."""
 DECISIVE = 2.0
 """Gain over that of the best single mechanism with which another base model that errs nowhere ends the search."""
+HOPELESS = "after a short search it explains less of the recordings than the base model"
 WORSE = "it explains less of the recordings than what was found with the base model"
 PER_STATE = 2.0
 """What every state that a window starts from beyond those of the base model costs."""
@@ -187,9 +188,9 @@ def _fitted(
     """
     base_model = below[0]
     plain = _misfit(rung, specimen, base_model.measured, recordings)
-    start = led(plain, seed, [_origin(plain, one) for one in below])
+    start = best_start(plain, seed, [_origin(plain, one) for one in below])
     if start.loss > base_model.loss:
-        raise InputError(WORSE)
+        raise InputError(HOPELESS)
     fitted = fit_thoroughly(plain, start.u, start.states)
     if fitted.loss > found.loss:
         raise InputError(WORSE)
@@ -213,9 +214,16 @@ def _misfit(rung: Rung, specimen: Specimen, measured: Measured, recordings: Sequ
 
 
 def _origin(misfit: Misfit, below: Explanation) -> Origin:
-    """What another base model's fit knows of this one's parameters and states."""
-    values = {name.rpartition(".")[2]: value for name, value in below.fitted.values.items()}
-    own = [x.name.rpartition(".")[2] for x in misfit.unknowns]
+    """What another base model's fit knows of this one's parameters and states: rungs share bare names."""
+    rung = misfit.predictor.rung
+    rungs = {c.name for c in below.candidates} | ({rung.name} if rung else set())
+
+    def plain(name: str) -> str:
+        of, _, parameter = name.rpartition(".")
+        return parameter if of in rungs else name
+
+    values = {plain(name): value for name, value in below.fitted.values.items()}
+    own = [plain(x.name) for x in misfit.unknowns]
     u = [x.coordinate(values.get(name, x.start)) for x, name in zip(misfit.unknowns, own, strict=True)]
     fitted = dict(zip(below.measured.free, below.fitted.states.T, strict=True))
     states = [fitted.get(name, x) for name, x in zip(misfit.measured.free, misfit.measured.states.T, strict=True)]

@@ -118,12 +118,11 @@ def _draw_share(
     drawn = ax.pcolormesh(*borders, np.ma.masked_invalid(ordered), cmap=colours, vmin=0.0, vmax=1.0)
     bar = ax.figure.colorbar(drawn, ax=ax)
     bar.set_label(f"share of the samples that {word}")
-    across, up = (np.sort(positions(values[str(dim)])[0]) for dim in reversed(values.dims))
-    inside = (
-        [level for level in BAND if np.nanmin(ordered) < level < np.nanmax(ordered)] if min(ordered.shape) > 1 else []
-    )
-    if inside:
-        lines = ax.contour(across, up, ordered, levels=inside, colors=COLOURS[1], linewidths=1.2)
+    (across, x_words), (up, y_words) = (positions(values[str(dim)]) for dim in reversed(values.dims))
+    known = ordered[np.isfinite(ordered)]
+    inside = [level for level in BAND if known.size and known.min() < level < known.max()]
+    if inside and min(ordered.shape) > 1 and not (x_words or y_words):
+        lines = ax.contour(np.sort(across), np.sort(up), ordered, levels=inside, colors=COLOURS[1], linewidths=1.2)
         ax.clabel(lines, fmt=lambda level: f"{level:.0%}", fontsize="small")
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -37,9 +39,10 @@ def fragility(
     `cells` counts those with a valid answer, `unknown` the others. ``why`` names what cannot be fitted; its numbers are
     nan.
 
-    Of an axis of samples left open every sample is fitted: `probability` is the mean of their curves, `median` and
-    `dispersion` are those of the middle sample, and all intervals but those of `share` hold the middle ``confidence``
-    of the samples: what is not known of the wall. What so few motions leave open is not in them.
+    Of an axis of samples left open every sample is fitted, as a step where its cells ask for one (never: the median is
+    infinite): `probability` is the mean of their curves, `median` and `dispersion` are those of the middle sample, and
+    all intervals but those of `share` hold the middle ``confidence`` of the samples: what is not known of the wall.
+    What few motions leave open is not in them.
 
     Raises InputError without an axis `motion`, and for unknown names and values off the grid.
     """
@@ -54,7 +57,7 @@ def fragility(
         x, y, motion = pairs(strengths, outcomes)
         if SAMPLE in outcomes.dims:
             each = [pairs(strengths.isel({SAMPLE: j}), outcomes.isel({SAMPLE: j})) for j in range(cells.sizes[SAMPLE])]
-            curve = _of_samples([fit_lognormal(*one, confidence) for one in each], levels, confidence)
+            curve = _of_samples(each, levels, confidence)
         else:
             curve = _curve(fit_lognormal(x, y, motion, confidence), levels)
         parts.append(curve.assign(_bins(x, y, motion, measure in cells.dims, confidence)))
@@ -81,26 +84,49 @@ def _curve(fit: Lognormal, levels: FloatArray) -> xr.Dataset:
     return _dataset({"median": fit.median, "dispersion": fit.dispersion}, fit.probability(levels), levels, fit.why)
 
 
-def _of_samples(fits: Sequence[Lognormal], levels: FloatArray, confidence: float) -> xr.Dataset:
+def _of_samples(
+    samples: Sequence[tuple[FloatArray, FloatArray, FloatArray]], levels: FloatArray, confidence: float
+) -> xr.Dataset:
     """The mean of the samples' curves, and between which values the middle ``confidence`` of the samples lie."""
-    fitted = [fit for fit in fits if np.isfinite(fit.median[0])]
-    missing = len(fits) - len(fitted)
-    why = f"{missing} of {len(fits)} samples cannot be fitted: {next(f.why for f in fits if f.why)}" if missing else ""
-    if not fitted:
-        return _curve(fits[0], levels).assign(why=((), why))
-    ends = (0.5 - confidence / 2, 0.5 + confidence / 2)
-    curves = np.array([fit.probability(levels)[0] for fit in fitted])
-    triples: dict[str, tuple[float, float, float]] = {}
-    for name in ("median", "dispersion"):
-        values = [getattr(fit, name)[0] for fit in fitted]
-        triples[name] = (np.median(values), np.quantile(values, ends[0]), np.quantile(values, ends[1]))
-    low, high = (np.quantile(curves, end, axis=0) for end in ends)
-    return _dataset(triples, (curves.mean(axis=0), low, high), levels, why)
+    each = [_of_sample(x, y, motion, levels) for x, y, motion in samples]
+    ends = (0.5, 0.5 - confidence / 2, 0.5 + confidence / 2)
+    curves = np.array([one.curve for one in each])
+    outer = [np.quantile(curves, end, axis=0) for end in ends[1:]]
+    triples = {
+        # a sample, not a mean of two: one may be infinite
+        name: tuple(float(np.quantile(values, end, method="inverted_cdf")) for end in ends)
+        for name, values in (("median", [one.median for one in each]), ("dispersion", [one.dispersion for one in each]))
+    }
+    why = "; ".join(f"{k} of {len(each)} samples: {text}" for text, k in Counter(o.why for o in each if o.why).items())
+    return _dataset(triples, (curves.mean(axis=0), *outer), levels, why)
+
+
+@dataclass(frozen=True)
+class _Sample:
+    """The fragility of one sample: ``curve`` over the levels; ``why`` it is no lognormal one."""
+
+    curve: FloatArray
+    median: float
+    dispersion: float
+    why: str = ""
+
+
+def _of_sample(x: FloatArray, y: FloatArray, motion: FloatArray, levels: FloatArray) -> _Sample:
+    """The lognormal fit, or the step that the likelihood tends to where none, all or the stronger cells happen."""
+    fit = fit_lognormal(x, y, motion)
+    if np.isfinite(fit.median[0]):
+        return _Sample(fit.probability(levels)[0], fit.median[0], fit.dispersion[0])
+    stayed, happened = x[y < 0.5], x[y > 0.5]
+    if not happened.size or not stayed.size or stayed.max() <= happened.min():
+        last = stayed.max() if stayed.size else 0.0
+        threshold = float(np.sqrt(last * happened.min())) if happened.size else np.inf
+        return _Sample((levels >= threshold).astype(float), threshold, 0.0, fit.why)
+    return _Sample(np.full(levels.size, np.nan), np.nan, np.nan, fit.why)
 
 
 def _dataset(
-    triples: Mapping[str, tuple[float, float, float]],
-    curve: tuple[FloatArray, FloatArray, FloatArray],
+    triples: Mapping[str, tuple[float, ...]],
+    curve: tuple[FloatArray, ...],
     levels: FloatArray,
     why: str,
 ) -> xr.Dataset:

@@ -9,9 +9,12 @@ import matplotlib
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
+from matplotlib.contour import ContourSet
 
 import study.accessor  # noqa: F401
+from grids.samples import MEANING
 from models.errors import InputError
 from study.figures import plot_onset_map, plot_output_map, plot_overturning_map, plot_slices, save_figure
 from study.maps import default_axes
@@ -61,7 +64,7 @@ def of_samples(count: int = 9) -> xr.Dataset:
     cubes = [known_cube(np.random.default_rng(seed)) for seed in range(count)]
     pga = cubes[0]["pga"]  # the same grid for all
     found = xr.concat([one.assign_coords(pga=pga) for one in cubes], "sample")
-    return found.assign_coords(sample=("sample", np.arange(count), {"units": "1", "axis_of_study": "true"}))
+    return found.assign_coords(sample=("sample", np.arange(count), {"units": "1", "comment": MEANING}))
 
 
 def test_a_map_over_samples_is_their_share(tmp_path: Path) -> None:
@@ -78,6 +81,17 @@ def test_a_map_over_samples_is_their_share(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="'sample' holds 9 equally likely walls"):
         cube.rocking.output_map("peak_rotation", "aspect_ratio", "pga")
     assert cube.rocking.output_map("peak_rotation", "aspect_ratio", "pga", sample=0).dims == ("pga", "aspect_ratio")
+
+
+def test_maps_over_samples_of_records_or_of_nothing_known_have_no_lines() -> None:
+    cube = of_samples().isel(top_mass=0)
+    named = cube.assign_coords(aspect_ratio=("aspect_ratio", list("abcd"), {"units": "1", "axis_of_study": "true"}))
+    empty = cube.assign(status=cube["status"] * 0)
+    for k, (one, lines) in enumerate(((cube, True), (named, False), (empty, False))):
+        fig, ax = plt.subplots()
+        plot_overturning_map(one, "aspect_ratio", "pga", ax=ax)
+        assert any(isinstance(c, ContourSet) for c in ax.collections) == lines, k
+        plt.close(fig)
 
 
 def test_the_smallest_intensity_over_samples_is_that_of_half_of_them() -> None:

@@ -12,7 +12,8 @@ import models
 from diagnosis.answer.ladder import confirmed, other_model
 from diagnosis.errors.model import Errors, calibrated
 from diagnosis.fit.setup import measure
-from diagnosis.fit.solver import Fitted
+from diagnosis.fit.solver import Fitted, fit_thoroughly
+from diagnosis.fit.starts import best_start
 from diagnosis.progress import silent
 from diagnosis.report import extend
 from diagnosis.search import ladder
@@ -78,7 +79,11 @@ def test_a_block_that_is_one_stays_one_whatever_is_tried(monkeypatch: pytest.Mon
     monkeypatch.setattr(ladder, "LEFT", 0.0)
     tried = ladder.rungs(found, PIER, [], 0, silent)
     assert {rung.name for rung, _ in tried} | set(found.not_tried) == {"second_body", "compliant_base"}
-    assert all(why == ladder.WORSE for why in found.not_tried.values())
+    assert all(why in (ladder.WORSE, ladder.HOPELESS) for why in found.not_tried.values())
+    two = ladder._misfit(fitted.measured.identification.ladder[0], PIER, fitted.measured, fitted.measured.recordings)
+    base = ladder._plain(found.base)
+    start = best_start(two, 0, [ladder._origin(two, base)])
+    assert fit_thoroughly(two, start.u, start.states).loss > base.loss - 5.0  # a joint that stays closed is no gain
     assert ladder.climb(found, tried, decisive=False) is None
     assert all(one.over(ladder._as_found(found))[0] < 0.0 for _, one in tried)
 

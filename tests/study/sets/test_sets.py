@@ -8,6 +8,7 @@ import xarray as xr
 
 from grids.motions import make_pulse, read_motion
 from grids.motions.measures import MEASURES, measures_of
+from grids.samples import MEANING
 from models.errors import InputError
 from study.figures.cloud import plot_cloud
 from study.sets.cells import event_of, intensity
@@ -63,7 +64,7 @@ def test_fragility_over_samples_holds_what_is_not_known_of_the_wall() -> None:
     cube = xr.concat(
         [cube_of(CAPACITY * factor, levels) for factor in factors], "sample", coords="minimal", compat="override"
     )
-    cube = cube.assign_coords(sample=("sample", np.arange(21), {"units": "1", "axis_of_study": "true"}))
+    cube = cube.assign_coords(sample=("sample", np.arange(21), {"units": "1", "comment": MEANING}))
     found, each = fragility(cube, event_of(cube)), fragility(cube, event_of(cube), over="sample")
     assert found.attrs["samples"] == 21 and each.attrs["samples"] == 0
     one = fragility(cube.isel(sample=10), event_of(cube))
@@ -79,6 +80,26 @@ def test_fragility_over_samples_holds_what_is_not_known_of_the_wall() -> None:
     assert chosen.attrs["samples"] == 0 and chosen["median"] == pytest.approx(float(each["median"][3]))
     with pytest.raises(InputError, match="'sample' holds 21 equally likely walls"):
         incremental(cube, "peak_rotation")
+
+
+def test_samples_that_never_or_always_fall_count_in_a_fragility() -> None:
+    cubes = [cube_of(CAPACITY * factor) for factor in (1e-3, 1.0, 1e3, 1e3, 1e3)]
+    cube = xr.concat(cubes, "sample", coords="minimal", compat="override")
+    cube = cube.assign_coords(sample=("sample", np.arange(5), {"units": "1", "comment": MEANING}))
+    found = fragility(cube, event_of(cube))
+    for end in (0, -1):
+        share = found["probability"].sel(level=LEVELS[end], method="nearest")
+        assert share == pytest.approx(float(found["share"][end]), abs=0.02)
+    assert np.isinf(found["median"]) and found["median_low"] == 0.0
+    assert "3 of 5 samples: it never happens" in str(found["why"].values)
+
+
+def test_a_design_called_sample_holds_no_equally_likely_walls() -> None:
+    cube = xr.concat([CUBE, cube_of(2.0 * CAPACITY)], "sample", coords="minimal", compat="override")
+    cube = cube.assign_coords(sample=("sample", [0, 1], {"units": "1", "comment": "point of the design"}))
+    found = fragility(cube, event_of(cube))
+    assert found.attrs["samples"] == 0
+    assert found["median"] == pytest.approx(float(fragility(cube_of(2.0 * CAPACITY), event_of(cube))["median"]))
 
 
 def test_unanswered_cells_are_left_out() -> None:
