@@ -6,13 +6,14 @@ there. What counts is in `diagnosis.search.found`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 
 import numpy as np
 
 from diagnosis.errors.model import estimate
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.progress import Progress
+from diagnosis.search.candidates import Candidate
 from diagnosis.search.found import MISSING, Search, adequate, adjusted, explains_all, survives
 from diagnosis.search.hidden import take_hidden
 from diagnosis.search.null import null_distribution
@@ -29,7 +30,7 @@ from diagnosis.search.refit import (
     without,
 )
 from diagnosis.search.screen import Score, score
-from diagnosis.search.weighing import by_white_noise, weigh_again
+from diagnosis.search.weighing import as_white_noise, by_white_noise, weigh_again
 from models.base import FloatArray
 
 FAINT = 8.0
@@ -132,8 +133,10 @@ def _singles(found: Search, progress: Progress) -> None:
     opened = linearise_about(found.base.fitted)
     found.scores = score(opened, found.candidates, found.not_tried)
     found.null = null_distribution(opened, found.scores)
-    sound = adequate(found.base)
-    wanted = worth_a_refit(found.scores, FEWEST_ADEQUATE if sound else FEWEST, SHARE_OF_FIRST)[:MOST]
+    fewest = FEWEST_ADEQUATE if adequate(found.base) else FEWEST
+    wanted = worth_a_refit(found.scores, fewest, SHARE_OF_FIRST)[:MOST]
+    if found.measured.stretches is None:
+        wanted += _hidden_by_errors(found, {entry.candidate for entry in wanted}, fewest)
     for k, entry in enumerate(wanted):
         if not found.affordable(entry.candidate.name):
             continue
@@ -158,6 +161,17 @@ def _singles(found: Search, progress: Progress) -> None:
     found.singles.sort(key=adjusted)
     found.singles[0] = with_memory(found.singles[0])
     found.tried += found.singles
+
+
+def _hidden_by_errors(found: Search, tried: Collection[Candidate], fewest: int) -> list[Score]:
+    """The strongest of a screen against white noise that were not tried.
+
+    Errors about the base model hold part of what is missing: scatter of events much of a wrong law of them. Such a
+    mechanism has no score under these errors until it is in.
+    """
+    white = linearise_about(as_white_noise(found.base.fitted, found.errors))
+    strongest = worth_a_refit(score(white, found.candidates), fewest, SHARE_OF_FIRST)[:fewest]
+    return [entry for entry in strongest if entry.candidate not in tried]
 
 
 def pool(found: Search) -> list[Explanation]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from diagnosis.errors.model import Errors, refitted
-from diagnosis.fit.solver import fit
+from diagnosis.fit.solver import Fitted, fit
 from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.search.found import Search, adjusted
 from diagnosis.search.refit import Explanation, without
@@ -26,14 +26,18 @@ def reweighed(explanation: Explanation, errors: Errors) -> Explanation:
     return replace(explanation, fitted=fit(replace(f.misfit, whitening=errors.whitening), f.u, f.states))
 
 
+def as_white_noise(fitted: Fitted, errors: Errors) -> Fitted:
+    """The fit as if the sensors' errors were white, beside those of the base motion."""
+    white = sensor_noise_only(fitted.misfit.predictor).with_columns(errors.base)
+    return fit(replace(fitted.misfit, whitening=white), fitted.u, fitted.states)
+
+
 def by_white_noise(explanation: Explanation, errors: Errors) -> Explanation:
     """The explanation refitted as if the sensors' errors were white, then under these errors, if that is better.
 
     Errors that hold part of an effect make its valley flat; white noise leads into it.
     """
-    f = explanation.fitted
-    white = replace(f.misfit, whitening=sensor_noise_only(f.misfit.predictor).with_columns(errors.base))
-    led = fit(white, f.u, f.states)
+    f, led = explanation.fitted, as_white_noise(explanation.fitted, errors)
     back = replace(explanation, fitted=fit(f.misfit, led.u, led.states))
     return min(explanation, back, key=lambda e: e.loss)
 

@@ -1,0 +1,28 @@
+"""Errors estimated about a model that leaves a law of the impacts out hold most of it: the screen must see it still."""
+
+from __future__ import annotations
+
+from diagnosis.errors.model import calibrated
+from diagnosis.fit.linearisation import linearise_about
+from diagnosis.fit.setup import measure
+from diagnosis.search.candidates import candidates
+from diagnosis.search.found import Search
+from diagnosis.search.refit import Explanation
+from diagnosis.search.screen import score
+from diagnosis.search.select import _hidden_by_errors
+from tests.diagnosis.made import SPECIMEN, recording
+
+NAMES = ("restitution", "velocity_restitution", "tilt", "gain")
+
+
+def test_a_mechanism_that_the_errors_hold_is_found_by_a_screen_against_white_noise() -> None:
+    effect = {"restitution": {"factor_on_housner": 0.97}}
+    measured = measure(SPECIMEN, [recording(f"run_{seed}", seed, effect) for seed in (1, 2)])
+    fitted, errors = calibrated(SPECIMEN, measured)
+    some = tuple(one for one in candidates(measured, SPECIMEN) if one.name in NAMES)
+    first = score(linearise_about(fitted), some)[0]
+    assert first.candidate.name != "restitution"  # under errors with scatter of impacts another law looks stronger
+    found = Search(Explanation((), fitted), some, errors)
+    (hidden,) = _hidden_by_errors(found, {first.candidate}, 1)
+    assert hidden.candidate.name == "restitution" and hidden.statistic > 10.0 * first.statistic
+    assert _hidden_by_errors(found, {hidden.candidate}, 1) == []
