@@ -78,7 +78,8 @@ LOST = "what the rubber's law could give back at the end counts as stored; count
 STATUS_RULE = (
     "not_converged: the wall cannot stand under its own weight (a law cannot carry it or creeps without end, it tips, "
     "a layer is compressed beyond its thickness), or the run diverged: a state that is not a number, a layer opened or "
-    "compressed by more than ten times the wall's size, energy that nothing has given"
+    "compressed by more than ten times the wall's size, energy that nothing has given, a layer pressed beyond its lock "
+    "strain by more or less, or a wall that falls or not, as the step goes"
 )
 CALM = 1e-6
 """At rest: kinetic energy below this share of its peak for one first period, after the shaking."""

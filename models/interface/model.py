@@ -33,7 +33,7 @@ class Interface(Model[LayeredWall]):
 
     name = "interface"
     title = "a wall and a block on top, a rubber layer under each"
-    version = "5"
+    version = "6"
     parameters = declaration.PARAMETERS
     alternatives = declaration.ALTERNATIVES
     options = declaration.OPTIONS

@@ -81,7 +81,7 @@ class RubberLaw:
     ``numbers(p, step)``: what ``update`` wants for steps of ``step`` (s), by the names of its arguments.
     ``update(u, change, h, *numbers)``: h, effect and slope of one fibre at the end of a step over which u has
     grown by ``change`` (``_`` where the law does not look at it) to u; plain floats, without branches.
-    ``limit(p)``: compression (m) that the layer cannot reach; a run that passes it was taken in steps too coarse.
+    ``limit(p)``: compression (m) that the layer cannot reach; a run that passes it is taken again in finer steps.
     ``of_strain``: whether the rubber's thickness enters. ``refusal(p)``: what is wrong with the numbers, or "".
     ``restless(p, u)``: where the law never comes to rest at u, and a sentence about the worst such place.
     """

@@ -16,7 +16,7 @@ from models.interface.lanes.advance import advance
 from models.interface.lanes.effects.given import energy, given_effects
 from models.interface.lanes.effects.rows import CONSTANTS
 from models.interface.lanes.laws import given_laws, stored_in_layers
-from models.interface.lanes.sense import diverged, pressed
+from models.interface.lanes.sense import SAME_TIME, agree, diverged, pressed
 from models.interface.layered import LayeredWall
 from models.interface.observe import with_onset
 from models.lanes.arrays import Tables
@@ -29,7 +29,8 @@ from models.shaking import Shaking
 EVENTS = ("uplift", "closing", "rest", "overturned")
 LARGEST_PHASE = (0.1, 0.4)
 """Largest omega h of a step (rad) of the second mode of the rotations and of the slowest vertical one."""
-FINER = 4
+FINER, FINEST = 4, 16
+"""Steps of lanes that are taken again: how much finer than before, and how much finer than the first at most."""
 
 
 def substeps(wall: LayeredWall, squares: FloatArray, time_step: float) -> NDArray[np.int64]:
@@ -68,20 +69,27 @@ def run(wall: LayeredWall, request: Request, refinement: int = 1) -> Run:
     """Run n lanes of ``wall`` as requested; ``refinement`` divides every step. Samples: q, q'.
 
     Of walls with effects q, q' of the plain coordinates, then those of the others. Lanes whose rubber was pressed
-    beyond its limit are taken again, in steps `FINER` times as fine.
+    beyond its limit are taken again in finer steps, until it is not or the last two runs agree; those of which not
+    even the finest steps tell are not converged.
     """
-    found, steps = _pitched(wall, request, refinement)
-    if (again := np.flatnonzero(pressed(wall, found.result))).size:
-        finer, more = _pitched(wall.take(again), request.take(again), FINER * refinement)
-        put(found, again, finer)
+    found, steps = _tables(wall, request, refinement)
+    again, finer = np.flatnonzero(pressed(wall, found.result)), 1
+    while again.size and finer < FINEST:
+        finer *= FINER
+        some, coarse = wall.take(again), found.result[again]
+        taken, more = _tables(some, request.take(again), finer * refinement)
+        put(found, again, taken)
         steps += more
+        # when a wall falls is as sensitive as any peak: the finest steps need not tell
+        within = SAME_TIME if finer < FINEST else np.inf
+        again = again[pressed(some, taken.result) & ~agree(some, coarse, taken.result, within)]
     result = found.result
-    lost = diverged(wall, request, result)
-    result[:, r.R_FAILED] = np.maximum(result[:, r.R_FAILED], lost)
+    result[diverged(wall, request, result), r.R_FAILED] = 1.0
+    result[again, r.R_FAILED] = 1.0
     return Run(outputs(wall, result), found.trace, with_onset(logged(found, EVENTS)), steps)
 
 
-def _pitched(wall: LayeredWall, request: Request, refinement: int) -> tuple[Tables, int]:
+def _tables(wall: LayeredWall, request: Request, refinement: int) -> tuple[Tables, int]:
     """Tables of all lanes, those of one low pass of the base's pitch together, and the lane-steps."""
     columns = 8 if wall.effects is None else 16
     found, steps = empty(request, r.N_RESULT, columns), 0

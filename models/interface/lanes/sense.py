@@ -15,6 +15,8 @@ SIZES = 10.0
 """Of the wall, by which no layer opens or is compressed."""
 BEYOND = 1.15
 """Times the compression that a layer cannot reach."""
+SAME_EDGE, SAME_TIME = 0.15, 0.1
+"""Of two runs in different steps: compressions, over what cannot be reached, and instants of overturning (s)."""
 
 
 def diverged(wall: LayeredWall, request: Request, table: FloatArray) -> NDArray[np.bool_]:
@@ -33,14 +35,29 @@ def diverged(wall: LayeredWall, request: Request, table: FloatArray) -> NDArray[
     return np.asarray(~(np.all(np.abs(places) <= size[:, None], axis=1) & sound))
 
 
-def pressed(wall: LayeredWall, table: NDArray[np.float64]) -> NDArray[np.bool_]:
+def pressed(wall: LayeredWall, table: FloatArray) -> NDArray[np.bool_]:
     """Lanes (n,) of which an edge was compressed by more than `BEYOND` what a law of its layer can be.
 
     Rubber that locks stiffens so steeply that a step sized for the wall at rest may throw it into the lock, from where
-    it comes back with energy that nothing has given. With steps fine enough edges pass the limit by a tenth at most.
+    it comes back with energy that nothing has given. Shaken hard, layers with a low lock strain go as far in any step,
+    for the law goes on along its tangent; and so does every edge on which a wall has fallen.
     """
-    found = np.zeros(wall.size, np.bool_)
+    return _compressed(wall, table) > BEYOND
+
+
+def agree(wall: LayeredWall, coarse: FloatArray, fine: FloatArray, within: float) -> NDArray[np.bool_]:
+    """Lanes (n,) whose runs in two steps overturn the same bodies ``within`` some time (s) or, if none, press alike."""
+    first, second = (table[:, [r.R_OVER_1, r.R_OVER_2]] for table in (coarse, fine))
+    upright = np.isnan(first) & np.isnan(second)
+    together = np.abs(first - second) <= within
+    alike = np.abs(_compressed(wall, coarse) - _compressed(wall, fine)) <= SAME_EDGE
+    return np.asarray(np.all(upright | together, axis=1) & (alike | ~np.all(upright, axis=1)))
+
+
+def _compressed(wall: LayeredWall, table: FloatArray) -> FloatArray:
+    """Largest compression of an edge over what a law of its layer can be (n,); 0 where no law has a limit."""
+    found = np.zeros(wall.size)
     for joint, column in (("base", r.R_EDGE_B), ("top", r.R_EDGE_T)):
         for law, p in wall.laws_at(joint) if joint in wall.rubber_joints else ():
-            found |= table[:, column] > BEYOND * law.limit(p)
+            found = np.fmax(found, table[:, column] / law.limit(p))
     return found
