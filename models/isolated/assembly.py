@@ -40,8 +40,8 @@ def complaints(values: Values) -> list[str]:
 
 def assemble(values: Values, size: int) -> Chain:
     """The buildings of the parameters alone, without mechanisms; raises InputError."""
-    for sentence in complaints(values):
-        raise InputError(sentence)
+    if found := complaints(values):
+        raise InputError("; ".join(found))
     shape = np.broadcast_shapes(*(np.shape(v) for v in values.values()), (size,))
 
     def value(name: str, default: float = np.nan) -> FloatArray:

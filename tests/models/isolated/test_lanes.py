@@ -138,3 +138,7 @@ def test_laws_that_miss_something_are_refused() -> None:
     masses = {k: v for k, v in HOUSE.items() if k != "total_mass"} | {"level_mass_1": 1e4}
     with pytest.raises(InputError, match="levels is 6 and level_mass_2 is missing"):
         MODEL.simulate(masses, two_tones())
+    bare = {k: v for k, v in BODY.items() if k != "total_mass"} | {"levels": 3.0}
+    (said,) = MODEL.check(bare)
+    for name in ("level_mass_1", "storey_stiffness", "storey_damping"):
+        assert f"levels is 3 and {name} is missing" in said
