@@ -15,11 +15,13 @@ from grids.plan import read_plan
 from models import get
 from study.figures import save_figure
 from study.figures.style import COLOURS, set_log_ticks
-from study.status import OVERTURNED, ROCKING
+from study.status import OVERTURNED, REST, ROCKING, UNKNOWN
 from study.wording import GRAVITY
 
 Cubes = dict[str, xr.Dataset]
 """By the word for their layers, over the same axes: linear, locking."""
+LOCK = 0.7
+"""The lock strain of studies/rubber_locking.toml."""
 
 
 def overturned_share(cube: xr.Dataset, **at: float) -> xr.DataArray:
@@ -64,7 +66,7 @@ def plot(
 def by_aspect(cubes: Cubes) -> str:
     """What becomes of the cells, over the aspect ratio."""
     rows = []
-    for word, chosen in (("overturns", lambda s: s == OVERTURNED), ("no joint lifts", lambda s: s < ROCKING)):
+    for word, chosen in (("overturns", lambda s: s == OVERTURNED), ("no joint lifts", lambda s: s == REST)):
         for name, cube in cubes.items():
             where = chosen(cube["status"])
             others = [d for d in where.dims if d != "aspect_ratio"]
@@ -112,30 +114,40 @@ def trends(cubes: Cubes) -> str:
     for cube in cubes.values():
         walls, correlation, low, middle, high = spectrum_numbers(cube)
         fall, again = standing_again(cube)
-        short = (cube["status"] == OVERTURNED).sel(aspect_ratio=0.4, method="nearest")
+        walls_fall = (cube["status"] == OVERTURNED).any("pga")
+        soft = int(walls_fall.where(cube["layer_modulus"] < 4e6, False).sum())
+        stands = cube["status"].isin((REST, ROCKING))
+        edge = cube["peak_strain_base"].where(stands)
+        beyond = 100 * float((edge > LOCK).sum() / stands.sum())
+        short, second = ((cube["status"] == OVERTURNED).sel(aspect_ratio=a, method="nearest") for a in (0.4, 0.5))
         damped = [100 * float(short.sel(damping_ratio=xi, method="nearest").mean()) for xi in (0.0167, 0.1)]
-        loaded = [100 * float(short.sel(top_mass=m, method="nearest").mean()) for m in (1000.0, 5000.0)]
+        loaded = [
+            ", ".join(f"{100 * float(over.sel(top_mass=m, method='nearest').mean()):.1f} %" for m in (1000.0, 5000.0))
+            for over in (short, second)
+        ]
         peak = 1e3 * cube["peak_rotation"].where(cube["status"] == ROCKING)
         medians = [float(peak.sel(aspect_ratio=a, method="nearest").median()) for a in (0.4, 0.8, 1.2)]
         columns.append([
-            walls, correlation, f"{middle} ({low} to {high})", f"{fall}", f"{again}",
-            f"{damped[0]:.1f} %, {damped[1]:.1f} %", f"{loaded[0]:.1f} %, {loaded[1]:.1f} %",
-            ", ".join(f"{m:.1f}" for m in medians), str(int((cube["status"] > OVERTURNED).sum())),
+            walls, correlation, f"{middle} ({low} to {high})", f"{fall}", f"{soft}", f"{again}",
+            f"{damped[0]:.1f} %, {damped[1]:.1f} %", *loaded,
+            ", ".join(f"{m:.1f}" for m in medians), f"{beyond:.1f} %, {float(edge.max()):.2f}",
+            str(int(cube["status"].isin(UNKNOWN).sum())),
         ])  # fmt: skip
     what = (
         "walls that lift above the lowest PGA", "correlation with the spectrum's estimate (logarithms)",
         "PGA that lifts over the spectrum's: median (5 to 95 %)", "walls that overturn at some PGA",
-        "of these: stand again at a higher PGA", "overturns at aspect ratio .4: 1.67 %, 10 % damping",
-        "overturns at aspect ratio .4: 1 t, 5 t on top",
+        "of these: on layers below 4 MPa", "of these: stand again at a higher PGA",
+        "overturns at aspect ratio .4: 1.67 %, 10 % damping",
+        "overturns at aspect ratio .4: 1 t, 5 t on top", "overturns at aspect ratio .5: 1 t, 5 t on top",
         "peak rotation of walls that rock and stand, median at aspect ratio .4, .8, 1.2 [mrad]",
-        "cells without an answer",
+        "cells that stand and press the base's edge beyond a strain of .7, largest strain", "cells without an answer",
     )  # fmt: skip
     return table(["", *cubes], zip(what, *columns, strict=True))
 
 
 def strains(cube: xr.Dataset) -> str:
     """Largest compression of the joints' edges over the layer's thickness, of cells that do not overturn."""
-    stands = cube["status"] < OVERTURNED
+    stands = cube["status"].isin((REST, ROCKING))
     modulus, slender = cube["layer_modulus"] / 1e6, np.isclose(cube["aspect_ratio"], 0.4)
     slender = xr.DataArray(slender, coords={"aspect_ratio": cube["aspect_ratio"]})
     groups = (
