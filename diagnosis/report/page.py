@@ -60,12 +60,12 @@ def report_page(
     """The page as text, with the pictures ``drawn``. What it says of the fit stands in ``diagnosis``."""
     model = models.get(specimen.model)
     known, declared = effects(model), identification_of(model)
-    meanings = {name: channel.meaning for name, channel in CHANNELS.items()} | {
-        quantity.name: quantity.meaning for quantity in model.observables
+    short = {name: channel.meaning.partition(",")[0] for name, channel in CHANNELS.items()} | {
+        quantity.name: quantity.meaning.partition(",")[0] for quantity in model.observables
     }
-    meanings |= {name: place.meaning for name, place in specimen.places.items()}
-    meanings |= {name: place.meaning for r in (*train, *holdout) for name, place in r.places.items()}
-    meanings |= {trace.channel: meanings[stem(trace.channel)] for trace in diagnosis.traces}
+    places = {name: place for r in (*train, *holdout) for name, place in r.places.items()} | dict(specimen.places)
+    short |= {name: f"{name}, {place.meaning}" for name, place in places.items()}
+    short |= {trace.channel: short[stem(trace.channel)] for trace in diagnosis.traces}
     return (
         environment()
         .get_template("report.html.j2")
@@ -86,7 +86,7 @@ def report_page(
             other_title=models.get(diagnosis.other_model.model).title if diagnosis.other_model else "",
             other_parameters=_other_parameters(diagnosis.other_model),
             rivals=_rivals(diagnosis, known),
-            channels={name: meaning.partition(",")[0] for name, meaning in meanings.items()},
+            channels=short,
             phases=words_of(declared),
             forces={kind.name: kind.meaning for kind in declared.forces},
             recordings=[_read_row(r, held) for held, rs in ((False, train), (True, holdout)) for r in rs],
