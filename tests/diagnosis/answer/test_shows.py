@@ -19,6 +19,7 @@ def shown(where: tuple[int, ...], explained: bool) -> Any:
     shape = (2 * WINDOWS, 1, SAMPLES)
     missing = np.zeros(shape)
     missing[list(where)] = 2.0 * np.sin(np.linspace(0.0, 6.0, SAMPLES))
+    values = np.random.default_rng(3).normal(size=shape) + missing
     measured = SimpleNamespace(
         identification=IDENTIFICATION,
         recordings=tuple(
@@ -34,7 +35,8 @@ def shown(where: tuple[int, ...], explained: bool) -> Any:
         base=np.zeros((2 * WINDOWS, SAMPLES)),
         mask=np.ones(shape, bool),
         sigma=np.ones(shape[:2]),
-        values=np.random.default_rng(3).normal(size=shape) + missing,
+        values=values,
+        leading=values[:, 0],
     )
     after = missing if explained else np.zeros(shape)
     return SimpleNamespace(measured=measured, before=np.zeros(shape), after=after)
