@@ -2,28 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from models.base import Event, FloatArray
 from models.interface.layered import LayeredWall
-
-
-class Observed(Mapping[str, FloatArray]):
-    """Observables by name, each computed when it is asked for."""
-
-    def __init__(self, forms: Mapping[str, Callable[[], FloatArray]]) -> None:
-        self._forms = forms
-
-    def __getitem__(self, name: str) -> FloatArray:
-        return self._forms[name]()
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._forms)
-
-    def __len__(self) -> int:
-        return len(self._forms)
+from models.observed import Observed
 
 
 def observe(wall: LayeredWall, state: FloatArray) -> Observed:
