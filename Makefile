@@ -8,13 +8,13 @@ OLDEST := .venv-oldest
 STUDY := results/rubber_interface
 HEAVY := --select "top_mass=5 t" --select damping_ratio=0.0544
 
-.PHONY: study quick test lint types bench independent faults long fuzz verify processors audit test-oldest agreement diagnosis-bench laboratory-bench beginnings-bench bases-bench bench-refine gallery docs clean
+.PHONY: study quick test lint types bench independent faults long fuzz verify processors audit test-oldest agreement diagnosis-bench laboratory-bench beginnings-bench bases-bench bench-refine bench-scale gallery docs clean
 
 study: $(READY)
 	$(BIN)/rocking run studies/rubber_interface.toml
 	$(BIN)/rocking map $(STUDY) --y layer_modulus $(HEAVY)
 	$(BIN)/rocking map $(STUDY) --x layer_modulus --y pga --select aspect_ratio=0.4 $(HEAVY) --out $(STUDY)/short_wall
-	$(BIN)/rocking slices $(STUDY) uplift_duration --x layer_modulus --select "pga=0.31 g" $(HEAVY)
+	$(BIN)/rocking slices $(STUDY) uplift_duration --x layer_modulus --select "pga=0.315 g" $(HEAVY)
 
 quick: $(READY) lint types
 	$(BIN)/python -m pytest -n 2 --dist loadfile -m "not slow"
@@ -80,6 +80,9 @@ bases-bench: $(READY)
 
 bench-refine: $(READY)
 	$(BIN)/python -m benchmarks.refinement
+
+bench-scale: $(READY)
+	$(BIN)/python -m benchmarks.scale
 
 gallery: $(READY)
 	$(BIN)/python docs/make_gallery.py

@@ -26,8 +26,11 @@ from rubber_tables import (
     SHAPE,
     SHORT,
     STUDIES,
+    first_overturning,
     found_onset,
+    median_over,
     predicted_onset,
+    rigid_onset,
     spectrum_numbers,
     standing_again,
     table,
@@ -51,85 +54,104 @@ WORDS = {
 }
 
 
-def plot_prediction(found: xr.DataArray, predicted: xr.DataArray) -> Axes:
-    ax = plt.figure(figsize=(5.4, 4.4), layout="constrained").add_subplot()
+def plot_prediction(found: xr.DataArray, predicted: xr.DataArray, step: float) -> Axes:
+    """Every wall by both; ``step``: the factor from one PGA of the grid to the next."""
+    ax = plt.figure(figsize=(6.4, 4.6), layout="constrained").add_subplot()
     wide = np.broadcast_to(found["aspect_ratio"].values[:, None, None, None], found.shape)
     # the grid rounds up: spread each level over its step, or points hide each other
-    spread = found.values / GRAVITY - np.random.default_rng(0).uniform(0.0, 0.02, found.shape)
+    spread = found.values / GRAVITY * step ** -np.random.default_rng(0).uniform(0.0, 1.0, found.shape)
     dots = ax.scatter(
         predicted.values.ravel() / GRAVITY, spread.ravel(), c=wide.ravel(), s=5, cmap="cividis", linewidths=0
     )
-    ax.plot([0.03, 0.4], [0.03, 0.4], color=COLOURS[1], linewidth=1.0, label="equal")
+    limits = (0.025, 0.3)
+    ax.plot(limits, limits, color=COLOURS[1], linewidth=1.0, label="equal")
     for which, scale in (("x", ax.set_xscale), ("y", ax.set_yscale)):
         scale("log")
         set_log_ticks(ax.xaxis if which == "x" else ax.yaxis)
-    ax.set(xlim=(0.03, 0.4), ylim=(0.03, 0.4), aspect="equal")
+    ax.set(xlim=limits, ylim=limits, aspect="equal")
     ax.set_xlabel("from the response spectrum [g]")
-    ax.set_ylabel("PGA at which a joint lifts in the study [g]")
+    ax.set_ylabel("PGA that lifts a joint, study [g]")
     ax.legend(frameon=False)
     ax.grid(alpha=0.3)
     ax.figure.colorbar(dots, ax=ax, label="aspect ratio")
     return ax
 
 
-def rubber_interface(cube: xr.Dataset) -> None:
+def rubber_figures(cube: xr.Dataset) -> None:
+    found, predicted = found_onset(cube).transpose(*SHAPE), predicted_onset(cube).transpose(*SHAPE)
+    step = float((cube["pga"][-1] / cube["pga"][0]) ** (1 / (cube["pga"].size - 1)))
     draw = {
         "rubber_onset": partial(plot_onset_map, cube, "aspect_ratio", "layer_modulus", HEAVY),
+        "rubber_capacity": partial(plot_overturning_map, cube, "aspect_ratio", "layer_modulus", HEAVY),
         "rubber_overturning": partial(plot_overturning_map, cube, "layer_modulus", "pga", SHORT),
         "rubber_overturning_damping": partial(
             plot_overturning_map, cube, "layer_modulus", "damping_ratio", {"aspect_ratio": 0.4, "top_mass": 5000.0}
         ),
         "rubber_uplift": partial(plot_slices, cube, "uplift_duration", "layer_modulus", {**HEAVY, **MODERATE}),
+        "rubber_spectrum": partial(plot_prediction, found, predicted, step),
     }
-    found, predicted = found_onset(cube).transpose(*SHAPE), predicted_onset(cube).transpose(*SHAPE)
-    draw["rubber_spectrum"] = partial(plot_prediction, found, predicted)
     for name, figure in draw.items():
         save_figure(figure, FIGURES / f"{name}.png")
 
+
+def rubber_interface(cube: xr.Dataset) -> None:
+    rubber_figures(cube)
     status = cube["status"]
     over, never = status == OVERTURNED, status < ROCKING
     cells = status.size // status.sizes["aspect_ratio"]
-    aspects = [f"{value:.1f}" for value in cube["aspect_ratio"].values]
+    aspects = [f"{value:.2f}" for value in cube["aspect_ratio"].values]
     others = [d for d in status.dims if d != "aspect_ratio"]
+    first, rigid = first_overturning(cube), rigid_onset(cube) / GRAVITY
+    lifting = found_onset(cube) / GRAVITY
+    medians = (
+        ("rigid wall begins to rock [g]", rigid.broadcast_like(first), ".2f"),
+        ("a joint lifts [g]", lifting.fillna(0.0), ".3g"),
+        ("overturns [g]", first, ".3g"),
+        ("overturns, over the rigid wall's rocking", first / rigid, ".1f"),
+    )
     counts = table(
-        ["aspect ratio", *aspects, "all"],
+        ["aspect ratio", *aspects],
         [
-            [word, *(f"{100 * n / cells:.1f} %" for n in where.sum(others).values), int(where.sum())]
-            for word, where in (("no joint lifts", never), ("overturns", over))
+            *(
+                [f"cells: {word}", *(f"{100 * n / cells:.1f} %" for n in where.sum(others).values)]
+                for word, where in (("no joint lifts", never), ("overturns", over))
+            ),
+            *(
+                [f"median PGA: {word}", *(f"{v:{form}}" for v in values.median(SHAPE[1:]).values)]
+                for word, values, form in medians
+            ),
         ],
     )
     moduli = cube["layer_modulus"].values[::3]
     heads = [f"{value / 1e6:.3g} MPa" for value in moduli]
+    some = cube["aspect_ratio"].values[::2]
     heavy = cube.sel(**HEAVY, method="nearest")
     onset = cube.rocking.onset_map(x="layer_modulus", y="aspect_ratio", **HEAVY) / GRAVITY
     lowest = float(cube["pga"].min()) / GRAVITY
     lifts = table(
         ["aspect ratio", *heads],
         [
-            [f"{a:.1f}", *(("≤ " if v <= lowest else "") + f"{v:.2f}" for v in onset.sel(aspect_ratio=a).values[::3])]
-            for a in onset["aspect_ratio"].values[::2]
+            [f"{a:.1f}", *(("≤ " if v <= lowest else "") + f"{v:.3g}" for v in onset.sel(aspect_ratio=a).values[::3])]
+            for a in some
         ],
     )
     peak = (1e3 * heavy["peak_rotation"].where(heavy["status"] != OVERTURNED)).sel(**MODERATE, method="nearest")
     peaks = table(
         ["aspect ratio", *heads],
         [
-            [f"{a:.1f}", *(f"{v:.1f}" for v in peak.sel(aspect_ratio=a).values[::3])]
-            for a in cube["aspect_ratio"].values[::2]
+            [f"{a:.1f}", *("overturns" if np.isnan(v) else f"{v:.1f}" for v in peak.sel(aspect_ratio=a).values[::3])]
+            for a in some
         ],
     )
-    short = over.sel(aspect_ratio=0.4, method="nearest")
-    by_damping = [100 * float(short.sel(damping_ratio=d).mean()) for d in cube["damping_ratio"].values]
-    by_mass = [100 * float(short.sel(top_mass=m).mean()) for m in cube["top_mass"].values]
-    shares = (
+    capacity = "\n".join(
         table(
-            ["damping ratio", *(f"{100 * d:.3g} %" for d in cube["damping_ratio"].values)],
-            [["overturns", *(f"{v:.1f} %" for v in by_damping)]],
+            ["aspect ratio", *(f"{factor * v:.3g} {unit}" for v in first[axis].values[::every])],
+            [[f"{a:.1f}", *median_over(first, axis, a)[::every]] for a in some],
         )
-        + "\n"
-        + table(
-            ["top mass", *(f"{m / 1e3:.0f} t" for m in cube["top_mass"].values)],
-            [["overturns", *(f"{v:.1f} %" for v in by_mass)]],
+        for axis, factor, unit, every in (
+            ("damping_ratio", 100.0, "% damping", 1),
+            ("top_mass", 1e-3, "t on top", 1),
+            ("layer_modulus", 1e-6, "MPa", 2),
         )
     )
     spectrum = table(
@@ -143,11 +165,11 @@ def rubber_interface(cube: xr.Dataset) -> None:
         [spectrum_numbers(cube)],
     )
     islands = table(
-        ["walls that overturn at some PGA", "of these: stand again at a higher PGA of the grid"],
-        [standing_again(cube)],
+        ["walls", "overturn at some PGA", "of these: stand again at a higher PGA of the grid"],
+        [[first.size, *standing_again(cube)]],
     )
     for name, text in (
-        ("counts", counts), ("lifts", lifts), ("peaks", peaks), ("shares", shares), ("spectrum", spectrum),
+        ("counts", counts), ("lifts", lifts), ("peaks", peaks), ("capacity", capacity), ("spectrum", spectrum),
         ("islands", islands),
     ):  # fmt: skip
         write(f"rubber_{name}", text)

@@ -19,7 +19,7 @@ FIGURES, TABLES, STUDIES = HERE / "_static", HERE / "tables", HERE.parent / "stu
 HEAVY = {"top_mass": 5000.0, "damping_ratio": 0.0544}
 """The paper's mass and the damping ratio of its short wall."""
 SHORT = {**HEAVY, "aspect_ratio": 0.4}
-MODERATE = {"pga": 0.31 * GRAVITY}
+MODERATE = {"pga": 0.315 * GRAVITY}
 SHAPE = ("aspect_ratio", "top_mass", "layer_modulus", "damping_ratio")
 
 
@@ -34,17 +34,22 @@ def write(name: str, text: str) -> None:
     (TABLES / f"{name}.md").write_text(text)
 
 
-def predicted_onset(cube: xr.Dataset) -> xr.DataArray:
-    """PGA at which the first mode of the record's spectrum reaches the moment that lifts the base, W b/3.
-
-    S_a(f_1, xi) = g b/(3 h_c), h_c the height of the mass centre of wall and top mass.
-    """
-    plan = read_plan(STUDIES / "rubber_interface.toml")
-    (motion,), fixed = plan.motions, plan.fixed
+def rigid_onset(cube: xr.Dataset) -> xr.DataArray:
+    """g b/h_c, the acceleration at which the rigid wall begins to rock, h_c the height of its mass centre."""
+    fixed = read_plan(STUDIES / "rubber_interface.toml").fixed
     height, top = fixed["wall_height"], cube["top_mass"]
     length = cube["aspect_ratio"] * height
     wall = fixed["wall_density"] * fixed["wall_thickness"] * length * height
     centre = (wall * height / 2 + top * (height + fixed["layer_thickness"] + fixed["top_height"] / 2)) / (wall + top)
+    return GRAVITY * length / 2 / centre
+
+
+def predicted_onset(cube: xr.Dataset) -> xr.DataArray:
+    """PGA at which the first mode of the record's spectrum reaches the moment that lifts the base, W b/3.
+
+    S_a(f_1, xi) = g b/(3 h_c), a third of `rigid_onset`.
+    """
+    (motion,) = read_plan(STUDIES / "rubber_interface.toml").motions
     periods = np.geomspace(0.02, 3.0, 150)
     shares = []
     for xi in cube["damping_ratio"].values:
@@ -53,7 +58,7 @@ def predicted_onset(cube: xr.Dataset) -> xr.DataArray:
             xr.apply_ufunc(partial(np.interp, xp=periods, fp=spectrum.pseudo_acceleration), 1 / cube["frequency_1"])
         )
     response = xr.concat(shares, "damping_ratio").assign_coords(damping_ratio=cube["damping_ratio"])
-    return GRAVITY * length / 2 / (3 * centre) / (response / motion.pga)
+    return rigid_onset(cube) / 3 / (response / motion.pga)
 
 
 def found_onset(cube: xr.Dataset) -> xr.DataArray:
@@ -71,6 +76,21 @@ def spectrum_numbers(cube: xr.Dataset) -> list[str]:
     correlation = np.corrcoef(np.log(found.values[both]), np.log(predicted.values[both]))[0, 1]
     quantiles = [f"{q:.2f}" for q in np.quantile(ratio, [0.05, 0.5, 0.95])]
     return [str(int(both.sum())), f"{correlation:.3f}", *quantiles]
+
+
+def first_overturning(cube: xr.Dataset) -> xr.DataArray:
+    """Smallest PGA of the grid that overturns a wall, in g; infinite where none does."""
+    over = cube["status"] == OVERTURNED
+    first = cube["pga"].isel(pga=over.argmax("pga")).drop_vars("pga") / GRAVITY
+    return first.where(over.any("pga"), np.inf)
+
+
+def median_over(values: xr.DataArray, kept: str, aspect: float) -> list[str]:
+    """Median of the walls of one aspect ratio at each value of the axis ``kept``, those beyond the grid among them."""
+    walls = values.sel(aspect_ratio=aspect, method="nearest").transpose(kept, ...)
+    # of an even number the lower of the two in the middle, for the upper one may be infinite
+    middle = np.quantile(walls.values.reshape(walls.sizes[kept], -1), 0.5, axis=1, method="lower")
+    return [f"{v:.3g}" if np.isfinite(v) else "more" for v in middle]
 
 
 def standing_again(cube: xr.Dataset) -> tuple[int, int]:

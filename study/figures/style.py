@@ -20,6 +20,8 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#0
 MAP_COLOURS = "cividis"
 NOTHING = "#e6e6e6"
 UNKNOWN = "#ffffff"
+ROUNDED = 0.03
+"""Relative distance of points from equal factors; preferred numbers lie within it."""
 TITLE_WIDTH = 68
 """Characters in a line of a title."""
 
@@ -68,11 +70,12 @@ def positions(values: xr.DataArray) -> tuple[NDArray[np.float64], list[str] | No
 
 
 def geometric(points: NDArray[np.float64]) -> bool:
-    """Whether ascending points grow by equal factors, as those of ``geomspace``."""
+    """Whether ascending points grow by equal factors, as those of ``geomspace`` or rounded ones (preferred numbers),
+    and not as well by equal steps."""
     if points.size < 3 or points[0] <= 0.0:
         return False
-    ratios = points[1:] / points[:-1]
-    return bool(np.allclose(ratios, ratios[0], rtol=1e-6) and ratios[0] > 1.0)
+    factors, steps = (space(points[0], points[-1], points.size) for space in (np.geomspace, np.linspace))
+    return bool(np.allclose(points, factors, rtol=ROUNDED) and not np.allclose(points, steps, rtol=ROUNDED))
 
 
 def set_scale(ax: Axes, which: str, points: NDArray[np.float64], words: list[str] | None) -> None:

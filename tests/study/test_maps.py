@@ -17,6 +17,7 @@ import study.accessor  # noqa: F401
 from grids.samples import MEANING
 from models.errors import InputError
 from study.figures import plot_onset_map, plot_output_map, plot_overturning_map, plot_slices, save_figure
+from study.figures.style import geometric
 from study.maps import default_axes
 from study.status import OVERTURNED, ROCKING, UNKNOWN
 from tests.study.cubes import known_cube
@@ -192,6 +193,20 @@ def test_axes_by_equal_factors_are_logarithmic_and_in_engineers_units(tmp_path: 
     factor = 20 ** (1 / 24)
     np.testing.assert_allclose([low, high], [1 / factor, 20 * factor], rtol=1e-12)
     assert ax.figure.axes[1].get_yticklabels()[0].get_text() == "≤ 0.051"
+
+
+@pytest.mark.parametrize(
+    ("points", "by_factors"),
+    [
+        ([0.0315, 0.04, 0.05, 0.063, 0.08, 0.1, 0.125, 0.16], True),
+        ([2.0, 2.5, 3.15, 4.0, 5.0, 6.3, 8.0, 10.0], True),
+        ([0.3, 0.4, 0.5, 0.6], False),
+        ([0.0167, 0.03, 0.0544, 0.08, 0.1], False),
+        ([1.0, 1.01, 1.02], False),
+    ],
+)
+def test_preferred_numbers_grow_by_equal_factors(points: list[float], by_factors: bool) -> None:
+    assert geometric(np.array(points)) == by_factors
 
 
 def test_figures_are_written_with_units_on_their_axes(cube: xr.Dataset, tmp_path: Path) -> None:
