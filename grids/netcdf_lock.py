@@ -7,6 +7,8 @@ on different files and even for reading; xarray's own lock does not cover openin
 from __future__ import annotations
 
 import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from types import TracebackType
 
 
@@ -37,3 +39,21 @@ class NetcdfLock:
 
 NETCDF_LOCK = NetcdfLock()
 """``with NETCDF_LOCK, xarray.open_dataset(path) as data: data.load()``: nothing stays open outside."""
+CACHE_BYTES = 1 << 23
+"""Memory for chunks of each variable; the library's own 64 MB hold a cube of some million cells twice."""
+
+
+@contextmanager
+def bounded_cache() -> Iterator[None]:
+    """Files opened inside, under the lock, keep at most `CACHE_BYTES` of each variable in memory.
+
+    Cells that are written in their order, as blocks are, finish one chunk after the other and need no more.
+    """
+    import netCDF4
+
+    before = netCDF4.get_chunk_cache()
+    netCDF4.set_chunk_cache(CACHE_BYTES)
+    try:
+        yield
+    finally:
+        netCDF4.set_chunk_cache(*before)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 import models
 from grids.entering import entering
-from grids.netcdf_lock import NETCDF_LOCK
+from grids.netcdf_lock import NETCDF_LOCK, bounded_cache
 from grids.plan import Plan
 from models.base import MISSING, Quantity
 from study.derived import derived_coordinates
@@ -54,7 +54,7 @@ def write_cube(
     def write(temporary: Path) -> None:
         import netCDF4
 
-        with NETCDF_LOCK, netCDF4.Dataset(temporary, "w") as dataset:
+        with NETCDF_LOCK, bounded_cache(), netCDF4.Dataset(temporary, "w") as dataset:
             dataset.setncatts({name: attribute(value) for name, value in attributes.items()})
             outputs = _define(dataset, plan, setting, [COMPUTED] if refined else [])
             if refined is None:
@@ -85,7 +85,12 @@ def _define(dataset: Any, plan: Plan, setting: Setting, more: Sequence[Quantity]
     for quantity in outputs:
         dtype = _dtype(quantity)
         variable = dataset.createVariable(
-            quantity.name, dtype, dims, fill_value=_missing(quantity), chunksizes=chunk or None, **COMPRESSION
+            quantity.name,
+            dtype,
+            dims,
+            fill_value=_missing(quantity),
+            chunksizes=chunk or None,
+            **COMPRESSION,
         )
         variable.setncatts({name: attribute(value) for name, value in describe(quantity).items()})
         variable.coordinates = auxiliary

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
+from math import prod
 from pathlib import Path
 from typing import Any
 
+import dask
 import xarray as xr
 
-from grids.netcdf_lock import NETCDF_LOCK
+from grids.netcdf_lock import NETCDF_LOCK, bounded_cache
 from models.errors import InputError, nearest
 from study.selection import select
 from study.store import write_whole
+
+ROWS_AT_ONCE = 1 << 17
+"""Cells of a table in memory at once."""
 
 
 def export(
@@ -40,10 +46,11 @@ def export(
 
 
 def write_dataset(values: xr.Dataset, path: Path) -> Path:
-    """Write a Dataset as netCDF, whole or not at all."""
+    """Write a Dataset as netCDF, whole or not at all; a lazy one chunk by chunk."""
 
     def write(temporary: Path) -> None:
-        with NETCDF_LOCK:
+        # read in this thread, which holds the lock
+        with NETCDF_LOCK, bounded_cache(), dask.config.set(scheduler="synchronous"):
             values.to_netcdf(temporary, engine="netcdf4", format="NETCDF4")
 
     write_whole(path, write)
@@ -51,15 +58,30 @@ def write_dataset(values: xr.Dataset, path: Path) -> Path:
 
 
 def _write_csv(cube: xr.Dataset, path: Path) -> None:
-    """Rows in the order of the cube, one slab of the first axis at a time."""
+    """Rows in the order of the cube, some at a time."""
     dims = list(map(str, cube.dims))
     names = [*dims, *(str(n) for n in cube.coords if n not in cube.dims), *map(str, cube.data_vars)]
+    heading: list[str] | bool = [_heading(name, cube[name]) for name in names]
     with path.open("w", encoding="utf-8", newline="") as file:
-        for k in range(cube.sizes[dims[0]] if dims else 1):
-            slab = cube.isel({dims[0]: [k]}) if dims else cube.expand_dims("cell")
-            frame = slab.to_dataframe(dim_order=dims or None).reset_index()[names]
-            heading = [_heading(name, cube[name]) for name in names]
-            frame.to_csv(file, index=False, header=heading if k == 0 else False)
+        for part in _slabs([cube.sizes[dim] for dim in dims]):
+            slab = cube.isel(dict(zip(dims, part, strict=True))) if dims else cube.expand_dims("cell")
+            frame = slab.compute().to_dataframe(dim_order=dims or None).reset_index()[names]
+            frame.to_csv(file, index=False, header=heading)
+            heading = False
+
+
+def _slabs(shape: Sequence[int]) -> Iterator[tuple[slice, ...]]:
+    """Parts of a grid in the order of its cells: some values of an axis, each of those before it, all of the others."""
+    whole = len(shape)
+    while whole and prod(shape[whole - 1 :]) <= ROWS_AT_ONCE:
+        whole -= 1
+    if whole == 0:
+        yield tuple(slice(None) for _ in shape)
+        return
+    step = max(1, ROWS_AT_ONCE // prod(shape[whole:]))
+    for place in product(*map(range, shape[: whole - 1])):
+        for start in range(0, shape[whole - 1], step):
+            yield (*(slice(k, k + 1) for k in place), slice(start, start + step), *(slice(None) for _ in shape[whole:]))
 
 
 def _heading(name: str, values: xr.DataArray) -> str:

@@ -62,14 +62,14 @@ def output_map(
     x, y = default_axes(cube, x, y)
     taken = complete(cube, at, (x, y), nearest=nearest)
     chosen = select(cube, taken)
-    known = _over(chosen[output].where(~chosen["status"].isin(UNKNOWN)), x, y)
+    known = _over(chosen[output].where(~chosen["status"].isin(UNKNOWN)), x, y).compute()
     return known.assign_attrs(cube[output].attrs, selection=place(cube, taken))
 
 
 def status_map(cube: xr.Dataset, x: str | None = None, y: str | None = None, at: At | None = None) -> xr.DataArray:
     """The flags of ``status`` over ``x`` and ``y``, dimensions ``(y, x)``; axes and selection as in `output_map`."""
     x, y = default_axes(cube, x, y)
-    return _over(select(cube, complete(cube, at, (x, y)))["status"], x, y)
+    return _over(select(cube, complete(cube, at, (x, y)))["status"], x, y).compute()
 
 
 def _over(values: xr.DataArray, x: str, y: str) -> xr.DataArray:
@@ -86,7 +86,7 @@ def slices(cube: xr.Dataset, output: str, x: str, at: At | None = None, *, neare
     free = [str(d) for d, size in cube.sizes.items() if size > 1 and d != x and d not in (at or {})]
     others = [name for name in free if not is_samples(cube, name)][:1]
     taken = complete(cube, at, (x, *others), nearest=nearest)
-    chosen = select(cube, taken)[output]
+    chosen = select(cube, taken)[output].compute()
     curves = chosen.squeeze([d for d in chosen.dims if d not in (x, *others)]).transpose(*others, x)
     return curves.assign_attrs(selection=place(cube, taken))
 
@@ -140,7 +140,7 @@ def _map(
     searched = [i for i in INTENSITIES if cube.sizes.get(i, 1) > 1 and i not in (x, y, *(at or {}))][:1]
     among = over_samples(cube, at, (x, y))
     taken = complete(cube, at, (x, y, *searched, *among), nearest=nearest)
-    status = select(cube, taken)["status"]
+    status = select(cube, taken)["status"].compute()
     status = status.squeeze([dim for dim in status.dims if dim not in (x, y, *searched, *among)])
     happens = status.isin(flags).astype(float).where(~status.isin(UNKNOWN))
     if among and not searched:

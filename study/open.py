@@ -10,7 +10,7 @@ import xarray as xr
 
 import study.accessor  # noqa: F401  (registers cube.rocking)
 from grids.netcdf_file import check_name, check_netcdf
-from grids.netcdf_lock import NETCDF_LOCK
+from grids.netcdf_lock import NETCDF_LOCK, bounded_cache
 from models.base import STATUS
 from models.errors import InputError
 from study.labels import flags
@@ -20,9 +20,10 @@ CUBE = "cube.nc"
 """Name under which a run writes and seals the cube of a study."""
 
 
-def open_study(folder: str | Path, outputs: Collection[str] | None = None) -> xr.Dataset:
+def open_study(folder: str | Path, outputs: Collection[str] | None = None, *, lazy: bool = False) -> xr.Dataset:
     """The cube of a study, in memory: ``folder`` is ``results/<name>`` or the path of a cube file; all of
-    its outputs, or those named.
+    its outputs, or those named. A ``lazy`` one holds dask arrays in the chunks of the file, which stays open, and
+    need not fit in memory: select, then ``compute()``.
 
     Maps and slices hang on it: ``cube.rocking.overturning_map(x="aspect_ratio", y="top_mass")``.
     Raises InputError when there is no cube yet, or when a byte of it has changed since it was written.
@@ -41,6 +42,10 @@ def open_study(folder: str | Path, outputs: Collection[str] | None = None) -> xr
     elif not is_intact(path, CUBE):
         raise InputError(f"{path} has changed since it was written: run the study again, it is made anew")
     try:
+        if lazy:
+            with NETCDF_LOCK, bounded_cache():
+                cube = xr.open_dataset(path, engine="netcdf4", chunks={}, lock=NETCDF_LOCK)
+            return _of_today(cube if outputs is None else cube[list(outputs)])
         with NETCDF_LOCK, xr.open_dataset(path, engine="netcdf4") as cube:
             return _of_today((cube if outputs is None else cube[list(outputs)]).load())
     except (OSError, ValueError) as error:
@@ -53,5 +58,5 @@ def _of_today(cube: xr.Dataset) -> xr.Dataset:
     if stored == list(STATUS) or not set(stored) <= set(STATUS):
         return cube
     codes = np.array([STATUS.index(word) for word in stored], dtype=np.int8)
-    status = cube["status"]
-    return cube.assign(status=status.copy(data=codes[status.values]).assign_attrs(flags(STATUS)))
+    status = xr.apply_ufunc(codes.__getitem__, cube["status"], dask="parallelized", output_dtypes=[codes.dtype])
+    return cube.assign(status=status.assign_attrs({**cube["status"].attrs, **flags(STATUS)}))

@@ -24,6 +24,7 @@ from study.keys import Setting, block_key
 from study.status import FAILED, OVERTURNED, REST, ROCKING
 from study.store import BlockStore, write_text
 from study.task import Task, make_task
+from study.workers import Needs
 
 CELL = "cell"
 """Name of the axis of a block of scattered cells: their flat indices in the grid."""
@@ -89,6 +90,7 @@ def refine(
     plan: Plan,
     setting: Setting,
     store: BlockStore,
+    needs: Needs,
     most_cells: int,
     compute: Callable[[list[Task]], None],
 ) -> Refined:
@@ -98,7 +100,7 @@ def refine(
     policy = Refinement(plan.grid.shape, budget=plan.refine.budget, guard=plan.refine.guard, seed=plan.refine.seed)
     parts: list[tuple[NDArray[np.int64], dict[str, NDArray[Any]]]] = []
     while (asked := policy.ask()).size:
-        tasks = list(_tasks(plan, setting, store.folder, asked, most_cells))
+        tasks = list(_tasks(plan, setting, needs, asked, most_cells))
         compute(tasks)
         told = [(np.asarray(task.axes[0].values), _outcome(task, store, setting)) for task in tasks]
         parts += told
@@ -109,11 +111,11 @@ def refine(
     return Refined(np.concatenate([cells for cells, _ in parts]), outputs, policy.labels(), policy.estimate)
 
 
-def _tasks(plan: Plan, setting: Setting, folder: Path, cells: NDArray[np.int64], most_cells: int) -> Iterator[Task]:
+def _tasks(plan: Plan, setting: Setting, needs: Needs, cells: NDArray[np.int64], most_cells: int) -> Iterator[Task]:
     for part in np.array_split(cells, -(-cells.size // most_cells)):
         scattered = replace(plan, axes=(Axis(CELL, part, "1", "cell of the grid", plan.grid.coordinates(part)),))
         block = Rectangle({CELL: tuple(part.tolist())})
-        yield make_task(scattered, setting, folder, block_key(scattered, setting, block), block)
+        yield make_task(scattered, setting, needs, block_key(scattered, setting, block), block)
 
 
 def _outcome(task: Task, store: BlockStore, setting: Setting) -> dict[str, NDArray[Any]]:

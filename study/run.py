@@ -9,12 +9,10 @@ from __future__ import annotations
 import fcntl
 import os
 import time
-import traceback
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Future, wait
+from concurrent.futures import BrokenExecutor, CancelledError
 from contextlib import contextmanager
 from dataclasses import dataclass
-from itertools import islice
 from pathlib import Path
 
 from grids.changes import describe
@@ -23,20 +21,19 @@ from grids.netcdf_file import check_name
 from grids.plan import Plan, read_plan
 from models.errors import InputError
 from study.capacity import check_axes, check_capacity
+from study.computing import compute
 from study.cube import write_cube
 from study.keys import Setting
 from study.manifest import Manifest
 from study.provenance import now
 from study.recovery import blocks_on_disk, damaged_blocks, sound_manifest
 from study.refined import Refined, cells_of_a_block, refine
-from study.schedulers import check_scheduler, count_workers, open_executor
+from study.schedulers import check_scheduler, count_workers, open_pool
 from study.store import BlockStore, write_text
 from study.tally import tally, tally_line
-from study.task import OtherCode, Outcome, Task, make_task, run_task
+from study.task import Outcome, Task, make_task
 from study.timing import cells_per_block, time_sample
-
-AHEAD = 2
-"""Tasks in flight per worker: one runs, one waits."""
+from study.workers import MARK, Needs
 
 
 @dataclass(frozen=True)
@@ -103,7 +100,7 @@ def run(
     """Run a plan, or continue it, in ``results/<name>`` and write its cube there.
 
     ``scheduler``: "synchronous", "threads", "processes" or the address of a dask cluster
-    ("tcp://host:port", which must see the same folder); ``workers`` for threads and processes,
+    ("tcp://host:port", whose workers must see the same folder); ``workers`` for threads and processes,
     default one a core. ``progress`` is called after every block. A failed block is noted in
     ``failed`` and its cells are flagged; the rest goes on.
 
@@ -129,17 +126,18 @@ def run(
                 repaired.append(f"blocks not as they had been written, computed anew: {len(damaged)}")
             finished = store.finished().difference(damaged)
             missing = {key: block for key, block in manifest.blocks.items() if key not in finished}
-            tasks = (make_task(plan, setting, folder, key, block) for key, block in missing.items())
             counter = _Counter(manifest.blocks, missing, progress)
             if missing:
+                needs = Needs.of_run(folder)
+                tasks = (make_task(plan, setting, needs, key, block) for key, block in missing.items())
                 with _losses_named():
-                    _compute(tasks, store, scheduler, workers, counter)
+                    _compute(tasks, plan, store, needs, (scheduler, workers), counter)
         else:
             manifest = _refined_manifest(plan, setting, folder, plan_folder)
             counter = _Counter({}, {}, progress)
             counter.cells = int(plan.refine.budget * plan.grid.size)
             with _losses_named():
-                refined = _refine(plan, setting, store, scheduler, workers, counter)
+                refined = _refine(plan, setting, store, (scheduler, workers), counter)
         cube = write_cube(plan, setting, manifest, store, started=started, scheduler=scheduler, refined=refined)
     return Report(
         folder=folder,
@@ -204,18 +202,20 @@ def _refined_manifest(plan: Plan, setting: Setting, folder: Path, plan_folder: s
 
 
 def _refine(
-    plan: Plan, setting: Setting, store: BlockStore, scheduler: str, workers: int | None, counter: _Counter
+    plan: Plan, setting: Setting, store: BlockStore, where: tuple[str, int | None], counter: _Counter
 ) -> Refined:
-    def compute(tasks: list[Task]) -> None:
+    needs = Needs.of_run(store.folder)
+
+    def compute_missing(tasks: list[Task]) -> None:
         missing = [task for task in tasks if not store.is_intact(task.key)]
         counter.expect(tasks, missing)
         if missing:
-            _compute(missing, store, scheduler, workers, counter)
+            _compute(missing, plan, store, needs, where, counter)
 
     most = cells_of_a_block(
-        store.folder, lambda: cells_per_block(plan, time_sample(plan, setting), count_workers(scheduler, workers))
+        store.folder, lambda: cells_per_block(plan, time_sample(plan, setting), count_workers(*where))
     )
-    return refine(plan, setting, store, most, compute)
+    return refine(plan, setting, store, needs, most, compute_missing)
 
 
 class WorkerLost(RuntimeError):
@@ -279,29 +279,11 @@ class _Counter:
             )
 
 
-def _compute(tasks: Iterable[Task], store: BlockStore, scheduler: str, workers: int | None, counter: _Counter) -> None:
-    """Run every task; a worker that dies without an answer fails its block only where that is known."""
-    queue: Iterator[Task] = iter(tasks)
-    running: dict[Future[Outcome], Task] = {}
-    with open_executor(scheduler, workers) as (executor, n):
-        while True:
-            for task in islice(queue, AHEAD * n - len(running)):
-                running[executor.submit(run_task, task)] = task
-            if not running:
-                return
-            done, _ = wait(running, return_when=FIRST_COMPLETED)
-            for future in done:
-                counter.add(_outcome(future, running.pop(future), store))
-
-
-def _outcome(future: Future[Outcome], task: Task, store: BlockStore) -> Outcome:
-    try:
-        return future.result()
-    except (BrokenExecutor, CancelledError, OtherCode, OSError):
-        raise
-    except Exception as error:
-        store.fail(task.key, traceback.format_exc())
-        return Outcome(task.key, task.grid.size, 0.0, 0.0, f"{type(error).__name__}: {error}")
+def _compute(
+    tasks: Iterable[Task], plan: Plan, store: BlockStore, needs: Needs, where: tuple[str, int | None], counter: _Counter
+) -> None:
+    with open_pool(*where, needs) as pool:
+        compute(tasks, pool, store, plan.block_seconds, counter.add)
 
 
 @contextmanager
@@ -309,7 +291,7 @@ def _alone(folder: Path) -> Iterator[None]:
     """Hold the study's lock; the system releases it when the process ends, however it ends."""
     folder.mkdir(parents=True, exist_ok=True)
     # a link in its place is refused: the file that it points to is none of ours
-    with os.fdopen(os.open(folder / ".lock", os.O_WRONLY | os.O_CREAT | os.O_NOFOLLOW, 0o644), "w") as lock:
+    with os.fdopen(os.open(folder / MARK, os.O_WRONLY | os.O_CREAT | os.O_NOFOLLOW, 0o644), "w") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
@@ -317,6 +299,6 @@ def _alone(folder: Path) -> Iterator[None]:
         try:
             yield
         finally:
-            if set(folder.iterdir()) == {folder / ".lock"}:  # refused before anything was kept
-                (folder / ".lock").unlink()
+            if set(folder.iterdir()) == {folder / MARK}:  # refused before anything was kept
+                (folder / MARK).unlink()
                 folder.rmdir()

@@ -1,26 +1,27 @@
-"""Where blocks run: one executor each for this thread, threads, processes and a dask cluster.
+"""Where blocks run: a pool each for this thread, threads, processes and a dask cluster.
 
-All four are `concurrent.futures` executors (dask's own for the first and the last), so a study is
-submitted, awaited and stopped by the same code on a notebook's machine and on a cluster.
+All four give `concurrent.futures` (dask's own for the first and the last), so a study is submitted, awaited and
+stopped by the same code on a notebook's machine and on a cluster (`study.cluster`).
 """
 
 from __future__ import annotations
 
-import logging
 import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Iterator
-from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor, ThreadPoolExecutor
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import contextmanager
 from multiprocessing.connection import wait
-from typing import Any
+from typing import Any, TypeVar
 
 from models.errors import InputError, nearest
+from study.workers import Needs
 
 SCHEDULERS = ("synchronous", "threads", "processes")
-CONNECT_SECONDS = 10
+T = TypeVar("T")
+R = TypeVar("R")
 
 
 def check_scheduler(scheduler: str, workers: int | None) -> None:
@@ -43,20 +44,41 @@ def _cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-@contextmanager
-def open_executor(scheduler: str, workers: int | None) -> Iterator[tuple[Executor, int]]:
-    """The executor of a scheduler and the number of blocks it runs at once.
+class Pool:
+    """Where blocks run: an executor of this machine."""
 
-    At the end, or when the run is interrupted, blocks not yet begun are dropped, begun ones finish.
+    def __init__(self, executor: Executor, places: int) -> None:
+        self._executor, self._places = executor, places
+
+    def places(self) -> int:
+        """How many blocks run at once now."""
+        return self._places
+
+    def submit(self, work: Callable[[T], R], given: T) -> Future[R]:
+        return self._executor.submit(work, given)
+
+    def drop(self, future: Future[Any]) -> bool:
+        """Take away the worker that holds a block, so that others get its blocks; False where that cannot be done."""
+        return False
+
+
+@contextmanager
+def open_pool(scheduler: str, workers: int | None, needs: Needs) -> Iterator[Pool]:
+    """The pool of a scheduler, whose workers have what the run needs of them.
+
+    At the end, or when the run is interrupted, blocks not yet begun are dropped, begun ones finish: awaited on this
+    machine, left to it on a cluster.
     """
     if "://" in scheduler:
-        with _cluster(scheduler) as (executor, n):
-            yield executor, n
+        from study.cluster import open_cluster
+
+        with open_cluster(scheduler, needs) as cluster:
+            yield cluster
         return
     n = count_workers(scheduler, workers)
     executor = _local(scheduler, n)
     try:
-        yield executor, n
+        yield Pool(executor, n)
     finally:
         executor.shutdown(wait=True, cancel_futures=True)
 
@@ -84,43 +106,3 @@ def _start_worker() -> None:
 def _end_with(sentinel: int) -> None:
     wait([sentinel])
     os._exit(1)
-
-
-@contextmanager
-def _quiet() -> Iterator[None]:
-    """Without the tracebacks that dask logs when its scheduler goes: the run says in a sentence what happened."""
-    loggers = [logging.getLogger(name) for name in logging.root.manager.loggerDict if name.startswith("distributed")]
-    levels = [logger.level for logger in loggers]
-    for logger in loggers:
-        logger.setLevel(logging.CRITICAL)
-    try:
-        yield
-    finally:
-        for logger, level in zip(loggers, levels, strict=True):
-            logger.setLevel(level)
-
-
-@contextmanager
-def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
-    from distributed import Client
-
-    try:
-        client: Any = Client(address, timeout=CONNECT_SECONDS, set_as_default=False)  # type: ignore[no-untyped-call]
-    except (OSError, ValueError) as error:
-        raise InputError(
-            f"no dask cluster answers at '{address}' ({type(error).__name__}): start it, or correct the address"
-        ) from None
-    with _quiet(), client:
-        threads = sum(client.nthreads().values())
-        if not threads:
-            raise InputError(f"the dask cluster at '{address}' has no workers: start some with 'dask worker'")
-        # retries stay 0: a block that fails is noted and tried by the next run
-        executor = client.get_executor(pure=False)
-        try:
-            yield executor, threads
-        except Exception:
-            if client.status != "running":
-                raise BrokenExecutor(f"the dask scheduler at {address} is gone") from None
-            raise
-        finally:
-            executor.shutdown(wait=True)

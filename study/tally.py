@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
+import dask
 import numpy as np
 
 from models.base import STATUS
@@ -15,8 +16,10 @@ WORDS = {"rest": "at rest", "outside_model": "outside the model"}
 
 def tally(cube: Path) -> dict[str, int]:
     """Cells of a cube's file by the word of their ``status``, all words in the order of `models.base.STATUS`."""
-    counts = np.bincount(open_study(cube, ["status"])["status"].values.ravel(), minlength=len(STATUS))
-    return dict(zip(STATUS, counts.tolist(), strict=True))
+    with open_study(cube, ["status"], lazy=True) as opened, dask.config.set(scheduler="synchronous"):
+        chunks = opened["status"].data.to_delayed().ravel()
+        counts = sum(np.bincount(chunk.compute().ravel(), minlength=len(STATUS)) for chunk in chunks)
+    return dict(zip(STATUS, np.asarray(counts).tolist(), strict=True))
 
 
 def tally_line(counts: Mapping[str, int]) -> str:

@@ -6,7 +6,6 @@ import time
 import traceback
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,25 +15,18 @@ from grids.grid import Grid, Rectangle
 from grids.motions import Motion
 from grids.plan import Plan
 from grids.targets import MOTION
-from models.errors import InputError
-from study.code import code_version
 from study.evaluate import evaluate
 from study.keys import Setting, motions_by_name
-from study.provenance import machine
 from study.store import BlockStore
-
-
-class OtherCode(InputError):
-    """A worker has other code than the run that gave it a block."""
+from study.workers import Needs
 
 
 @dataclass(frozen=True)
 class Task:
-    """A block to compute: its own axes, the motions it uses, and where its file goes; ``code`` of the run."""
+    """A block to compute: its own axes and the motions it uses; ``needs`` say where its file goes."""
 
-    code: str
+    needs: Needs
     key: str
-    folder: Path
     setting: Setting
     axes: tuple[Axis, ...]
     motions: Mapping[str, Motion]
@@ -59,15 +51,11 @@ class Outcome:
 def run_task(task: Task) -> Outcome:
     """Compute and store one block; an exception becomes ``failed/<key>.txt`` and a failed outcome.
 
-    Raises OtherCode, and OSError for what the disk refuses: no later block would fare better.
+    Raises UnfitWorker, and OSError for what the disk refuses: no later block would fare better.
     """
-    if task.code != code_version():
-        raise OtherCode(
-            f"the worker on {machine()['host']} runs another version of this program, or of numpy or numba: "
-            "install the same on every machine and start its worker anew"
-        )
+    task.needs.check()
     started = time.perf_counter()
-    store, grid = BlockStore(task.folder), task.grid
+    store, grid = BlockStore(task.needs.folder), task.grid
     try:
         results = evaluate(task.setting, task.motions, grid.coordinates(np.arange(grid.size)))
         computed = time.perf_counter()
@@ -93,10 +81,10 @@ def take(axis: Axis, positions: NDArray[np.int64]) -> Axis:
     return replace(axis, values=axis.values[positions], points=points)
 
 
-def make_task(plan: Plan, setting: Setting, folder: Path, key: str, block: Rectangle) -> Task:
+def make_task(plan: Plan, setting: Setting, needs: Needs, key: str, block: Rectangle) -> Task:
     """The task that computes a block of the plan's grid, with the motions it uses and no others."""
     where = zip(plan.axes, plan.grid.positions(block), strict=True)
     axes = tuple(take(axis, positions) for axis, positions in where)
     motions = motions_by_name(plan)
     used = next((axis.sets[MOTION].tolist() for axis in axes if MOTION in axis.sets), motions)
-    return Task(code_version(), key, folder, setting, axes, {name: motions[name] for name in used})
+    return Task(needs, key, setting, axes, {name: motions[name] for name in used})

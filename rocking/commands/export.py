@@ -22,7 +22,7 @@ def export(
     from study.open import open_study
     from study.selection import place
 
-    cube = open_study(folder)
+    cube = open_study(folder, lazy=True)
     at = read_selection(cube, select, nearest)
     path = export_cube(cube, out, outputs=output or (), at=at)
     typer.echo(f"written: {path}" + (f", at {place(cube, at)}" if at else ""))

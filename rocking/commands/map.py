@@ -27,7 +27,7 @@ def map_(
     from study.figures import plot_onset_map, plot_output_map, plot_overturning_map, save_figure
     from study.open import open_study
 
-    cube = open_study(folder)
+    cube = open_study(folder, lazy=True)
     x, y = maps.default_axes(cube, x, y)
     at = read_selection(cube, select, nearest)
     home = out or (folder if folder.is_dir() else folder.parent)

@@ -27,7 +27,7 @@ def slices(
     from study.figures import plot_slices, save_figure
     from study.open import open_study
 
-    cube = open_study(folder)
+    cube = open_study(folder, lazy=True)
     at = read_selection(cube, select, nearest)
     home = folder if folder.is_dir() else folder.parent
     drawn = maps.slices(cube, output, x, at)

@@ -9,17 +9,18 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import netCDF4
 import pytest
 import xarray as xr
+from dask.local import SynchronousExecutor
 
 import models
-import study.run
-import study.task
 from benchmarks.faults import kills
 from benchmarks.faults.commands import Cluster, Command
 from benchmarks.faults.commands import cluster as dask_cluster
@@ -28,12 +29,33 @@ from benchmarks.faults.row import Row
 from benchmarks.faults.studies import MODELS, NAME, compare_cubes, plan_text
 from grids.plan import parse_plan
 from models.errors import InputError
+from study.computing import compute
+from study.keys import Setting
+from study.manifest import Manifest
 from study.open import open_study
-from study.run import run
+from study.run import Progress, WorkerLost, run
+from study.schedulers import Pool
 from study.seal import seal
-from study.task import OtherCode
+from study.store import BlockStore
+from study.task import make_task
+from study.workers import MARK, Needs, UnfitWorker
 from tests.study.cubes import assert_identical
 from tests.study.plans import small_plan
+
+
+class Silent(Pool):
+    """Answers at once, but never for one block."""
+
+    def __init__(self, key: str) -> None:
+        super().__init__(SynchronousExecutor(), 1)
+        self.key, self.dropped = key, 0
+
+    def submit(self, work: Callable[[Any], Any], given: Any) -> Future[Any]:
+        return Future() if given.key == self.key else super().submit(work, given)
+
+    def drop(self, future: Future[Any]) -> bool:
+        self.dropped += 1
+        return True
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -135,14 +157,73 @@ def test_a_killed_dask_scheduler_is_a_sentence(plan: Path, work: Path) -> None:
 
 def test_workers_with_other_code_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The run stops with a sentence; no block is noted as failed."""
-    monkeypatch.setattr("study.run.make_task", lambda *given: replace(study.task.make_task(*given), code="other"))
-    with pytest.raises(OtherCode, match="another version of this program"):
+    made = Needs.of_run
+    monkeypatch.setattr("study.run.Needs.of_run", lambda folder: replace(made(folder), code="other"))
+    with pytest.raises(UnfitWorker, match="another version of this program"):
         run(small_plan(), results=tmp_path)
     assert not list(tmp_path.rglob("blocks/*.nc")) and not list(tmp_path.rglob("failed/*.txt"))
 
 
+def test_workers_that_do_not_see_the_folder_are_refused(
+    cluster: Cluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Another machine's folder of the same path: without the mark of this run, even if an old study lies there."""
+    made = Needs.of_run
+    monkeypatch.setattr("study.run.Needs.of_run", lambda folder: replace(made(folder), mark="0" * 32))
+    with pytest.raises(UnfitWorker, match=r"does not see .*small.* choose by --results a folder that all machines"):
+        run(small_plan(), results=tmp_path, scheduler=cluster.address)
+    assert not list(tmp_path.rglob("blocks/*.nc")) and not list(tmp_path.rglob("failed/*.txt"))
+
+
+def test_a_worker_that_hangs_costs_only_its_blocks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is stopped in the middle of the study, never to go on: the others take its blocks, none has failed."""
+    monkeypatch.setattr("study.computing.LEAST_PATIENCE", 4.0)
+    monkeypatch.setattr("study.computing.PATIENCE", 0.0)
+    plan, begun = small_plan(block_seconds=0.005), []
+
+    def stop(progress: Progress) -> None:
+        if progress.blocks_done == 1 and not begun:
+            begun.append(hanging.workers[0])
+            hanging.workers[0].send_signal(signal.SIGSTOP)
+
+    with dask_cluster() as hanging:
+        there = run(plan, results=tmp_path / "there", scheduler=hanging.address, progress=stop)
+    assert begun and there.failed == 0 and there.computed == there.blocks > 2
+    assert_identical(open_study(there.folder), open_study(run(small_plan(), results=tmp_path / "here").folder))
+
+
+def test_a_block_without_an_answer_from_two_workers_has_failed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The only workers are stopped one after the other; the run goes on to its end with what others bring."""
+    monkeypatch.setattr("study.computing.LEAST_PATIENCE", 0.2)
+    monkeypatch.setattr("study.computing.PATIENCE", 0.0)
+    plan = small_plan()
+    folder = tmp_path / plan.name
+    folder.mkdir()
+    (folder / MARK).touch()
+    setting, needs = Setting.of(plan), Needs.of_run(folder)
+    tasks = [make_task(plan, setting, needs, key, block) for key, block in Manifest.start(plan, 20, "").blocks.items()]
+    pool, told = Silent(tasks[0].key), []
+    compute(tasks, pool, BlockStore(folder), 0.0, told.append)
+    assert pool.dropped == 2 and [o.key for o in told if o.failure] == [tasks[0].key]
+    assert BlockStore(folder).failures().keys() == {tasks[0].key}
+    assert len(told) == len(tasks) > 1
+
+
+def test_without_any_worker_the_run_ends_with_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("study.computing.LEAST_PATIENCE", 4.0)
+    monkeypatch.setattr("study.computing.PATIENCE", 0.0)
+
+    def stop(progress: Progress) -> None:
+        if progress.blocks_done == 1:
+            for worker in lost.workers:
+                worker.kill()
+
+    with dask_cluster() as lost, pytest.raises(WorkerLost, match=r"no worker is left.*run again to continue"):
+        run(small_plan(block_seconds=0.005), results=tmp_path, scheduler=lost.address, progress=stop)
+
+
 def test_a_silent_address_is_one_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("study.schedulers.CONNECT_SECONDS", 1)
+    monkeypatch.setattr("study.cluster.CONNECT_SECONDS", 1)
     with pytest.raises(InputError, match=r"no dask cluster answers at 'tcp://127\.0\.0\.1:1'"):
         run(small_plan(), results=tmp_path, scheduler="tcp://127.0.0.1:1")
 

@@ -1,0 +1,93 @@
+"""Blocks of a run in flight: given out, awaited, taken back from workers that do not answer."""
+
+from __future__ import annotations
+
+import time
+import traceback
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Future, wait
+from dataclasses import dataclass, field
+from itertools import islice
+
+from study.schedulers import Pool
+from study.store import BlockStore
+from study.task import Outcome, Task, run_task
+from study.workers import UnfitWorker
+
+AHEAD = 2
+"""Tasks in flight per worker: one runs, one waits."""
+PATIENCE = 20.0
+"""How many times the longest block so far a block may take before its worker counts as hung."""
+LEAST_PATIENCE = 600.0
+"""s that any block may take: a worker that is new compiles first."""
+LOOKS = 20
+"""How often within that time the blocks in flight are looked at."""
+
+
+@dataclass
+class Flight:
+    """A block on its way: the monotonic time since which it may have been waiting, and how often it got no answer."""
+
+    task: Task
+    since: float = field(default_factory=time.monotonic)
+    silences: int = 0
+
+
+def compute(
+    tasks: Iterable[Task], pool: Pool, store: BlockStore, block_seconds: float, tell: Callable[[Outcome], None]
+) -> None:
+    """Run every task and tell its outcome.
+
+    A worker of a cluster that gives no answer for `PATIENCE` times the longest block (``block_seconds`` at the
+    least) is taken away and its blocks go to others; a block that stays without an answer twice has failed. Raises
+    BrokenExecutor where there is no worker left.
+    """
+    queue: Iterator[Task] = iter(tasks)
+    running: dict[Future[Outcome], Flight] = {}
+    longest = block_seconds
+    while True:
+        for task in islice(queue, max(0, AHEAD * pool.places() - len(running))):
+            running[pool.submit(run_task, task)] = Flight(task)
+        if not running:
+            return
+        limit = max(LEAST_PATIENCE, PATIENCE * longest)
+        done, _ = wait(running, timeout=limit / LOOKS, return_when=FIRST_COMPLETED)
+        for future in done:
+            outcome = _outcome(future, running.pop(future).task, store)
+            longest = max(longest, outcome.seconds)
+            tell(outcome)
+        # before it begins, a block waits for those that were given out with it
+        late = [f for f, flight in running.items() if time.monotonic() - flight.since > AHEAD * limit]
+        if late and (failed := _without_answer(late[0], running, pool, store, limit)) is not None:
+            tell(failed)
+
+
+def _without_answer(
+    future: Future[Outcome], running: dict[Future[Outcome], Flight], pool: Pool, store: BlockStore, limit: float
+) -> Outcome | None:
+    """Take the worker of a late block away; the outcome where it is late for the second time."""
+    flight = running[future]
+    dropped = pool.drop(future)
+    if not dropped and pool.places() == 0:
+        raise BrokenExecutor("no worker is left")
+    flight.silences += dropped
+    for other in running.values():
+        other.since = time.monotonic()
+    if flight.silences < 2:
+        return None
+    del running[future]
+    future.cancel()
+    sentence = f"no answer within {limit:.0f} s from either of two workers"
+    store.fail(flight.task.key, sentence + "\n")
+    return Outcome(flight.task.key, flight.task.grid.size, 0.0, 0.0, sentence)
+
+
+def _outcome(future: Future[Outcome], task: Task, store: BlockStore) -> Outcome:
+    """What a future holds; a worker that dies without an answer fails its block only where that is known."""
+    try:
+        return future.result()
+    except (BrokenExecutor, CancelledError, UnfitWorker, OSError):
+        raise
+    except Exception as error:
+        store.fail(task.key, traceback.format_exc())
+        return Outcome(task.key, task.grid.size, 0.0, 0.0, f"{type(error).__name__}: {error}")
