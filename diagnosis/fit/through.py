@@ -5,7 +5,7 @@ What instruments do is done to the whole run, so that a filter that looks ahead 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
@@ -52,17 +52,35 @@ def run_through(
             m.model, values, instants, shaking, first=np.zeros(len(some), np.int64), samples=samples, initial={},
             options=options,
         )  # fmt: skip
-        for k in range(len(some)):
-            true = {c: _of_point(ran[stem(c)][k], c) for c in m.channels}
-            if any(not np.max(np.abs(x)) < FARTHEST * largest[c] for c, x in true.items()):
-                found[low + k] = np.nan
-                continue
-            recorded = recorded_in_stages(true, sets[low + k], around)
+        acting = sets[low : low + LANES]
+        kept = [k for k in range(len(some)) if _near(ran, k, largest)]
+        found[low : low + LANES] = np.nan
+        for alike in _alike(acting, kept):
+            true = {c: _of_point(ran[stem(c)][alike], c) for c in m.channels}
+            recorded = recorded_in_stages(true, acting[alike[0]], around)
             for c, name in enumerate(m.channels):
-                found[low + k, c] = averages(recorded[name], size)
+                found[low + np.array(alike), c] = averages(recorded[name], size)
     return found
 
 
+def _near(ran: Mapping[str, FloatArray], lane: int, largest: Mapping[str, float]) -> bool:
+    """Whether a run has not diverged."""
+    return all(np.max(np.abs(_of_point(ran[stem(c)][lane], c))) < FARTHEST * most for c, most in largest.items())
+
+
+def _alike(sets: Sequence[Sets], lanes: Iterable[int]) -> list[list[int]]:
+    """The lanes in groups, one for each setting of the instruments: what these do is done to a group at once."""
+    groups: list[list[int]] = []
+    for k in lanes:
+        group = next((one for one in groups if sets[one[0]] == sets[k]), None)
+        if group is None:
+            groups.append([k])
+        else:
+            group.append(k)
+    return groups
+
+
 def _of_point(values: FloatArray, channel: str) -> FloatArray:
-    """The row of an observable that a channel's number names, or all of it."""
-    return values if values.ndim == 1 else values[int(channel.rpartition("_")[2])]
+    """An observable (..., samples), or of one by level (..., levels, samples) the row that a channel's number names."""
+    point = channel.removeprefix(stem(channel)).removeprefix("_")
+    return values[..., int(point), :] if point else values
