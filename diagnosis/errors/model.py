@@ -13,7 +13,7 @@ from diagnosis.errors.drifts import columns, knots_of
 from diagnosis.errors.kicks import kicks
 from diagnosis.errors.likelihood import Piece, Prior, climbed, maximise, robust_deviance
 from diagnosis.errors.lines import lines
-from diagnosis.errors.own import own_error
+from diagnosis.errors.own import AS_MOTION, own_error
 from diagnosis.errors.pieces import Scene, opened, peaks_of, prior_of, stills, windows
 from diagnosis.errors.sensors import of_sensors
 from diagnosis.fit.setup import base_fit
@@ -130,7 +130,7 @@ def _components(scene: Scene) -> tuple[Component, ...]:
         if stretches is None:
             found += [Component("inadequacy", c, s) for s in SMOOTH]
     if stretches is not None:
-        found += [Component("inadequacy", None, s) for s in stretches.smooth]
+        found += [Component("inadequacy", None, s) for s in (AS_MOTION, *stretches.smooth)]
     if scene.kicks.shape[-1]:
         found.append(Component("scatter"))
     return tuple(found)

@@ -10,7 +10,7 @@ import pytest
 import models
 from diagnosis.answer.calibration import calibrate
 from diagnosis.data.stretches import averages
-from diagnosis.errors.own import own_error
+from diagnosis.errors.own import AS_MOTION, own_error
 from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.setup import as_recorded, measure
@@ -92,6 +92,17 @@ def test_a_model_s_own_error_goes_with_the_recording_and_is_shared_by_its_levels
     one, other = (columns[of[0], m.channels.index(f"level_displacement_x_{k}")] for k in range(2))
     correlation = np.sum(one * other) / np.sqrt(np.sum(one**2) * np.sum(other**2))
     assert correlation == pytest.approx(1.0, abs=1e-9)
+
+
+def test_a_model_s_own_error_is_correlated_as_the_motion_is() -> None:
+    m = measure(SPECIMEN, [made(0.0, integrated=False)])
+    w, c = 1, m.channels.index("level_displacement_x_0")
+    columns = own_error(m, AS_MOTION)[w, c] / m.unit[c]
+    covariance = columns @ columns.T
+    x = m.recordings[0].channels["level_displacement_x_0"]
+    for lag in (0, 3, 10):
+        mean = float(np.mean(np.diagonal(covariance, lag)))
+        assert mean == pytest.approx(float(x[lag:] @ x[: x.size - lag] / (x @ x)), abs=0.01)
 
 
 def test_a_loss_without_free_states_is_the_squared_misfit_at_first() -> None:
