@@ -24,6 +24,7 @@ from diagnosis.fit.solver import fit
 from diagnosis.forces.columns import forces
 from diagnosis.forces.constancy import flags, tests
 from diagnosis.progress import Progress
+from diagnosis.search.beside import seconds
 from diagnosis.search.budget import RESERVED
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.found import MISSING, Search, adjusted, explains_all, price, survives
@@ -31,7 +32,6 @@ from diagnosis.search.instants import NO_UNKNOWNS, WHOLE, ends_of
 from diagnosis.search.null import null_distribution
 from diagnosis.search.refit import QUICK, Explanation, again, best_of, extend, with_memory
 from diagnosis.search.runs import SHORTEST, InRuns, chance, in_runs, runs
-from diagnosis.search.select import seconds
 from diagnosis.search.spells import Spell, in_spell, of_windows
 from diagnosis.search.weighing import by_white_noise, weigh_again
 from models.base import FloatArray

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from diagnosis.data.measured import Measured
+from diagnosis.errors.adequacy import inadequacy
 from diagnosis.errors.model import Errors
 from diagnosis.forces.columns import Forces
 from diagnosis.forces.constancy import Constancy
@@ -51,6 +52,8 @@ class Search:
     singles: list[Explanation] = field(default_factory=list)
     tried: list[Explanation] = field(default_factory=list)
     best: Explanation | None = None
+    exchanged: set[frozenset[Candidate]] = field(default_factory=set)
+    """The mechanisms beside which others were tried in the place of one (`diagnosis.search.exchange`)."""
     weighed: tuple[Candidate, ...] = ()
     """The mechanisms with which the errors were estimated."""
     at_null: Search | None = None
@@ -74,6 +77,11 @@ class Search:
     @property
     def chosen(self) -> Explanation:
         return self.base if self.best is None else self.best
+
+    @property
+    def incomplete(self) -> bool:
+        """Whether what stands leaves more than noise: in its misfit, or in a smooth error that the errors then hold."""
+        return not adequate(self.chosen) or inadequacy(self.errors).large
 
     @property
     def more(self) -> float:

@@ -69,6 +69,16 @@ def extend(
     )
 
 
+def joined(explanation: Explanation, single: Explanation) -> Explanation:
+    """Fit with the mechanism of a single as it stands alone; the base parameters from the better of both."""
+    (candidate,) = single.candidates
+    base, alone = explanation.fitted, single.fitted
+    theirs = dict(zip((x.name for x in alone.misfit.unknowns), alone.u, strict=True))
+    led = np.array([theirs.get(x.name, c) for x, c in zip(base.misfit.unknowns, base.u, strict=True)])
+    ways = (explanation, replace(explanation, fitted=replace(base, u=led)))
+    return best_of([extend(way, candidate, single.part(candidate), QUICK) for way in ways])
+
+
 def without(explanation: Explanation, candidate: Candidate) -> Explanation:
     """Fit without one of the mechanisms, from the explanation's own optimum."""
     base = explanation.fitted

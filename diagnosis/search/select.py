@@ -1,4 +1,4 @@
-"""Which mechanisms are missing: refits of the strongest, forward selection, backward check, rivals.
+"""Which mechanisms are missing: refits of the strongest, forward selection, exchange, rivals.
 
 The fit of the base may be stuck; a rival's optimum then shows it, and the base is refitted from
 there. What counts is in `diagnosis.search.found`.
@@ -6,15 +6,15 @@ there. What counts is in `diagnosis.search.found`.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
-
-import numpy as np
+from collections.abc import Collection, Iterator
 
 from diagnosis.errors.model import estimate
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.progress import Progress
+from diagnosis.search.beside import POOL_SHARE, THOROUGH, extended, seconds, starts_of, worth_a_refit
 from diagnosis.search.candidates import Candidate
-from diagnosis.search.found import MISSING, Search, adequate, adjusted, explains_all, survives
+from diagnosis.search.exchange import exchanged
+from diagnosis.search.found import MISSING, Search, adequate, adjusted, survives
 from diagnosis.search.hidden import take_hidden
 from diagnosis.search.null import null_distribution
 from diagnosis.search.outside import outside
@@ -27,32 +27,20 @@ from diagnosis.search.refit import (
     from_other,
     reshaped,
     with_memory,
-    without,
 )
 from diagnosis.search.screen import Score, score
 from diagnosis.search.weighing import as_white_noise, by_white_noise, weigh_again
-from models.base import FloatArray
 
 FAINT = 8.0
 """Gain of the strongest single that is not taken further where the base model is adequate."""
-WORTH = 4.0
-"""Linearisation statistic under which a refit is not tried (the strongest FEWEST are tried all the same)."""
 FEWEST, FEWEST_ADEQUATE, MOST = 5, 2, 16
-SHARE_OF_FIRST, SHARE_OF_SECOND = 0.05, 0.25
-"""Of the strongest statistic: what a first or a further mechanism must reach to be refitted."""
-HOPELESS = 8.0
-"""Statistic of the strongest further mechanism under which a model that explains all windows is not extended."""
+SHARE_OF_FIRST = 0.05
+"""Of the strongest statistic: what a first mechanism must reach to be refitted."""
 TIE = 0.5
 """Gain within which two explanations are one for the data: the earlier in the catalogue is named."""
-THOROUGH = 2
 NEAR, NEAR_ADEQUATE = 0.2, 0.6
 """Share of the leader's gain from which a single is refitted from the leader's optimum too."""
 FIRST_POOL = 3
-FEWEST_SECOND, SECOND_TRIES = 2, 6
-HEAVY = 5.0
-"""Lane-steps of a trial, over those of most mechanisms, from which a mechanism counts as one of many short steps."""
-POOL_SHARE = 0.25
-"""Singles whose gain is this share of the best one's are tried as parts of a pair."""
 
 
 def first_effect(found: Search, progress: Progress) -> Iterator[Search]:
@@ -86,7 +74,7 @@ def further_effects(found: Search, progress: Progress) -> Iterator[Search]:
         _more(found, progress)
         yield found
     if found.outside is None:
-        _backward(found)
+        exchanged(found, progress)
     settle_ties(found)
     if found.best is not None:
         found.best = with_memory(again(found.best))
@@ -103,30 +91,6 @@ def take_best_single(found: Search) -> None:
         if survives(found.base, single):
             found.best = single
             return
-
-
-def worth_a_refit(scores: Sequence[Score], fewest: int, share: float) -> list[Score]:
-    """Those whose statistic is worth it beside the strongest one's, and the ``fewest`` first in any case."""
-    largest = max((s.statistic for s in scores), default=0.0)
-    least = max(WORTH, share * largest)
-    return [s for k, s in enumerate(scores) if s.starts and (k < fewest or s.statistic >= least)]
-
-
-def starts_of(entry: Score, scores: Sequence[Score]) -> tuple[FloatArray, ...]:
-    """Where its refits start; from the better one alone where the kernel needs many short steps."""
-    usual = float(np.median([s.work for s in scores]))
-    return entry.starts[:1] if entry.work > HEAVY * usual else entry.starts
-
-
-def _refits(found: Search, explanation: Explanation, scores: Sequence[Score]) -> list[Explanation]:
-    """The strongest of a screen, each from its starts."""
-    fits = []
-    for entry in worth_a_refit(scores, FEWEST_SECOND, SHARE_OF_SECOND)[:SECOND_TRIES]:
-        if found.affordable(entry.candidate.name):
-            tried = [extend(explanation, entry.candidate, at, QUICK) for at in starts_of(entry, scores)]
-            fits.append(best_of(tried))
-    fits.sort(key=adjusted)
-    return [again(e) if k < THOROUGH else e for k, e in enumerate(fits)]
 
 
 def _singles(found: Search, progress: Progress) -> None:
@@ -195,14 +159,15 @@ def _pairs(found: Search, progress: Progress) -> None:
     others = seconds(found, found.best)
     if not adequate(found.best):
         found.outside = outside(found.best, others, found.errors)
-    singles = pool(found)
+    singles, widely = pool(found), found.incomplete
     pairs: list[Explanation] = []
     for k, single in enumerate(singles):
         progress(f"looking for a second effect beside {single.names[0]}", 0.5 + 0.25 * k / len(singles))
         if not found.affordable(f"a second effect beside {single.names[0]}"):
             break
-        pairs += _extended(found, single, others if single is found.best else seconds(found, single))
-        if any(adequate(e) for e in pairs):  # the backward check still tries the others in its place
+        screened = others if single is found.best else seconds(found, single)
+        pairs += extended(found, single, screened, widely)
+        if any(adequate(e) for e in pairs):  # the others are still tried in its place
             break
     if not pairs:
         return
@@ -216,19 +181,8 @@ def _pairs(found: Search, progress: Progress) -> None:
     if adjusted(found.best) - adjusted(pair) >= found.more and survives(alone, pair, found.more):
         found.best = again(reshaped(pair))
         weigh_again(found)
-
-
-def seconds(found: Search, explanation: Explanation) -> list[Score]:
-    """The screen of mechanisms of other classes beside those of an explanation."""
-    others = [c for c in found.candidates if c.effect_class not in explanation.classes]
-    return score(linearise_about(explanation.fitted), others, found.not_tried)
-
-
-def _extended(found: Search, explanation: Explanation, scores: Sequence[Score]) -> list[Explanation]:
-    """Refits with one more mechanism, the strongest of a screen beside the explanation."""
-    if explains_all(explanation) and max((s.statistic for s in scores), default=0.0) < HOPELESS:
-        return []
-    return _refits(found, explanation, scores)
+        if found.incomplete:
+            exchanged(found, progress)
 
 
 def _more(found: Search, progress: Progress) -> None:
@@ -241,7 +195,8 @@ def _more(found: Search, progress: Progress) -> None:
             found.outside = outside(found.best, others, found.errors)
             if found.outside is not None:
                 return
-        further = _extended(found, found.best, others)
+        incomplete = found.incomplete
+        further = extended(found, found.best, others, incomplete)
         if not further:
             return
         found.tried += further
@@ -250,30 +205,8 @@ def _more(found: Search, progress: Progress) -> None:
             return
         found.best = best
         weigh_again(found)
-
-
-def _backward(found: Search) -> None:
-    """Drop what is no longer needed; try other mechanisms in the place of each effect."""
-    if found.best is None or len(found.best.candidates) < 2:
-        return
-    dropping = True
-    while dropping and len(found.best.candidates) > 1:
-        dropping = False
-        for candidate in found.best.candidates:
-            rest = without(found.best, candidate)
-            if adjusted(rest) - adjusted(found.best) < found.more:
-                found.best, dropping = rest, True
-                break
-    if len(found.best.candidates) < 2:
-        return
-    for candidate in found.best.candidates:
-        if found.affordable(f"others in the place of {candidate.name}"):
-            rest = without(found.best, candidate)
-            found.tried += _extended(found, rest, seconds(found, rest))
-    same = [e for e in found.tried if len(e.candidates) == len(found.best.candidates)]
-    better = min(same, key=adjusted)
-    if adjusted(better) < adjusted(found.best):
-        found.best = better
+        if incomplete:
+            exchanged(found, progress)
 
 
 def settle_ties(found: Search) -> None:

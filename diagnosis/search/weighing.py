@@ -12,6 +12,7 @@ from dataclasses import replace
 from diagnosis.errors.model import Errors, refitted
 from diagnosis.fit.solver import Fitted, fit
 from diagnosis.fit.whitening import sensor_noise_only
+from diagnosis.search.candidates import Candidate
 from diagnosis.search.found import Search, adjusted
 from diagnosis.search.refit import Explanation, without
 
@@ -53,8 +54,12 @@ def weigh_again(found: Search) -> None:
         found.at_null = replace(found)
     size = len(found.best.candidates)
     least = NEAR * found.gain(found.best)
-    near = [e for e in sorted(found.tried, key=adjusted) if len(e.candidates) == size and found.gain(e) > least][:MOST]
-    if found.best.candidates not in [e.candidates for e in near]:
+    leading: dict[frozenset[Candidate], Explanation] = {}
+    for explanation in sorted([found.best, *found.tried], key=adjusted):
+        if len(explanation.candidates) == size and found.gain(explanation) > least:
+            leading.setdefault(frozenset(explanation.candidates), explanation)
+    near = list(leading.values())[:MOST]
+    if frozenset(found.best.candidates) not in list(leading)[:MOST]:
         near.append(found.best)
     judged: list[tuple[float, Explanation, Errors]] = []
     for explanation in near:

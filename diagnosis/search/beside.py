@@ -1,0 +1,79 @@
+"""One more mechanism beside an explanation: which are worth a refit, and where these refits start."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from diagnosis.fit.linearisation import linearise_about
+from diagnosis.search.found import MISSING, Search, adjusted, explains_all
+from diagnosis.search.refit import QUICK, Explanation, again, best_of, extend, joined
+from diagnosis.search.screen import Score, score
+from models.base import FloatArray
+
+WORTH = 4.0
+"""Linearisation statistic under which a refit is not tried (the strongest FEWEST are tried all the same)."""
+SHARE_OF_SECOND = 0.25
+"""Of the strongest statistic: what a further mechanism must reach to be refitted."""
+FEWEST_SECOND, SECOND_TRIES = 2, 6
+HOPELESS = 8.0
+"""Statistic of the strongest further mechanism under which a model that explains all windows is not extended."""
+HEAVY = 5.0
+"""Lane-steps of a trial, over those of most mechanisms, from which a mechanism counts as one of many short steps."""
+THOROUGH = 2
+POOL_SHARE = 0.25
+"""Singles whose gain is this share of the best one's are tried as parts of a pair."""
+
+
+def worth_a_refit(scores: Sequence[Score], fewest: int, share: float) -> list[Score]:
+    """Those whose statistic is worth it beside the strongest one's, and the ``fewest`` first in any case."""
+    largest = max((s.statistic for s in scores), default=0.0)
+    least = max(WORTH, share * largest)
+    return [s for k, s in enumerate(scores) if s.starts and (k < fewest or s.statistic >= least)]
+
+
+def starts_of(entry: Score, scores: Sequence[Score]) -> tuple[FloatArray, ...]:
+    """Where its refits start; from the better one alone where the kernel needs many short steps."""
+    usual = float(np.median([s.work for s in scores]))
+    return entry.starts[:1] if entry.work > HEAVY * usual else entry.starts
+
+
+def seconds(found: Search, explanation: Explanation) -> list[Score]:
+    """The screen of mechanisms of other classes beside those of an explanation."""
+    others = [c for c in found.candidates if c.effect_class not in explanation.classes]
+    return score(linearise_about(explanation.fitted), others, found.not_tried)
+
+
+def extended(
+    found: Search, explanation: Explanation, scores: Sequence[Score], widely: bool = False
+) -> list[Explanation]:
+    """Refits with one more mechanism, best first: the strongest of a screen beside the explanation.
+
+    ``widely``: those that explain much alone too, from where they stand alone. A law that carries part of what another
+    parameter carried so far (the yielding of a spring and its stiffness) has no score there before both have moved.
+    """
+    if explains_all(explanation) and max((s.statistic for s in scores), default=0.0) < HOPELESS:
+        return []
+    fits = []
+    for entry in worth_a_refit(scores, FEWEST_SECOND, SHARE_OF_SECOND)[:SECOND_TRIES]:
+        if found.affordable(entry.candidate.name):
+            tried = [extend(explanation, entry.candidate, at, QUICK) for at in starts_of(entry, scores)]
+            fits.append(best_of(tried))
+    for single in _strong_alone(found, explanation) if widely else ():
+        if found.affordable(*single.names):
+            fits.append(joined(explanation, single))
+    fits.sort(key=adjusted)
+    return [again(e) if k < THOROUGH else e for k, e in enumerate(fits)]
+
+
+def _strong_alone(found: Search, explanation: Explanation) -> list[Explanation]:
+    """The best single of each mechanism of another class that explained much under the base model's errors."""
+    start = found if found.at_null is None else found.at_null
+    singles = sorted(start.singles, key=adjusted)
+    least = max((POOL_SHARE * start.gain(single) for single in singles[:1]), default=0.0)
+    best: dict[str, Explanation] = {}
+    for single in singles:
+        if single.classes[0] not in explanation.classes and start.gain(single) >= max(MISSING, least):
+            best.setdefault(single.names[0], single)
+    return list(best.values())[:SECOND_TRIES]

@@ -1,0 +1,94 @@
+"""Effects taken one by one, held against the others again: a search that only adds ends at what came first.
+
+The effect that explains most alone need not be among those that explain most together: a relaxing arm takes the place
+of hysteresis beside a law that softens, until something else is there too. So each effect taken is left out in turn,
+for good if nothing is lost, and every other one tried in its place, under the rule by which it was taken.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from diagnosis.progress import Progress
+from diagnosis.search.beside import extended, seconds
+from diagnosis.search.candidates import Candidate
+from diagnosis.search.found import Search, adjusted
+from diagnosis.search.refit import Explanation, again, gain_by_window, reshaped, without
+from diagnosis.search.weighing import weigh_again
+
+ROUNDS = 4
+
+
+def exchanged(found: Search, progress: Progress) -> None:
+    """Exchange effects until none gets better; once where what stands explains everything."""
+    held: set[frozenset[Candidate]] = set()
+    for _ in range(ROUNDS):
+        _drop(found)
+        if found.best is None or len(found.best.candidates) < 2:
+            return
+        held.add(frozenset(found.best.candidates))
+        progress("trying others in the place of each effect", 0.85)
+        incomplete = found.incomplete
+        _try_others(found, incomplete)
+        better = _better(found, incomplete)
+        if better is None:
+            return
+        others = frozenset(better.candidates) not in held
+        found.best = better
+        if not (others and incomplete):
+            return
+        found.best = again(reshaped(better))
+        weigh_again(found)
+        if frozenset(found.best.candidates) in held:
+            return
+
+
+def _better(found: Search, incomplete: bool) -> Explanation | None:
+    """The likeliest of as many effects, if it is likelier than the best.
+
+    Where no model explains everything, what they all get wrong is part of what is weighed, and it is alike all along a
+    recording: an exchange then has to gain without the window that speaks most for it, and without any one recording.
+    """
+    best = found.best
+    if best is None:
+        return None
+    for other in sorted(found.tried, key=adjusted):
+        if adjusted(other) >= adjusted(best):
+            return None
+        same = set(other.candidates) == set(best.candidates)
+        if len(other.candidates) == len(best.candidates) and (same or not incomplete or _everywhere(best, other)):
+            return other
+    return None
+
+
+def _everywhere(before: Explanation, after: Explanation) -> bool:
+    """Whether the gain does not rest on one window, or on one of several recordings."""
+    gains = gain_by_window(before, after)
+    total = adjusted(before) - adjusted(after)
+    of = after.measured.recording_of
+    recordings = [float(gains[of == r].sum()) for r in np.unique(of)]
+    return total > max([float(gains.max()), *(recordings if len(recordings) > 1 else [])])
+
+
+def _drop(found: Search) -> None:
+    """Drop what is no longer needed."""
+    dropping = True
+    while dropping and found.best is not None and len(found.best.candidates) > 1:
+        dropping = False
+        for candidate in found.best.candidates:
+            rest = without(found.best, candidate)
+            if adjusted(rest) - adjusted(found.best) < found.more:
+                found.best, dropping = rest, True
+                break
+
+
+def _try_others(found: Search, widely: bool) -> None:
+    """Refits of the best with each effect exchanged, but where that was tried beside the others before."""
+    if (best := found.best) is None:
+        return
+    for candidate in best.candidates:
+        others = frozenset(best.candidates) - {candidate}
+        if others not in found.exchanged and found.affordable(f"others in the place of {candidate.name}"):
+            found.exchanged.add(others)
+            rest = without(best, candidate)
+            found.tried += extended(found, rest, seconds(found, rest), widely)

@@ -1,0 +1,68 @@
+"""Effects taken one by one are held against the others again."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from diagnosis.errors.model import disturbance_about, estimate
+from diagnosis.fit.setup import base_fit, measure
+from diagnosis.progress import silent
+from diagnosis.search.candidates import candidates
+from diagnosis.search.exchange import exchanged
+from diagnosis.search.found import Search, adjusted
+from diagnosis.search.refit import Explanation, extend, joined
+from diagnosis.search.weighing import reweighed
+from tests.diagnosis.made import SPECIMEN, recording
+
+TRUE = {"restitution": {"factor_on_housner": 0.9}, "tilt": {"tilt": 0.01}}
+OTHERS = ("velocity_restitution", "offset")
+"""What each of them may be taken for."""
+
+
+class Unfinished(Search):
+    """A search that no explanation completes, such as those of recordings that no model reproduces."""
+
+    @property
+    def incomplete(self) -> bool:
+        return True
+
+
+@pytest.fixture(scope="module")
+def found() -> Search:
+    """With every mechanism refitted alone, under the errors of the true model."""
+    measured = measure(SPECIMEN, [recording(f"run_{seed}", seed, TRUE) for seed in (1, 2)])
+    some = {one.name: one for one in candidates(measured, SPECIMEN) if one.name in (*TRUE, *OTHERS)}
+    base = Explanation((), base_fit(SPECIMEN, measured))
+    true = base
+    for name in TRUE:
+        true = extend(true, some[name], some[name].null)
+    errors = estimate(true.fitted, disturbance_about(true.fitted))
+    found = Unfinished(reweighed(base, errors), tuple(some.values()), errors)
+    found.singles = sorted((extend(found.base, one, one.null) for one in some.values()), key=adjusted)
+    return found
+
+
+def taken(found: Search, *names: str) -> Explanation:
+    return joined(*(next(e for e in found.singles if e.names == (name,)) for name in names))
+
+
+def exchanged_from(found: Search, best: Explanation) -> Explanation:
+    search = replace(found, best=best, tried=[best], exchanged=set())
+    exchanged(search, silent)
+    assert search.best is not None
+    return search.best
+
+
+def test_an_effect_gives_way_to_one_that_explains_more_beside_the_other(found: Search) -> None:
+    best = exchanged_from(found, taken(found, "tilt", "velocity_restitution"))
+    assert set(best.names) == set(TRUE)
+    assert best.fitted.values["restitution.factor_on_housner"] == pytest.approx(0.9, abs=0.01)
+    assert best.fitted.values["tilt.tilt"] == pytest.approx(0.01, abs=0.001)
+
+
+def test_an_effect_that_is_no_longer_needed_is_dropped(found: Search) -> None:
+    (spare,) = (one for one in found.candidates if one.name == "offset")
+    best = exchanged_from(found, extend(taken(found, *TRUE), spare, spare.null))
+    assert set(best.names) == set(TRUE)
