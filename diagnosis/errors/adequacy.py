@@ -70,17 +70,31 @@ class Repeatability:
 def inadequacy(errors: Errors) -> Inadequacy:
     """The smooth error that a model has under its estimated errors."""
     acting = np.array([c.kind == "inadequacy" for c in errors.components])
-    channels = errors.unit.size
     if not acting.any():
-        return Inadequacy((0.0,) * channels, 0.0, 0.0, False)
-    variance = np.zeros(channels)
-    for c, theta in zip(errors.components, errors.theta, strict=True):
-        if c.kind == "inadequacy":
-            variance[slice(None) if c.channel is None else c.channel] += theta
-    ratio = float(np.max(variance / np.maximum([below(errors, c) for c in range(channels)], 1e-300)))
+        return Inadequacy((0.0,) * errors.unit.size, 0.0, 0.0, False)
+    variance = _variance(errors)
     deviance = _without_most_influential(errors, acting) if variance.any() else 0.0
     size = tuple(float(x) for x in np.sqrt(variance) * errors.unit)
-    return Inadequacy(size, ratio, deviance, True)
+    return Inadequacy(size, _ratio(errors, variance), deviance, True)
+
+
+def errs(errors: Errors) -> bool:
+    """`Inadequacy.large`; the likelihood is not asked where the ratio says no."""
+    return _ratio(errors, _variance(errors)) > LARGE and inadequacy(errors).large
+
+
+def _variance(errors: Errors) -> FloatArray:
+    """Of the model's own error (C,), in units squared."""
+    found = np.zeros(errors.unit.size)
+    for c, theta in zip(errors.components, errors.theta, strict=True):
+        if c.kind == "inadequacy":
+            found[slice(None) if c.channel is None else c.channel] += theta
+    return found
+
+
+def _ratio(errors: Errors, variance: FloatArray) -> float:
+    """Over that of the sensors' noise below `BAND`."""
+    return float(np.max(variance / np.maximum([below(errors, c) for c in range(variance.size)], 1e-300)))
 
 
 def below(errors: Errors, channel: int, highest: float = BAND) -> float:

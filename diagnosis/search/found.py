@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from diagnosis.data.measured import Measured
-from diagnosis.errors.adequacy import inadequacy
+from diagnosis.errors.adequacy import errs
 from diagnosis.errors.model import Errors
 from diagnosis.forces.columns import Forces
 from diagnosis.forces.constancy import Constancy
@@ -81,7 +81,7 @@ class Search:
     @property
     def incomplete(self) -> bool:
         """Whether what stands leaves more than noise: in its misfit, or in a smooth error that the errors then hold."""
-        return not adequate(self.chosen) or inadequacy(self.errors).large
+        return not adequate(self.chosen) or errs(self.errors)
 
     @property
     def more(self) -> float:
