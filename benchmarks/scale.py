@@ -41,7 +41,7 @@ from study.run import run
 OUT = Path("results/bench/scale.json")
 BASE = Path(__file__).parent.parent / "studies" / "rubber_interface.toml"
 WORKERS = 2
-KILL_SECONDS = 3.0
+KILL_SECONDS = 5.0
 PARTS = ("sizes", "kills", "refinement")
 BORDERS = 256
 """Values of an axis of the map of which only the borders are computed."""

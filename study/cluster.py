@@ -53,6 +53,11 @@ class ClusterPool(Pool):
                     "the same rocking-study and Python on every machine of the cluster as here, and start it anew"
                 )
 
+    def lost(self, future: Future[Any]) -> bool:
+        from distributed import KilledWorker
+
+        return not future.cancelled() and isinstance(future.exception(), KilledWorker)
+
     def drop(self, future: Future[Any]) -> bool:
         key = self._keys[future]
         holders = [address for address, keys in self._client.processing().items() if key in keys]

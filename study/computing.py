@@ -26,11 +26,11 @@ LOOKS = 20
 
 @dataclass
 class Flight:
-    """A block on its way: the monotonic time since which it may have been waiting, and how often it got no answer."""
+    """A block on its way: how often it was lost with its workers, the monotonic time since which it may be waiting."""
 
     task: Task
+    losses: int = 0
     since: float = field(default_factory=time.monotonic)
-    silences: int = 0
 
 
 def compute(
@@ -39,8 +39,8 @@ def compute(
     """Run every task and tell its outcome.
 
     A worker of a cluster that gives no answer for `PATIENCE` times the longest block (``block_seconds`` at the
-    least) is taken away and its blocks go to others; a block that stays without an answer twice has failed. Raises
-    BrokenExecutor where there is no worker left.
+    least) is taken away and its blocks go to others; a block that is lost twice, so or with workers that die, has
+    failed. Raises BrokenExecutor where there is no worker left.
     """
     queue: Iterator[Task] = iter(tasks)
     running: dict[Future[Outcome], Flight] = {}
@@ -53,7 +53,11 @@ def compute(
         limit = max(LEAST_PATIENCE, PATIENCE * longest)
         done, _ = wait(running, timeout=limit / LOOKS, return_when=FIRST_COMPLETED)
         for future in done:
-            outcome = _outcome(future, running.pop(future).task, store)
+            flight = running.pop(future)
+            if pool.lost(future) and not flight.losses:
+                running[pool.submit(run_task, flight.task)] = Flight(flight.task, losses=1)
+                continue
+            outcome = _outcome(future, flight.task, store)
             longest = max(longest, outcome.seconds)
             tell(outcome)
         # before it begins, a block waits for those that were given out with it
@@ -70,14 +74,14 @@ def _without_answer(
     dropped = pool.drop(future)
     if not dropped and pool.places() == 0:
         raise BrokenExecutor("no worker is left")
-    flight.silences += dropped
+    flight.losses += dropped
     for other in running.values():
         other.since = time.monotonic()
-    if flight.silences < 2:
+    if flight.losses < 2:
         return None
     del running[future]
     future.cancel()
-    sentence = f"no answer within {limit:.0f} s from either of two workers"
+    sentence = f"lost with its workers twice, at last for want of an answer within {limit:.0f} s"
     store.fail(flight.task.key, sentence + "\n")
     return Outcome(flight.task.key, flight.task.grid.size, 0.0, 0.0, sentence)
 

@@ -57,6 +57,10 @@ class Pool:
     def submit(self, work: Callable[[T], R], given: T) -> Future[R]:
         return self._executor.submit(work, given)
 
+    def lost(self, future: Future[Any]) -> bool:
+        """Whether a block came to nothing because workers died that held it, perhaps for other reasons."""
+        return False
+
     def drop(self, future: Future[Any]) -> bool:
         """Take away the worker that holds a block, so that others get its blocks; False where that cannot be done."""
         return False

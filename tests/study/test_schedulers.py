@@ -58,6 +58,25 @@ class Silent(Pool):
         return True
 
 
+class Deadly(Pool):
+    """Its workers die of one block, some times."""
+
+    def __init__(self, key: str, deaths: int) -> None:
+        super().__init__(SynchronousExecutor(), 1)
+        self.key, self.deaths = key, deaths
+
+    def submit(self, work: Callable[[Any], Any], given: Any) -> Future[Any]:
+        if given.key != self.key or not self.deaths:
+            return super().submit(work, given)
+        self.deaths -= 1
+        future: Future[Any] = Future()
+        future.set_exception(MemoryError("killed"))
+        return future
+
+    def lost(self, future: Future[Any]) -> bool:
+        return isinstance(future.exception(), MemoryError)
+
+
 @pytest.fixture(scope="module", autouse=True)
 def one_model() -> Iterator[None]:
     """The processes that are killed begin with the kernel of one model only."""
@@ -207,6 +226,21 @@ def test_a_block_without_an_answer_from_two_workers_has_failed(tmp_path: Path, m
     assert pool.dropped == 2 and [o.key for o in told if o.failure] == [tasks[0].key]
     assert BlockStore(folder).failures().keys() == {tasks[0].key}
     assert len(told) == len(tasks) > 1
+
+
+@pytest.mark.parametrize(("deaths", "failed"), [(1, 0), (2, 1)])
+def test_a_block_that_is_lost_with_its_workers_is_given_out_once_more(deaths: int, failed: int, tmp_path: Path) -> None:
+    plan = small_plan()
+    folder = tmp_path / plan.name
+    folder.mkdir()
+    (folder / MARK).touch()
+    setting, needs = Setting.of(plan), Needs.of_run(folder)
+    tasks = [make_task(plan, setting, needs, key, block) for key, block in Manifest.start(plan, 20, "").blocks.items()]
+    pool, told = Deadly(tasks[0].key, deaths), []
+    compute(tasks, pool, BlockStore(folder), 0.0, told.append)
+    assert sum(outcome.failure is not None for outcome in told) == failed
+    assert len(told) == len(tasks) and pool.deaths == 0
+    assert len(BlockStore(folder).finished()) == len(tasks) - failed
 
 
 def test_without_any_worker_the_run_ends_with_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
