@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import dask
 import numpy as np
+from dask.array import asarray
 
 from models.base import STATUS
 from study.open import open_study
@@ -17,7 +19,8 @@ WORDS = {"rest": "at rest", "outside_model": "outside the model"}
 def tally(cube: Path) -> dict[str, int]:
     """Cells of a cube's file by the word of their ``status``, all words in the order of `models.base.STATUS`."""
     with open_study(cube, ["status"], lazy=True) as opened, dask.config.set(scheduler="synchronous"):
-        chunks = opened["status"].data.to_delayed().ravel()
+        status: Any = asarray(opened["status"].data)  # type: ignore[no-untyped-call]  # of a single cell none of dask
+        chunks = status.to_delayed().ravel()
         counts = sum(np.bincount(chunk.compute().ravel(), minlength=len(STATUS)) for chunk in chunks)
     return dict(zip(STATUS, np.asarray(counts).tolist(), strict=True))
 
