@@ -22,6 +22,20 @@ from models.kinematics import Place
 from models.model import Model
 from models.shaking import Shaking
 
+
+@dataclass(frozen=True)
+class AsItWas:
+    """How events that do not repeat exactly fell in the recordings, as pulses of base acceleration make it so.
+
+    ``pulses``: by recording, base acceleration (n_samples,) in m s-2; ``offset`` (W, C, N): what they change in the
+    windows to the first order, so that a prediction less its offset is one without scatter, but linear about the motion
+    as it was.
+    """
+
+    pulses: tuple[FloatArray, ...]
+    offset: FloatArray
+
+
 FIRST = 4.0
 """Over the least errors that are assumed: what residuals are weighed with at first."""
 RATE_WIDTH = 0.04
@@ -59,6 +73,7 @@ class Measured:
     bonded: bool = False
     assumed: FloatArray | None = None
     """Least errors (W, C) beside the noise, of a model that runs through whole recordings."""
+    as_it_was: AsItWas | None = None
 
     @property
     def first_errors(self) -> FloatArray:
@@ -67,9 +82,17 @@ class Measured:
 
     @property
     def unit(self) -> FloatArray:
-        """Deviation of each channel (C,) in units of which errors are estimated."""
+        """Deviation of each channel (C,), over all recordings, in units of which errors are stated."""
         sigma = self.sigma if self.assumed is None else np.maximum(self.sigma, self.assumed)
         return np.asarray(np.sqrt(np.mean(sigma**2, axis=0)))
+
+    @property
+    def units(self) -> FloatArray:
+        """Deviation (W, C) in units of which errors are estimated: each recording has a noise level of its own.
+
+        That of all recordings for a model that runs through them whole, whose own error is by far the largest.
+        """
+        return self.sigma if self.stretches is None else np.broadcast_to(self.unit, self.sigma.shape)
 
     @property
     def lead(self) -> int:
@@ -160,13 +183,20 @@ class Measured:
             self,
             windows=tuple(self.windows[w] for w in windows),
             assumed=None if self.assumed is None else self.assumed[windows],
+            as_it_was=self.as_it_was and replace(self.as_it_was, offset=self.as_it_was.offset[windows]),
             values=self.values[windows], mask=self.mask[windows], sigma=self.sigma[windows], base=self.base[windows],
             states=self.states[windows], memory={name: before[windows] for name, before in self.memory.items()},
         )  # fmt: skip
 
     def cut_again(self, windows: tuple[Window, ...]) -> Measured:
         """The same starts with other lengths."""
-        return replace(self, windows=windows, **gather(self.recordings, windows, self.channels))
+        return replace(self, windows=windows, as_it_was=None, **gather(self.recordings, windows, self.channels))
+
+    def disturbed(self, shaking: Shaking, recording: int) -> Shaking:
+        """The base motion of a recording with the pulses that make its events as they were."""
+        if self.as_it_was is None:
+            return shaking
+        return replace(shaking, horizontal=shaking.horizontal + self.as_it_was.pulses[recording])
 
     def times(self, window: int) -> FloatArray:
         """Times (N,) of a window's samples, in s."""
@@ -253,7 +283,7 @@ def for_model(measured: Measured, model: Model, alike: Mapping[str, str], bonded
     """The same windows, recordings and channels for another ``model``; the others: see `Measured`."""
     declared = identification_of(model)
     lengths = measured.lengths and replace(measured.lengths, carrying=max(NARROWEST, measured.lengths.carrying))
-    found = replace(measured, model=model, alike=alike, bonded=bonded, lengths=lengths)
+    found = replace(measured, model=model, alike=alike, bonded=bonded, lengths=lengths, as_it_was=None)
     states = {state.name: state for state in declared.free}
     used = [states[alike.get(name, name)] for name in found.free]
     start = np.stack([_start(measured.recordings, measured.windows, state) for state in used], axis=1)

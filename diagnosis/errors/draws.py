@@ -2,29 +2,40 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from diagnosis.data.measured import Measured
+from diagnosis.data.measured import AsItWas, Measured
 from diagnosis.errors.drifts import columns, knots_of
 from diagnosis.errors.model import Errors
+from diagnosis.errors.scattered import Events
+from diagnosis.fit.solver import Fitted
 from models.base import FloatArray
 
 
+def scattered(errors: Errors, fitted: Fitted, rng: np.random.Generator) -> FloatArray:
+    """Channels (W, C, N) that a fit predicts where its events scatter at random."""
+    m, predictor = fitted.measured, fitted.misfit.predictor
+    changes = errors.scatter * rng.normal(size=errors.kicks.window.size)
+    pulses = Events(fitted.u, fitted.states, errors.kicks, changes).pulses(m)
+    known = AsItWas(pulses, np.zeros(m.values.shape))
+    return np.asarray(replace(predictor, measured=replace(m, as_it_was=known)).predict([fitted.point])[0])
+
+
 def draw(errors: Errors, measured: Measured, rng: np.random.Generator) -> FloatArray:
-    """Errors (W, C, N) of every window: noise of the sensors, noise of the base motion, scatter of events."""
+    """Errors (W, C, N) of every window: noise of the sensors and of the base motion."""
     found = np.einsum("wcnk,wk->wcn", errors.base, rng.normal(size=errors.base.shape[::3]))
-    scatter = np.sqrt(sum(t for c, t in zip(errors.components, errors.theta, strict=True) if c.kind == "scatter"))
-    found += scatter * np.einsum("wcnk,wk->wcn", errors.kicks, rng.normal(size=errors.kicks.shape[::3]))
     knots = knots_of(measured, errors.components)
     if knots is not None:
         drift = errors.prior.root(errors.theta) @ rng.normal(size=(knots.time.size, 1))
-        found += columns(knots, drift, measured, errors.unit)[..., 0]
+        found += columns(knots, drift, measured)[..., 0]
     samples = np.arange(measured.values.shape[2])
     peak = np.max(np.abs(measured.values) * measured.mask, axis=(0, 2))
     roots: dict[tuple[int, float], FloatArray] = {}
     for w, window in enumerate(measured.windows):
         step = measured.recordings[window.recording].time_step
-        for c, unit in enumerate(errors.unit):
+        for c, unit in enumerate(measured.units[w]):
             own = [(k, t) for k, t in zip(errors.components, errors.theta, strict=True) if k.channel == c and t > 0.0]
             if (c, step) not in roots:
                 lag = np.abs(samples[:, None] - samples[None, :]) * step
@@ -36,5 +47,5 @@ def draw(errors: Errors, measured: Measured, rng: np.random.Generator) -> FloatA
             growing = sum(t for k, t in own if k.kind == "growing")
             size = np.abs(measured.values[w, c]) / max(float(peak[c]), 1e-300)
             noise = roots[c, step] @ rng.normal(size=samples.size)
-            found[w, c] += unit * (noise + np.sqrt(growing) * size * rng.normal(size=samples.size))
+            found[w, c] += unit * noise + errors.unit[c] * np.sqrt(growing) * size * rng.normal(size=samples.size)
     return np.where(measured.mask, found, 0.0)

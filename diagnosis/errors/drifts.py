@@ -65,12 +65,12 @@ def knots_of(measured: Measured, components: Sequence[Component]) -> Knots | Non
     return Knots(table[:, 0], table[:, 1].astype(np.int64), table[:, 2].astype(np.int64), table[:, 3])
 
 
-def columns(knots: Knots, root: FloatArray, measured: Measured, unit: FloatArray) -> FloatArray:
+def columns(knots: Knots, root: FloatArray, measured: Measured) -> FloatArray:
     """What independent normal numbers leave in the windows through drifts ``root`` (q, S): columns (W, C, N, S)."""
     found = np.zeros((*measured.values.shape, root.shape[1]))
-    samples = measured.values.shape[2]
+    samples, units = measured.values.shape[2], measured.units
     for w, window in enumerate(measured.windows):
         for c in range(len(measured.channels)):
             at, weights = knots.near(window.recording, np.full(samples, c), measured.times(w))
-            found[w, c] = unit[c] * weights @ root[at]
+            found[w, c] = units[w, c] * weights @ root[at]
     return np.where(measured.mask[..., None], found, 0.0)

@@ -41,7 +41,6 @@ class Without:
     """The likelihood with the columns ``beside`` (W, C, N, B) in it and without any that is to be tested."""
 
     measured: Measured
-    unit: FloatArray
     pieces: tuple[Piece, ...]
     prior: Prior
     theta: FloatArray
@@ -53,14 +52,14 @@ class Without:
         """The variances estimated anew, the smooth error of the model left out."""
         smooth = np.array([c.kind == "inadequacy" for c in errors.components])
         alone = [piece.holding(smooth, 0.0) for piece in errors.pieces]
-        pieces = _with(alone, measured, errors.unit, beside)
+        pieces = _with(alone, measured, beside)
         prior = _wider(errors.prior.without(smooth), beside.shape[-1])
         theta, state = maximise(pieces, prior, errors.theta[~smooth], errors.weights)
-        return cls(measured, errors.unit, tuple(pieces), prior, theta, errors.weights, state)
+        return cls(measured, tuple(pieces), prior, theta, errors.weights, state)
 
     def evidence(self, column: FloatArray) -> Evidence:
         """Of a column (W, C, N) of predictions."""
-        whole, prior = _with(self.pieces, self.measured, self.unit, column[..., None]), _wider(self.prior, 1)
+        whole, prior = _with(self.pieces, self.measured, column[..., None]), _wider(self.prior, 1)
         start = evaluate(whole, prior, self.theta, self.weights, slopes=False)
         last = prior.slope.size - 1
         variance = max(float(start.covariance[last, last]), 1e-300)
@@ -71,9 +70,9 @@ class Without:
         return Evidence(gain, -float(found.estimate[last]), each[: len(self.measured.windows)])
 
 
-def _with(pieces: Sequence[Piece], measured: Measured, unit: FloatArray, columns: FloatArray) -> list[Piece]:
+def _with(pieces: Sequence[Piece], measured: Measured, columns: FloatArray) -> list[Piece]:
     """The pieces with more columns (W, C, N, B) beside the base parameters; none of them acts in a still stretch."""
-    each = np.moveaxis(measured.averaged(np.moveaxis(columns, -1, 0)), 0, -1) / unit[:, None, None]
+    each = np.moveaxis(measured.averaged(np.moveaxis(columns, -1, 0)), 0, -1) / measured.units[:, :, None, None]
     found = []
     for k, piece in enumerate(pieces):
         more = np.zeros((piece.residual.size, columns.shape[-1]))

@@ -2,12 +2,14 @@
 
 One column an event: the derivative of the recorded channels by a relative change of the rate just after it. Short runs
 from the first sample after the event, with the rate changed by a share of itself up and down, give it (reading it off
-the responses to short pulses of base acceleration is 15-20 % low).
+the responses to pulses of base acceleration of 20 ms is 15-20 % low). A pulse of one sample makes nearly the same
+change: its height is known too, so that a run can have its events as they were (`diagnosis.errors.scattered`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -27,15 +29,36 @@ from models.shaking import Shaking
 CHANGE = 0.01
 FEWEST_LEFT = 3
 """Samples of a window that must follow an event."""
+PULSE = 0.01
+"""m s-2, height of the pulses that are tried."""
 
 
-def kicks(predictor: Predictor, point: Point) -> FloatArray:
-    """Columns (W, C, N, K), padded with zeros: derivative by the relative change of the rate after each event."""
+@dataclass(frozen=True)
+class Kicks:
+    """Events of W windows, at most K in each; E in all.
+
+    ``columns`` (W, C, N, K), padded with zeros: derivative by the relative change of the rate after each event.
+    ``window``, ``place`` (E,): its column; ``sample`` (E,) of the recording, at which a pulse of base acceleration of
+    one sample, ``height`` (E,) (m s-2) high, makes a relative change of one (0: it makes none).
+    """
+
+    columns: FloatArray
+    window: NDArray[np.intp]
+    place: NDArray[np.intp]
+    sample: NDArray[np.intp]
+    height: FloatArray
+
+
+def kicks(predictor: Predictor, point: Point) -> Kicks:
+    """What the events of every window leave, about the motion at ``point``."""
     m = predictor.measured
     declared = m.identification.scatter
+    nowhere = np.zeros(0, np.intp)
     if declared is None:
-        return np.zeros((*m.values.shape, 0))
+        return Kicks(np.zeros((*m.values.shape, 0)), nowhere, nowhere, nowhere, np.zeros(0))
     columns: list[tuple[int, FloatArray]] = []
+    sampled: list[NDArray[np.intp]] = []
+    heights: list[FloatArray] = []
     samples = m.values.shape[2]
     for r, recording in enumerate(m.recordings):
         own = np.flatnonzero(m.recording_of == r)
@@ -43,13 +66,15 @@ def kicks(predictor: Predictor, point: Point) -> FloatArray:
             continue
         sets = predictor.sets(instruments_of(point.values), recording)
         parts = predictor.parts(point.values, recording)
-        shaking = moved_in_stages(m.shakings[r], sets, moved_in_windows)
+        ground = moved_in_stages(m.shakings[r], sets, moved_in_windows)
+        shaking = m.disturbed(ground, r)
 
         def run(
             windows: NDArray[np.intp],
             after: NDArray[np.intp],
             states: FloatArray,
             shaking: Shaking = shaking,
+            samples: int = samples,
             parts: Sequence[Part] = parts,
         ) -> Mapping[str, FloatArray]:
             initial = dict(zip(m.model.states, states.T, strict=True)) | {k: v[windows] for k, v in m.memory.items()}
@@ -78,18 +103,30 @@ def kicks(predictor: Predictor, point: Point) -> FloatArray:
             changed[:, rate] *= share
             ran = run(own[window], after, changed)
             spliced = Observed({c: partial(_spliced, plain, ran, c, window, after) for c in ran})
-            channels = m.sensed(spliced, shaking.time_step, ground_along(shaking, m.first[own[window]], samples))
+            channels = m.sensed(spliced, ground.time_step, ground_along(ground, m.first[own[window]], samples))
             found = recorded_in_stages(channels, sets, around, recorded_in_windows)
             recorded.append(np.stack([found[c] for c in m.channels], axis=1))
         slope = (recorded[0] - recorded[1]) / (2.0 * CHANGE)
         columns += list(zip(own[window].tolist(), slope, strict=True))
+        at = m.first[own[window]] + after + 1
+        pulse = np.zeros(shaking.horizontal.size)
+        pulse[at] = PULSE
+        pushed, free = (
+            run(own[window], after, states, one, FEWEST_LEFT)[declared.rate][:, FEWEST_LEFT - 1]
+            for one in (replace(shaking, horizontal=shaking.horizontal + pulse), shaking)
+        )
+        sampled.append(at)
+        heights.append(np.divide(PULSE * free, pushed - free, out=np.zeros(at.size), where=pushed != free))
     count = np.bincount([w for w, _ in columns], minlength=len(m.windows))
     found_all = np.zeros((*m.values.shape, int(count.max(initial=0))))
-    filled = np.zeros(len(m.windows), int)
-    for w, slope in columns:
+    filled = np.zeros(len(m.windows), np.intp)
+    place = np.zeros(len(columns), np.intp)
+    for k, (w, slope) in enumerate(columns):
         found_all[w, :, :, filled[w]] = np.where(m.mask[w], slope, 0.0)
+        place[k] = filled[w]
         filled[w] += 1
-    return found_all
+    window = np.array([w for w, _ in columns], np.intp)
+    return Kicks(found_all, window, place, np.concatenate([nowhere, *sampled]), np.concatenate([[], *heights]))
 
 
 def _spliced(

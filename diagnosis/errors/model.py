@@ -10,12 +10,14 @@ import numpy as np
 from diagnosis.data.measured import Measured
 from diagnosis.errors.components import DECAYS, LOW_PASS, SLOW_DRIFTS, SMOOTH, Component
 from diagnosis.errors.drifts import columns, knots_of
-from diagnosis.errors.kicks import kicks
+from diagnosis.errors.kicks import Kicks, kicks
 from diagnosis.errors.likelihood import Piece, Prior, climbed, maximise, robust_deviance
 from diagnosis.errors.lines import lines
 from diagnosis.errors.own import AS_MOTION, own_error
 from diagnosis.errors.pieces import Scene, opened, peaks_of, prior_of, stills, windows
+from diagnosis.errors.scattered import Events, about, known_changes, shortened, step
 from diagnosis.errors.sensors import of_sensors
+from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.setup import base_fit
 from diagnosis.fit.solver import Fitted, fit_thoroughly
 from diagnosis.fit.whitening import Whitening, base_columns, responses
@@ -26,18 +28,24 @@ STEPS, AGAIN = 10, 3
 """Multiplicative steps from the first start, and from an estimate."""
 SCATTER = 0.01
 """Where the scatter of events starts, relative."""
+REPEATS = 0.001
+"""Scatter under which events repeat: what it leaves in a window is in proportion."""
+RELINEARISED = 4
+"""Times that events are predicted anew about the motion with those predicted before."""
 FAINT = 0.004
 """Variance of an independent part of a drift, in units squared, under which no window could show it."""
 
 
 @dataclass(frozen=True)
 class Errors:
-    """Variances ``theta`` (K,) of ``components``, in units (C,) squared (scatter: relative, squared).
+    """Variances ``theta`` (K,) of ``components``, in units squared (scatter: relative, squared).
+
+    ``unit`` (C,): that over all recordings; `Measured.units` are those of each.
 
     ``deviance``: -2 log restricted likelihood of the windows and still stretches with the weights held, ``loss`` with
     those of a t-distribution: what models, each with its own errors, are compared by; ``pieces`` with their
     ``weights``: the windows' first; ``step``: s between samples as recorded, of the first recording;
-    ``base`` and ``kicks`` (W, C, N, K): columns of base noise and of events.
+    ``base`` (W, C, N, K): columns of base noise; ``kicks``: what events leave.
     """
 
     components: tuple[Component, ...]
@@ -51,7 +59,25 @@ class Errors:
     step: float
     whitening: Whitening
     base: FloatArray
-    kicks: FloatArray
+    kicks: Kicks
+
+    def on(self, misfit: Misfit) -> Misfit:
+        """The misfit weighed by these errors, about the events as they were."""
+        known = self.whitening.measured.as_it_was
+        predictor = replace(misfit.predictor, measured=replace(misfit.measured, as_it_was=known))
+        return replace(misfit, predictor=predictor, whitening=self.whitening)
+
+    def repeating(self, misfit: Misfit) -> Misfit:
+        """The misfit weighed by these errors but the scatter of events."""
+        m, none = self.whitening.measured, np.zeros((*self.base.shape[:3], 0))
+        return replace(
+            misfit, whitening=_whitening(m, self.unit, self.components, self.theta, self.base, none, self.prior)
+        )
+
+    @property
+    def scatter(self) -> float:
+        """Standard deviation of the relative change of the rate by an event."""
+        return _scatter(self.components, self.theta)
 
     def of_sensors(self, measured: Measured) -> Whitening:
         """The sensors' errors in windows of other recordings; those of channels not known are taken for white."""
@@ -75,19 +101,36 @@ def calibrated(specimen: Specimen, measured: Measured, seed: int = 0) -> tuple[F
 
 
 def refitted(fitted: Fitted, base: FloatArray, start: Errors | None = None, rounds: int = 2) -> tuple[Fitted, Errors]:
-    """A fit and its errors, each estimated under the other in turn."""
+    """A fit and its errors, each estimated under the other in turn, about the events as they were."""
     errors = estimate(fitted, base, start)
     for turn in range(rounds):
+        fitted, errors = _about_the_events(fitted, errors)
         fitted = fit_thoroughly(replace(fitted.misfit, whitening=errors.whitening), fitted.u, fitted.states)
         if turn + 1 < rounds:
             errors = estimate(fitted, base, errors)
     return fitted, errors
 
 
+def _about_the_events(fitted: Fitted, errors: Errors) -> tuple[Fitted, Errors]:
+    """The fit, and its errors estimated anew, about the motion with the events as they are predicted."""
+    for _ in range(RELINEARISED):
+        if errors.scatter < REPEATS:
+            break
+        own = next(k for k, c in enumerate(errors.components) if c.kind == "scatter")
+        now = Events(fitted.u, fitted.states, errors.kicks, known_changes(fitted.measured, errors.kicks))
+        aim = step(errors.pieces, errors.prior, errors.theta, errors.weights, own, now)
+        known = shortened(errors.repeating(fitted.misfit), errors.scatter, now, aim)
+        if known is None:
+            break
+        fitted = replace(fitted, misfit=about(fitted.misfit, known), u=known.u, states=known.states)
+        errors = estimate(fitted, errors.base, errors)
+    return fitted, errors
+
+
 def estimate(fitted: Fitted, base: FloatArray, start: Errors | None = None) -> Errors:
     """The errors about a fit; ``base`` (W, C, N, K): columns of base noise, of unit variance."""
     kicked = kicks(fitted.misfit.predictor, fitted.point)
-    scene = opened(fitted, base, kicked)
+    scene = opened(fitted, base, kicked.columns)
     components = _components(scene) if start is None else start.components
     own = fitted.measured.stretches is not None
     quiet = stills(scene, components)
@@ -108,7 +151,7 @@ def estimate(fitted: Fitted, base: FloatArray, start: Errors | None = None) -> E
             theta = np.concatenate([theta, np.full(len(heard), 0.1)])
             theta, weights = climbed(pieces, prior, theta, weights, moving, AGAIN)
     theta, state = maximise(pieces, prior, theta, weights)
-    whitening = _whitening(scene, components, theta, base, kicked, prior)
+    whitening = _whitening(fitted.measured, scene.unit, components, theta, base, kicked.columns, prior)
     step = fitted.measured.recordings[0].time_step
     loss = robust_deviance(state, pieces, moving) + fitted.misfit.prior(fitted.u)
     return Errors(
@@ -136,12 +179,17 @@ def _components(scene: Scene) -> tuple[Component, ...]:
     return tuple(found)
 
 
+def _scatter(components: Sequence[Component], theta: FloatArray) -> float:
+    return float(np.sqrt(sum(t for c, t in zip(components, theta, strict=True) if c.kind == "scatter")))
+
+
 def _start(components: Sequence[Component]) -> FloatArray:
     return np.array([SCATTER**2 if c.kind == "scatter" else 1.0 if c.kind == "white" else 0.1 for c in components])
 
 
 def _whitening(
-    scene: Scene,
+    m: Measured,
+    unit: FloatArray,
     components: Sequence[Component],
     theta: FloatArray,
     base: FloatArray,
@@ -149,9 +197,8 @@ def _whitening(
     prior: Prior,
 ) -> Whitening:
     """Of the sensors' errors; base noise, events and a model's own error as columns, drifts as errors windows share."""
-    m = scene.fitted.measured
-    scatter = float(np.sqrt(sum(t for c, t in zip(components, theta, strict=True) if c.kind == "scatter")))
-    found = of_sensors(components, theta, scene.unit, m.channels, peaks_of(m), m)
+    scatter = _scatter(components, theta)
+    found = of_sensors(components, theta, unit, m.channels, peaks_of(m), m)
     own = [
         np.sqrt(t) * own_error(m, c.scale)
         for c, t in zip(components, theta, strict=True)
@@ -160,4 +207,4 @@ def _whitening(
     found = found.with_columns(np.concatenate([base, scatter * kicked, *own], axis=-1))
     knots, root = knots_of(m, components), prior.root(theta)
     root = root[:, np.sum(root**2, axis=0) > FAINT]
-    return found.with_shared(columns(knots, root, m, scene.unit)) if knots and root.size else found
+    return found.with_shared(columns(knots, root, m)) if knots and root.size else found

@@ -32,7 +32,9 @@ FLOOR = 0.02
 
 @dataclass(frozen=True)
 class Scene:
-    """A fit opened up: residuals and derivatives of its windows in units (C,) of the channels' noise, as recorded.
+    """A fit opened up: residuals and derivatives of its windows in units of the channels' noise in each recording.
+
+    ``unit`` (C,): that over all recordings.
 
     ``linear``: averages (W, M) and so on; ``base`` and ``kicks`` (W, C, n, K): columns of base noise and of events.
     """
@@ -47,15 +49,14 @@ class Scene:
 def opened(fitted: Fitted, base: FloatArray, kicks: FloatArray) -> Scene:
     """``base`` and ``kicks`` (W, C, N, K): columns of base noise and of events."""
     m = fitted.measured
-    unit = m.unit
-    whitening = Whitening(m, m.compared / unit[None, :, None])
+    whitening = Whitening(m, m.compared / m.units[:, :, None])
     misfit = Misfit(fitted.misfit.predictor, whitening, fitted.misfit.unknowns, fitted.misfit.fixed)
 
     def scaled(columns: FloatArray) -> FloatArray:
-        each = m.averaged(np.moveaxis(columns, -1, 0)) * m.compared / unit[:, None]
+        each = m.averaged(np.moveaxis(columns, -1, 0)) * m.compared / m.units[:, :, None]
         return np.moveaxis(each, 0, -1)
 
-    return Scene(fitted, unit, misfit.linearise(fitted.u, fitted.states), scaled(base), scaled(kicks))
+    return Scene(fitted, m.unit, misfit.linearise(fitted.u, fitted.states), scaled(base), scaled(kicks))
 
 
 def prior_of(scene: Scene, components: Sequence[Component]) -> Prior:
@@ -70,7 +71,7 @@ def windows(scene: Scene, components: Sequence[Component]) -> list[Piece]:
     """One piece a window."""
     m = scene.fitted.measured
     found = []
-    grown, knots = growth(m, peaks_of(m)), knots_of(m, components)
+    grown, knots = growth(m, peaks_of(m), m.unit), knots_of(m, components)
     own_errors = {
         c.scale: own_error(m, c.scale) / scene.unit[:, None, None]
         for c in components
@@ -136,7 +137,9 @@ def stills(scene: Scene, components: Sequence[Component]) -> list[Piece]:
             if at.size > LONGEST_STILL:
                 at = np.concatenate([at[: LONGEST_STILL // 2], at[-LONGEST_STILL // 2 :]])
             means = values[: values.size // size * size].reshape(-1, size).mean(axis=1)
-            level = np.asarray((means[at].mean() - means[at]) / scene.unit[c], np.float64)  # predicted minus measured
+            level = np.asarray(
+                (means[at].mean() - means[at]) / m.units[own[0], c], np.float64
+            )  # predicted minus measured
             inside = slice(0, at.size)
             parts = tuple(
                 _stationary(component, at, recording.time_step * size, inside, float(size))
@@ -172,7 +175,10 @@ def peaks_of(measured: Measured) -> FloatArray:
     return np.asarray(np.maximum(size.max(axis=(0, 2)), 1e-300))
 
 
-def growth(measured: Measured, peak: FloatArray) -> FloatArray:
-    """Squared size of the signal over the ``peak`` (C,) of the recordings that the errors are estimated from."""
+def growth(measured: Measured, peak: FloatArray, unit: FloatArray) -> FloatArray:
+    """Squared size of the signal over the ``peak`` (C,) of the recordings that the errors are estimated from.
+
+    In ``unit`` (C,) of these over that of each window, squared: such noise has no level of its own in a recording.
+    """
     size = np.abs(measured.averaged(measured.values)) * measured.compared
-    return np.asarray((size / peak[None, :, None]) ** 2, np.float64)
+    return np.asarray((size / peak[None, :, None] * (unit / measured.units)[:, :, None]) ** 2, np.float64)

@@ -23,15 +23,17 @@ def of_sensors(
 ) -> Whitening:
     """By the inverse Cholesky factor of each channel's errors in each window.
 
-    ``unit`` (C,), ``peaks`` (C,) that growing noise is given over, and the components' channels are those of ``names``;
-    the errors of other channels are white.
+    ``unit`` (C,) and ``peaks`` (C,) that growing noise is given over, and the components' channels are those of
+    ``names``; the errors of other channels are white.
     """
     m = measured
     n = m.compared.shape[2]
     index = np.arange(n)
     factor = np.zeros((*m.compared.shape, n))
     places = [names.index(name) if name in names else -1 for name in m.channels]
-    grown, stationary = growth(m, np.append(peaks, 1.0)[places]), {}
+    known = np.append(unit, 1.0)[places]
+    units = m.units if m.stretches is None else np.broadcast_to(known, m.sigma.shape)
+    grown, stationary = growth(m, np.append(peaks, 1.0)[places], known), {}
     for w, window in enumerate(m.windows):
         stride = int(m.strides[w])
         step = m.recordings[window.recording].time_step * stride
@@ -52,5 +54,5 @@ def of_sensors(
             covariance = stationary[c, step, stride][np.ix_(inside, inside)].copy()
             growing = sum(value for component, value in acting if component.kind == "growing")
             covariance[range(inside.size), range(inside.size)] += growing * grown[w, c, inside] / stride
-            factor[w, c][np.ix_(inside, inside)] = np.linalg.inv(np.linalg.cholesky(covariance)) / unit[own]
+            factor[w, c][np.ix_(inside, inside)] = np.linalg.inv(np.linalg.cholesky(covariance)) / units[w, c]
     return Whitening(m, factor)

@@ -67,7 +67,11 @@ class Predictor:
         shakings: Sequence[Shaking] | None = None,
         only: NDArray[np.bool_] | None = None,
     ) -> FloatArray:
-        """Channels (P, W, C, N) of P points; ``shakings`` replace the measured ones; zeros but in windows ``only``."""
+        """Channels (P, W, C, N) of P points; ``shakings`` replace the measured ones.
+
+        Meaningless but in windows ``only``. Events are as the law has them: where they are known as they were
+        (`AsItWas`), linear about that motion.
+        """
         m = self.measured
         points = self.declared(points)
         out = np.zeros((len(points), *m.values.shape))
@@ -91,9 +95,9 @@ class Predictor:
                 if shakings is not None:
                     shaking = moved_in_stages(shakings[r], sets, moved_in_windows)
                 # probes of the base are disturbances of the model: accelerometers are on the base as it moves
-                around = shaking, ground
+                around = m.disturbed(shaking, r), ground
                 self._run(points, members, windows, around, complete, recording, instruments, carried, out)
-        return out
+        return out if m.as_it_was is None else out - m.as_it_was.offset
 
     def declared(self, points: Sequence[Point]) -> list[Point]:
         """The points with the model's own parameters in the place of a fit's coordinates."""

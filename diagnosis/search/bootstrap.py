@@ -16,7 +16,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.stats import chi2
 
-from diagnosis.errors.draws import draw
+from diagnosis.errors.draws import draw, scattered
 from diagnosis.errors.model import Errors, refitted
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.solver import Fitted, fit
@@ -42,14 +42,14 @@ def p_value(specimen: Specimen, found: Search, draws: int, seed: int, progress: 
     start = found if found.at_null is None else found.at_null
     base, errors = start.base.fitted, start.errors
     predictor, m = base.misfit.predictor, base.measured
-    motion = predictor.predict([base.point])[0]
     rng = np.random.default_rng(seed)
     progress("bootstrap: the recordings", 0.9)
     observed = gain(specimen, base, errors)
     drawn = []
     for turn in range(draws):
         progress(f"bootstrap {turn + 1} of {draws}", 0.9)
-        made = replace(m, values=np.where(m.mask, motion + draw(errors, m, rng), 0.0))
+        values = scattered(errors, base, rng) + draw(errors, m, rng)
+        made = replace(m, values=np.where(m.mask, values, 0.0), as_it_was=None)
         misfit = replace(base.misfit, predictor=replace(predictor, measured=made))
         drawn.append(gain(specimen, replace(base, misfit=misfit), errors))
     return tail_probability(observed, np.array(drawn))

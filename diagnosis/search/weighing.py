@@ -24,7 +24,7 @@ MOST, MOST_OWN = 6, 4
 def reweighed(explanation: Explanation, errors: Errors) -> Explanation:
     """The explanation refitted under these errors."""
     f = explanation.fitted
-    return replace(explanation, fitted=fit(replace(f.misfit, whitening=errors.whitening), f.u, f.states))
+    return replace(explanation, fitted=fit(errors.on(f.misfit), f.u, f.states))
 
 
 def as_white_noise(fitted: Fitted, errors: Errors) -> Fitted:

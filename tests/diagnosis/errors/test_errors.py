@@ -130,13 +130,14 @@ def test_errors_of_a_laboratory_raise_no_alarm(case: str) -> None:
     assert chance["estimated"] > 0.01
 
 
-def constant(rng: np.random.Generator, n: int) -> np.ndarray:
-    """White noise about a zero that is off by three deviations."""
-    return rng.normal(size=n) + 3.0
-
-
-def searched(errors: Callable[[np.random.Generator, int], np.ndarray], names: tuple[str, ...]) -> Search:
-    measured = measure(SPECIMEN, [scattered(f"train_{k}", k, errors=errors) for k in (1, 6)])
+def searched(
+    errors: Callable[[np.random.Generator, int], np.ndarray] | None, names: tuple[str, ...], zero: float = 0.0
+) -> Search:
+    """``zero``: what the sensor reads at rest over the peak of the first recording."""
+    recordings = [scattered(f"train_{k}", k, errors=errors) for k in (1, 6)]
+    reads = zero * np.max(np.abs(recordings[0].channels["rotation_1"]))
+    seen = [{**one.channels, "rotation_1": one.channels["rotation_1"] + reads} for one in recordings]
+    measured = measure(SPECIMEN, [replace(one, channels=new) for one, new in zip(recordings, seen, strict=True)])
     fitted, found = calibrated(SPECIMEN, measured)
     tried = tuple(c for c in candidates(measured, SPECIMEN) if c.name in names)
     return searched_to_the_end(Search(Explanation((), fitted), tried, found))
@@ -153,7 +154,7 @@ def test_a_drift_is_no_offset() -> None:
 
 
 def test_an_offset_without_drift_keeps_its_name() -> None:
-    found = searched(constant, LEANING)
+    found = searched(None, LEANING, zero=0.03)
     assert found.best is not None and found.best.names == ("offset",)
     estimate = found.best.fitted.values["offset.offset_over_peak"]
     assert estimate == pytest.approx(0.03, abs=0.012)

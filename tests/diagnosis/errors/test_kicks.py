@@ -15,7 +15,7 @@ from tests.diagnosis.made import SPECIMEN, recording
 def test_kicks_are_differences_of_runs() -> None:
     measured = measure(SPECIMEN, [recording("a", 1), recording("b", 2)])
     fitted = base_fit(SPECIMEN, measured)
-    found = kicks(fitted.misfit.predictor, fitted.point)
+    found = kicks(fitted.misfit.predictor, fitted.point).columns
     assert np.count_nonzero(np.any(found != 0.0, axis=(1, 2))) > len(measured.windows)
     model, shaking, point = measured.model, measured.shakings[0], fitted.point
     checked = 0
@@ -45,7 +45,7 @@ def test_where_nothing_is_declared_nothing_scatters() -> None:
     silent = replace(measured.identification, scatter=None)
     model = type("Quiet", (type(measured.model),), {"identification": silent})()
     predictor = replace(fitted.misfit.predictor, measured=replace(measured, model=model))
-    assert kicks(predictor, fitted.point).shape[-1] == 0
+    assert kicks(predictor, fitted.point).columns.shape[-1] == 0
 
 
 def _run(model, point: Point, shaking, first: int, samples: int, state: np.ndarray) -> np.ndarray:

@@ -75,7 +75,7 @@ def with_impacts(errors: tuple[Forces, Errors], changes: np.ndarray) -> Errors:
     """The errors estimated from the same residuals with every impact's rate changed by a share, ``changes`` (W, K)."""
     about, found = errors
     m = about.fitted.measured
-    moved = m.averaged(np.einsum("wcnk,wk->wcn", found.kicks, changes)) / found.unit[:, None]
+    moved = m.averaged(np.einsum("wcnk,wk->wcn", found.kicks.columns, changes)) / m.units[:, :, None]
     pieces = list(found.pieces)
     for w in range(len(m.windows)):
         pieces[w] = replace(pieces[w], residual=pieces[w].residual - moved[w].ravel()[m.compared[w].ravel()])
@@ -92,7 +92,7 @@ def test_a_scatter_with_a_pattern_is_a_law(errors: tuple[Forces, Errors]) -> Non
     """Impacts that lose 3 % more on one side than on average pass for scatter; impacts that scatter are no law."""
     about, _ = errors
     m, kind = about.fitted.measured, KINDS["restitution"]
-    shape = errors[1].kicks.shape[::3]
+    shape = errors[1].kicks.columns.shape[::3]
     side = np.zeros(shape)
     count = np.zeros(shape[0], int)
     for w, sample, _ in about.jumps:

@@ -1,0 +1,96 @@
+"""Impacts that scatter: found one by one, and the law about which they scatter with them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+
+from diagnosis.data.measured import AsItWas
+from diagnosis.errors.kicks import kicks
+from diagnosis.errors.model import Errors, calibrated, refitted
+from diagnosis.errors.scattered import Events, known_changes
+from diagnosis.fit.intervals import covariances
+from diagnosis.fit.setup import base_fit, measure
+from diagnosis.fit.solver import Fitted
+from grids.recordings.base import Recording
+from models.shaking import Shaking
+from tests.diagnosis import made
+
+SCATTER = 0.02
+SEEDS = (4, 13)
+"""Of motions under which the block stays up."""
+RESTED = round(1.5 / made.TIME_STEP)
+SPECIMEN = replace(made.SPECIMEN, calibrate={"restitution": (0.7, 1.0)})
+
+
+class Kept:
+    """Normal numbers that are remembered."""
+
+    def __init__(self, seed: int) -> None:
+        self.rng, self.drawn = np.random.default_rng(seed), []
+
+    def normal(self) -> float:
+        self.drawn.append(float(self.rng.normal()))
+        return self.drawn[-1]
+
+
+@cache
+def recorded(seed: int) -> tuple[Recording, np.ndarray, np.ndarray]:
+    """A recording with noise of .3 % of its peak, samples after its impacts and the changes of the rate there."""
+    lead = np.zeros(RESTED)
+    shaking = Shaking(made.TIME_STEP, np.concatenate([lead, made.motion(seed).horizontal, lead]))
+    kept = Kept(seed)
+    rotation = made._with_kicks(shaking, SCATTER, kept)  # type: ignore[arg-type]
+    after = np.flatnonzero(rotation[1:] * rotation[:-1] < 0.0)[: len(kept.drawn)] + 1
+    seen = made._seen(f"run_{seed}", seed, shaking, rotation, {}, 0.003)
+    return seen, after, SCATTER * np.array(kept.drawn[: after.size])
+
+
+@cache
+def scene() -> tuple[Fitted, Errors]:
+    return calibrated(SPECIMEN, measure(SPECIMEN, [recorded(seed)[0] for seed in SEEDS]))
+
+
+def test_pulses_change_the_rate_after_an_event() -> None:
+    """Where all events of a window are changed at once the run with pulses is that restarted after each."""
+    measured = measure(made.SPECIMEN, [made.recording("a", 1)])
+    fitted = base_fit(made.SPECIMEN, measured)
+    predictor, point = fitted.misfit.predictor, fitted.point
+    found = kicks(predictor, point)
+    changes = 0.01 * np.random.default_rng(0).normal(size=found.window.size)
+    events = Events(fitted.u, fitted.states, found, changes)
+    known = AsItWas(events.pulses(measured), np.zeros(measured.values.shape))
+    moved = replace(predictor, measured=replace(measured, as_it_was=known)).predict([point])[0]
+    by = np.zeros((len(measured.windows), found.columns.shape[-1]))
+    by[found.window, found.place] = changes
+    ahead = np.einsum("wcnk,wk->wcn", found.columns, by)
+    actual = np.where(measured.mask, moved - predictor.predict([point])[0], 0.0)
+    own = np.unique(found.window)
+    each = np.sqrt(((actual - ahead)[own] ** 2).sum(axis=(1, 2)) / (ahead[own] ** 2).sum(axis=(1, 2)))
+    assert own.size >= 6 and np.median(each) < 0.1  # a pulse ends two samples after the event
+
+
+def test_changes_of_single_impacts_are_found() -> None:
+    fitted, errors = scene()
+    changes = known_changes(fitted.measured, errors.kicks)
+    pairs = []
+    for r, seed in enumerate(SEEDS):
+        _, after, true = recorded(seed)
+        for k in np.flatnonzero(fitted.measured.recording_of[errors.kicks.window] == r):
+            nearest = int(np.argmin(np.abs(after - errors.kicks.sample[k])))
+            if abs(after[nearest] - errors.kicks.sample[k]) <= 3:
+                pairs.append((true[nearest], changes[k]))
+    true, found = np.array(pairs).T
+    assert true.size > 12
+    assert np.corrcoef(true, found)[0, 1] > 0.8
+
+
+def test_an_estimate_about_the_events_as_they_were_stays() -> None:
+    """Linear about a motion without scatter, it went back and forth by up to four of its standard deviations."""
+    fitted, errors = scene()
+    again, _ = refitted(fitted, errors.base, errors, 1)
+    sd = np.sqrt(np.diag(covariances(fitted)[0]))
+    assert np.all(np.abs(again.u - fitted.u) < 0.5 * sd)
+    assert abs(errors.scatter - SCATTER) < 0.5 * SCATTER
