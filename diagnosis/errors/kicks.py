@@ -39,7 +39,8 @@ class Kicks:
 
     ``columns`` (W, C, N, K), padded with zeros: derivative by the relative change of the rate after each event.
     ``window``, ``place`` (E,): its column; ``sample`` (E,) of the recording, at which a pulse of base acceleration of
-    one sample, ``height`` (E,) (m s-2) high, makes a relative change of one (0: it makes none).
+    one sample, ``height`` (E,) (m s-2) high, makes a relative change of one (0: it makes none). ``followed`` (W,):
+    samples of each window over which the response to a change of `CHANGE` is in proportion within the noise.
     """
 
     columns: FloatArray
@@ -47,6 +48,7 @@ class Kicks:
     place: NDArray[np.intp]
     sample: NDArray[np.intp]
     height: FloatArray
+    followed: NDArray[np.intp]
 
 
 def kicks(predictor: Predictor, point: Point) -> Kicks:
@@ -54,8 +56,9 @@ def kicks(predictor: Predictor, point: Point) -> Kicks:
     m = predictor.measured
     declared = m.identification.scatter
     nowhere = np.zeros(0, np.intp)
+    followed = np.array([window.samples for window in m.windows], np.intp)
     if declared is None:
-        return Kicks(np.zeros((*m.values.shape, 0)), nowhere, nowhere, nowhere, np.zeros(0))
+        return Kicks(np.zeros((*m.values.shape, 0)), nowhere, nowhere, nowhere, np.zeros(0), followed)
     columns: list[tuple[int, FloatArray]] = []
     sampled: list[NDArray[np.intp]] = []
     heights: list[FloatArray] = []
@@ -98,7 +101,7 @@ def kicks(predictor: Predictor, point: Point) -> Kicks:
         start = np.asarray(recording.time_step * m.first[own[window], None], np.float64)
         around = Surroundings(recording.time_step, m.base[own[window]], m.reference_peak, start)
         recorded = []
-        for share in (1.0 + CHANGE, 1.0 - CHANGE):
+        for share in (1.0 + CHANGE, 1.0 - CHANGE, 1.0):
             changed = states.copy()
             changed[:, rate] *= share
             ran = run(own[window], after, changed)
@@ -107,6 +110,9 @@ def kicks(predictor: Predictor, point: Point) -> Kicks:
             found = recorded_in_stages(channels, sets, around, recorded_in_windows)
             recorded.append(np.stack([found[c] for c in m.channels], axis=1))
         slope = (recorded[0] - recorded[1]) / (2.0 * CHANGE)
+        bent = 0.5 * np.abs(recorded[0] + recorded[1] - 2.0 * recorded[2]) > m.units[own[window], :, None]
+        bent = np.any(bent & m.mask[own[window]], axis=1)
+        np.minimum.at(followed, own[window], np.where(bent.any(axis=1), bent.argmax(axis=1), samples))
         columns += list(zip(own[window].tolist(), slope, strict=True))
         at = m.first[own[window]] + after + 1
         pulse = np.zeros(shaking.horizontal.size)
@@ -126,7 +132,9 @@ def kicks(predictor: Predictor, point: Point) -> Kicks:
         place[k] = filled[w]
         filled[w] += 1
     window = np.array([w for w, _ in columns], np.intp)
-    return Kicks(found_all, window, place, np.concatenate([nowhere, *sampled]), np.concatenate([[], *heights]))
+    return Kicks(
+        found_all, window, place, np.concatenate([nowhere, *sampled]), np.concatenate([[], *heights]), followed
+    )
 
 
 def _spliced(

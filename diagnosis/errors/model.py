@@ -18,9 +18,9 @@ from diagnosis.errors.pieces import Scene, opened, peaks_of, prior_of, stills, w
 from diagnosis.errors.scattered import Events, about, known_changes, shortened, step
 from diagnosis.errors.sensors import of_sensors
 from diagnosis.fit.misfit import Misfit
-from diagnosis.fit.setup import base_fit
+from diagnosis.fit.setup import base_fit, with_noise_of_the_base
 from diagnosis.fit.solver import Fitted, fit_thoroughly
-from diagnosis.fit.whitening import Whitening, base_columns, responses
+from diagnosis.fit.whitening import Whitening, base_columns, responses, sensor_noise_only
 from grids.specimen import Specimen
 from models.base import FloatArray
 
@@ -96,8 +96,27 @@ def disturbance_about(fitted: Fitted) -> FloatArray:
 
 def calibrated(specimen: Specimen, measured: Measured, seed: int = 0) -> tuple[Fitted, Errors]:
     """The calibrated base and the errors of the recordings about it."""
-    first = base_fit(specimen, measured, seed)
+    first = followed(base_fit(specimen, measured, seed))
     return refitted(first, disturbance_about(first))
+
+
+def followed(fitted: Fitted) -> Fitted:
+    """The base fit with windows that end where small changes no longer leave small ones, and without those too short.
+
+    Where a body comes close to rest a slightly larger rate means one impact more: what happens then tells nothing.
+    """
+    m, predictor = fitted.measured, fitted.misfit.predictor
+    last = kicks(predictor, fitted.point).followed
+    if m.lengths is None or all(n >= window.samples for n, window in zip(last, m.windows, strict=True)):
+        return fitted
+    steps = np.array([m.recordings[window.recording].time_step for window in m.windows])
+    keep = np.flatnonzero(last * steps >= m.lengths.shortest)
+    if not keep.size:
+        return fitted
+    windows = tuple(replace(m.windows[w], samples=min(m.windows[w].samples, int(last[w]))) for w in keep)
+    predictor = replace(predictor, measured=m.of_windows(keep).cut_again(windows))
+    plain = replace(fitted.misfit, predictor=predictor, whitening=sensor_noise_only(predictor))
+    return with_noise_of_the_base(fit_thoroughly(plain, fitted.u, fitted.states[keep]))
 
 
 def refitted(fitted: Fitted, base: FloatArray, start: Errors | None = None, rounds: int = 2) -> tuple[Fitted, Errors]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from diagnosis.data.measured import AsItWas
 from diagnosis.errors.kicks import kicks
-from diagnosis.errors.model import Errors, calibrated, refitted
+from diagnosis.errors.model import Errors, calibrated, followed, refitted
 from diagnosis.errors.scattered import Events, known_changes
 from diagnosis.fit.intervals import covariances
 from diagnosis.fit.setup import base_fit, measure
@@ -94,3 +94,21 @@ def test_an_estimate_about_the_events_as_they_were_stays() -> None:
     sd = np.sqrt(np.diag(covariances(fitted)[0]))
     assert np.all(np.abs(again.u - fitted.u) < 0.5 * sd)
     assert abs(errors.scatter - SCATTER) < 0.5 * SCATTER
+
+
+def test_windows_end_where_small_changes_no_longer_leave_small_ones() -> None:
+    """A change of the impact law by .3 % up and down leaves the same, within the noise, over what is left of the windows."""
+    whole = base_fit(SPECIMEN, measure(SPECIMEN, [recorded(21)[0]]))
+    cut = followed(whole)
+    assert all(a.first in [b.first for b in whole.measured.windows] for a in cut.measured.windows)
+    assert cut.measured.mask.sum() < whole.measured.mask.sum()
+
+    def bent(fitted: Fitted) -> np.ndarray:
+        m, point, predictor = fitted.measured, fitted.point, fitted.misfit.predictor
+        e = point.values["restitution"]
+        points = [replace(point, values={**point.values, "restitution": e * share}) for share in (1.003, 0.997, 1.0)]
+        up, down, plain = predictor.predict(points)
+        return np.max(np.abs(up + down - 2.0 * plain) * m.mask, axis=(1, 2)) / m.units[:, 0]
+
+    assert bent(whole).max() > 5.0
+    assert bent(cut).max() < 1.0
