@@ -97,7 +97,7 @@ def test_an_estimate_about_the_events_as_they_were_stays() -> None:
 
 
 def test_windows_end_where_small_changes_no_longer_leave_small_ones() -> None:
-    """A change of the impact law by .3 % up and down leaves the same, within the noise, over what is left of the windows."""
+    """A change of the impact law by .3 % up and down leaves the same in what is left of them, within the noise."""
     whole = base_fit(SPECIMEN, measure(SPECIMEN, [recorded(21)[0]]))
     cut = followed(whole)
     assert all(a.first in [b.first for b in whole.measured.windows] for a in cut.measured.windows)
