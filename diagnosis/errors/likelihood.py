@@ -34,8 +34,6 @@ RIDGE = 1e-6
 """Added to the information of every variance, in its own unit: kernels are alike."""
 SLACK = 1e-10
 """Of the largest information, added to all: a shape whose effect is off changes nothing."""
-LARGEST_DRIFT = 1.0
-"""Variance of a drift over that of the noise; a sensor that is knocked goes further."""
 CLOSE = 0.1
 """Fall of -2 log L that ends the iteration."""
 
@@ -82,12 +80,14 @@ class Piece:
 class Prior:
     """Precision Q (k, k) and slope Q (b - b0) (k,) of the base parameters at the point of the residuals.
 
-    ``drifts``: by component, the covariance D_k (q, q) of a drift of variance one at all knots, None for others.
+    ``drifts``: by component, the covariance D_k (q, q) of a drift of variance one at all knots, None for others;
+    ``largest``: the largest variance of each: what goes further is no error but something to be named.
     """
 
     precision: FloatArray
     slope: FloatArray
     drifts: tuple[FloatArray | None, ...] = ()
+    largest: tuple[float, ...] = ()
 
     @property
     def count(self) -> int:
@@ -95,9 +95,8 @@ class Prior:
         return max((d.shape[0] for d in self.drifts if d is not None), default=0)
 
     def most(self, count: int) -> FloatArray:
-        """Largest variances (count,): a drift beyond `LARGEST_DRIFT` is no error but something to be named."""
-        drifts = [drift is not None for drift in self.drifts] or [False] * count
-        return np.where(drifts, LARGEST_DRIFT, np.inf)
+        """Largest variances (count,)."""
+        return np.array(self.largest or [np.inf] * count)
 
     def root(self, theta: FloatArray) -> FloatArray:
         """R (q, q) with R R' = D(theta)."""
@@ -111,7 +110,8 @@ class Prior:
     def without(self, held: NDArray[np.bool_]) -> Prior:
         """The same with some components gone."""
         drifts = tuple(d for d, gone in zip(self.drifts, held, strict=False) if not gone)
-        return replace(self, drifts=drifts)
+        largest = tuple(x for x, gone in zip(self.largest, held, strict=False) if not gone)
+        return replace(self, drifts=drifts, largest=largest)
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from diagnosis.errors.kicks import Kicks, kicks
 from diagnosis.errors.likelihood import Piece, Prior, climbed, maximise, robust_deviance
 from diagnosis.errors.lines import lines
 from diagnosis.errors.own import AS_MOTION, own_error
-from diagnosis.errors.pieces import Scene, opened, peaks_of, prior_of, stills, windows
+from diagnosis.errors.pieces import LARGEST, Scene, opened, peaks_of, prior_of, stills, windows
 from diagnosis.errors.scattered import Events, about, known_changes, shortened, step
 from diagnosis.errors.sensors import of_sensors
 from diagnosis.fit.misfit import Misfit
@@ -32,6 +32,8 @@ REPEATS = 0.001
 """Scatter under which events repeat: what it leaves in a window is in proportion."""
 RELINEARISED = 4
 """Times that events are predicted anew about the motion with those predicted before."""
+AT_MOST = 0.95
+"""Share of the largest scatter from which on it is as large as it may be."""
 FAINT = 0.004
 """Variance of an independent part of a drift, in units squared, under which no window could show it."""
 
@@ -131,7 +133,12 @@ def refitted(fitted: Fitted, base: FloatArray, start: Errors | None = None, roun
 
 
 def _about_the_events(fitted: Fitted, errors: Errors) -> tuple[Fitted, Errors]:
-    """The fit, and its errors estimated anew, about the motion with the events as they are predicted."""
+    """The fit, and its errors estimated anew, about the motion with the events as they are predicted.
+
+    As given where their scatter is as large as it may be: then it is a law that differs, and a motion with that law and
+    with the pulses that stand for it would have it twice.
+    """
+    given = fitted, errors
     for _ in range(RELINEARISED):
         if errors.scatter < REPEATS:
             break
@@ -143,7 +150,7 @@ def _about_the_events(fitted: Fitted, errors: Errors) -> tuple[Fitted, Errors]:
             break
         fitted = replace(fitted, misfit=about(fitted.misfit, known), u=known.u, states=known.states)
         errors = estimate(fitted, errors.base, errors)
-    return fitted, errors
+    return given if errors.scatter >= AT_MOST * np.sqrt(LARGEST["scatter"]) else (fitted, errors)
 
 
 def estimate(fitted: Fitted, base: FloatArray, start: Errors | None = None) -> Errors:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from diagnosis.data.measured import Measured
 from diagnosis.data.noise import still
-from diagnosis.errors.components import Component, Diagonal, LowRank, Part, Stationary
+from diagnosis.errors.components import Component, Diagonal, Kind, LowRank, Part, Stationary
 from diagnosis.errors.drifts import Knots, knots_of
 from diagnosis.errors.likelihood import Piece, Prior
 from diagnosis.errors.own import own_error
@@ -26,6 +26,10 @@ from models.base import FloatArray
 
 LONGEST_STILL = 300
 """Averages of a still stretch that are used: the first and the last half of them."""
+LARGEST_DRIFT = 1.0
+"""Variance of a drift over that of the noise; a sensor that is knocked goes further."""
+LARGEST: dict[Kind, float] = {"scatter": 0.03**2}
+"""Variance of the relative change of the rate by an event; a law that changes goes further."""
 FLOOR = 0.02
 """Variance of white noise that is always there, over that of the noise level: solvers and storage are not exact."""
 
@@ -64,7 +68,8 @@ def prior_of(scene: Scene, components: Sequence[Component]) -> Prior:
     rows, slopes = scene.fitted.misfit.prior_rows(scene.fitted.u)
     knots = knots_of(scene.fitted.measured, components)
     drifts = () if knots is None else tuple(knots.covariance(c) for c in components)
-    return Prior(slopes.T @ slopes, slopes.T @ rows, drifts)
+    largest = tuple(LARGEST_DRIFT if c.shared else LARGEST.get(c.kind, np.inf) for c in components)
+    return Prior(slopes.T @ slopes, slopes.T @ rows, drifts, largest)
 
 
 def windows(scene: Scene, components: Sequence[Component]) -> list[Piece]:
