@@ -5,7 +5,7 @@
 
 Every size runs in a process of its own (peak memory), its kernels loaded before. The model of the cost,
 
-    seconds = a + N (s/(r n) + c),
+    seconds = a + N (s/r + c)/n,
 
 has the steps of a cell s and the rate of the kernels r (lane-steps a second and core) as the size before the largest
 counts them, on n cores; what lies outside the kernels, c a cell, and the start a come from the two sizes before the

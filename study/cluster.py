@@ -47,11 +47,12 @@ class ClusterPool(Pool):
             error = None if future.cancelled() else future.exception()
             if isinstance(error, UnfitWorker):
                 raise error
-            if error is not None:
-                raise UnfitWorker(
-                    f"the worker at {asked[future]} cannot run this program ({type(error).__name__}: {error}): install "
-                    "the same rocking-study and Python on every machine of the cluster as here, and start it anew"
-                )
+            if error is not None and not self.lost(future):
+                raise _cannot_run(f"the worker at {asked[future]}", error)
+
+    def unfit(self, error: Exception) -> UnfitWorker | None:
+        # a block's own errors come as its outcome: what it cannot be unpickled for is missing on the worker
+        return _cannot_run("a worker", error) if isinstance(error, ImportError | AttributeError) else None
 
     def lost(self, future: Future[Any]) -> bool:
         from distributed import KilledWorker
@@ -72,6 +73,13 @@ class ClusterPool(Pool):
     def close(self) -> None:
         """Take back what has not begun; what has goes on where it is, and its block is kept."""
         self._blocks.shutdown(wait=False)
+
+
+def _cannot_run(which: str, error: BaseException) -> UnfitWorker:
+    return UnfitWorker(
+        f"{which} cannot run this program ({type(error).__name__}: {error}): install the same rocking-study and Python "
+        "on every machine of the cluster as here, and start it anew"
+    )
 
 
 @contextmanager

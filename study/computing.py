@@ -44,9 +44,13 @@ def compute(
     """
     queue: Iterator[Task] = iter(tasks)
     running: dict[Future[Outcome], Flight] = {}
-    longest = block_seconds
+    longest, places = block_seconds, pool.places()
     while True:
-        for task in islice(queue, max(0, AHEAD * pool.places() - len(running))):
+        before, places = places, pool.places()
+        if places < before:  # what waited for many workers waits for few
+            _begin_anew(running)
+        # where all workers have gone one block waits for the next to come
+        for task in islice(queue, max(0 if running else 1, AHEAD * places - len(running))):
             running[pool.submit(run_task, task)] = Flight(task)
         if not running:
             return
@@ -57,13 +61,22 @@ def compute(
             if pool.lost(future) and not flight.losses:
                 running[pool.submit(run_task, flight.task)] = Flight(flight.task, losses=1)
                 continue
-            outcome = _outcome(future, flight.task, store)
+            outcome = _outcome(future, flight.task, store, pool)
             longest = max(longest, outcome.seconds)
             tell(outcome)
         # before it begins, a block waits for those that were given out with it
         late = [f for f, flight in running.items() if time.monotonic() - flight.since > AHEAD * limit]
-        if late and (failed := _without_answer(late[0], running, pool, store, limit)) is not None:
-            tell(failed)
+        for future in late:
+            if (failed := _without_answer(future, running, pool, store, limit)) is not None:
+                tell(failed)
+        if late:
+            _begin_anew(running)
+
+
+def _begin_anew(running: dict[Future[Outcome], Flight]) -> None:
+    """Whatever is in flight may have waited from now on only."""
+    for flight in running.values():
+        flight.since = time.monotonic()
 
 
 def _without_answer(
@@ -75,8 +88,6 @@ def _without_answer(
     if not dropped and pool.places() == 0:
         raise BrokenExecutor("no worker is left")
     flight.losses += dropped
-    for other in running.values():
-        other.since = time.monotonic()
     if flight.losses < 2:
         return None
     del running[future]
@@ -86,12 +97,14 @@ def _without_answer(
     return Outcome(flight.task.key, flight.task.grid.size, 0.0, 0.0, sentence)
 
 
-def _outcome(future: Future[Outcome], task: Task, store: BlockStore) -> Outcome:
+def _outcome(future: Future[Outcome], task: Task, store: BlockStore, pool: Pool) -> Outcome:
     """What a future holds; a worker that dies without an answer fails its block only where that is known."""
     try:
         return future.result()
     except (BrokenExecutor, CancelledError, UnfitWorker, OSError):
         raise
     except Exception as error:
+        if (unfit := pool.unfit(error)) is not None:
+            raise unfit from None
         store.fail(task.key, traceback.format_exc())
         return Outcome(task.key, task.grid.size, 0.0, 0.0, f"{type(error).__name__}: {error}")

@@ -45,7 +45,9 @@ def open_study(folder: str | Path, outputs: Collection[str] | None = None, *, la
         if lazy:
             with NETCDF_LOCK, bounded_cache():
                 cube = xr.open_dataset(path, engine="netcdf4", chunks={}, lock=NETCDF_LOCK)
-            return _of_today(cube if outputs is None else cube[list(outputs)])
+            found = _of_today(cube if outputs is None else cube[list(outputs)])
+            found.set_close(cube.close)
+            return found
         with NETCDF_LOCK, xr.open_dataset(path, engine="netcdf4") as cube:
             return _of_today((cube if outputs is None else cube[list(outputs)]).load())
     except (OSError, ValueError) as error:

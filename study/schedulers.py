@@ -65,6 +65,10 @@ class Pool:
         """Take away the worker that holds a block, so that others get its blocks; False where that cannot be done."""
         return False
 
+    def unfit(self, error: Exception) -> Exception | None:
+        """What a block's error says of the worker it came from; None: nothing."""
+        return None
+
 
 @contextmanager
 def open_pool(scheduler: str, workers: int | None, needs: Needs) -> Iterator[Pool]:

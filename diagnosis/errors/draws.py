@@ -15,12 +15,17 @@ from models.base import FloatArray
 
 
 def scattered(errors: Errors, fitted: Fitted, rng: np.random.Generator) -> FloatArray:
-    """Channels (W, C, N) that a fit predicts where its events scatter at random."""
+    """Channels (W, C, N) that a fit predicts where its events scatter at random.
+
+    As without scatter in windows in which the body falls by it: a recording of one that falls is cut before.
+    """
     m, predictor = fitted.measured, fitted.misfit.predictor
     changes = errors.scatter * rng.normal(size=errors.kicks.window.size)
     pulses = Events(fitted.u, fitted.states, errors.kicks, changes).pulses(m)
     known = AsItWas(pulses, np.zeros(m.values.shape))
-    return np.asarray(replace(predictor, measured=replace(m, as_it_was=known)).predict([fitted.point])[0])
+    drawn = replace(predictor, measured=replace(m, as_it_was=known)).predict([fitted.point])[0]
+    stays = np.isfinite(drawn).all(axis=(1, 2), keepdims=True)
+    return np.asarray(np.where(stays, drawn, predictor.predict([fitted.point])[0]))
 
 
 def draw(errors: Errors, measured: Measured, rng: np.random.Generator) -> FloatArray:

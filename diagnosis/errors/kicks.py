@@ -110,8 +110,8 @@ def kicks(predictor: Predictor, point: Point) -> Kicks:
             found = recorded_in_stages(channels, sets, around, recorded_in_windows)
             recorded.append(np.stack([found[c] for c in m.channels], axis=1))
         slope = (recorded[0] - recorded[1]) / (2.0 * CHANGE)
-        bent = 0.5 * np.abs(recorded[0] + recorded[1] - 2.0 * recorded[2]) > m.units[own[window], :, None]
-        bent = np.any(bent & m.mask[own[window]], axis=1)
+        straight = 0.5 * np.abs(recorded[0] + recorded[1] - 2.0 * recorded[2]) <= m.units[own[window], :, None]
+        bent = np.any(~straight & m.mask[own[window]], axis=1)
         np.minimum.at(followed, own[window], np.where(bent.any(axis=1), bent.argmax(axis=1), samples))
         columns += list(zip(own[window].tolist(), slope, strict=True))
         at = m.first[own[window]] + after + 1
@@ -128,7 +128,7 @@ def kicks(predictor: Predictor, point: Point) -> Kicks:
     filled = np.zeros(len(m.windows), np.intp)
     place = np.zeros(len(columns), np.intp)
     for k, (w, slope) in enumerate(columns):
-        found_all[w, :, :, filled[w]] = np.where(m.mask[w], slope, 0.0)
+        found_all[w, :, :, filled[w]] = np.where(m.mask[w] & np.isfinite(slope), slope, 0.0)
         place[k] = filled[w]
         filled[w] += 1
     window = np.array([w for w, _ in columns], np.intp)

@@ -15,7 +15,7 @@ from diagnosis.errors.likelihood import Piece, Prior, climbed, maximise, robust_
 from diagnosis.errors.lines import lines
 from diagnosis.errors.own import AS_MOTION, own_error
 from diagnosis.errors.pieces import LARGEST, Scene, opened, peaks_of, prior_of, stills, windows
-from diagnosis.errors.scattered import Events, about, known_changes, shortened, step
+from diagnosis.errors.scattered import Events, gauss_newton, known_changes, linear_about, shortened
 from diagnosis.errors.sensors import of_sensors
 from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.setup import base_fit, with_noise_of_the_base
@@ -81,6 +81,11 @@ class Errors:
         """Standard deviation of the relative change of the rate by an event."""
         return _scatter(self.components, self.theta)
 
+    @property
+    def scatters(self) -> bool:
+        """Whether events scatter, and no more than they may."""
+        return REPEATS <= self.scatter < AT_MOST * float(np.sqrt(LARGEST["scatter"]))
+
     def of_sensors(self, measured: Measured) -> Whitening:
         """The sensors' errors in windows of other recordings; those of channels not known are taken for white."""
         channels = self.whitening.measured.channels
@@ -135,22 +140,26 @@ def refitted(fitted: Fitted, base: FloatArray, start: Errors | None = None, roun
 def _about_the_events(fitted: Fitted, errors: Errors) -> tuple[Fitted, Errors]:
     """The fit, and its errors estimated anew, about the motion with the events as they are predicted.
 
-    As given where their scatter is as large as it may be: then it is a law that differs, and a motion with that law and
-    with the pulses that stand for it would have it twice.
+    About the motion without scatter where there is none, or as much as there may be: then it is a law that differs,
+    and a motion with that law and with the pulses that stand for it would have it twice.
     """
-    given = fitted, errors
     for _ in range(RELINEARISED):
-        if errors.scatter < REPEATS:
+        if not errors.scatters:
             break
         own = next(k for k, c in enumerate(errors.components) if c.kind == "scatter")
         now = Events(fitted.u, fitted.states, errors.kicks, known_changes(fitted.measured, errors.kicks))
-        aim = step(errors.pieces, errors.prior, errors.theta, errors.weights, own, now)
+        aim = gauss_newton(errors.pieces, errors.prior, errors.theta, errors.weights, own, now)
         known = shortened(errors.repeating(fitted.misfit), errors.scatter, now, aim)
         if known is None:
             break
-        fitted = replace(fitted, misfit=about(fitted.misfit, known), u=known.u, states=known.states)
+        fitted = replace(fitted, misfit=linear_about(fitted.misfit, known), u=known.u, states=known.states)
         errors = estimate(fitted, errors.base, errors)
-    return given if errors.scatter >= AT_MOST * np.sqrt(LARGEST["scatter"]) else (fitted, errors)
+    if errors.scatters or fitted.measured.as_it_was is None:
+        return fitted, errors
+    predictor = fitted.misfit.predictor
+    predictor = replace(predictor, measured=replace(fitted.measured, as_it_was=None))
+    fitted = replace(fitted, misfit=replace(fitted.misfit, predictor=predictor))
+    return fitted, estimate(fitted, errors.base, errors)
 
 
 def estimate(fitted: Fitted, base: FloatArray, start: Errors | None = None) -> Errors:

@@ -76,7 +76,7 @@ def windows(scene: Scene, components: Sequence[Component]) -> list[Piece]:
     """One piece a window."""
     m = scene.fitted.measured
     found = []
-    grown, knots = growth(m, peaks_of(m), m.unit), knots_of(m, components)
+    grown, knots = growth(m, peaks_of(m), m.unit / m.units), knots_of(m, components)
     own_errors = {
         c.scale: own_error(m, c.scale) / scene.unit[:, None, None]
         for c in components
@@ -180,10 +180,11 @@ def peaks_of(measured: Measured) -> FloatArray:
     return np.asarray(np.maximum(size.max(axis=(0, 2)), 1e-300))
 
 
-def growth(measured: Measured, peak: FloatArray, unit: FloatArray) -> FloatArray:
+def growth(measured: Measured, peak: FloatArray, share: FloatArray) -> FloatArray:
     """Squared size of the signal over the ``peak`` (C,) of the recordings that the errors are estimated from.
 
-    In ``unit`` (C,) of these over that of each window, squared: such noise has no level of its own in a recording.
+    Times the squared ``share`` (W, C), their unit over that of each window: such noise has no level of its own in a
+    recording.
     """
     size = np.abs(measured.averaged(measured.values)) * measured.compared
-    return np.asarray((size / peak[None, :, None] * (unit / measured.units)[:, :, None]) ** 2, np.float64)
+    return np.asarray((size / peak[None, :, None] * share[:, :, None]) ** 2, np.float64)

@@ -80,7 +80,7 @@ def known_changes(measured: Measured, kicks: Kicks) -> FloatArray:
     return found
 
 
-def step(
+def gauss_newton(
     pieces: Sequence[Piece], prior: Prior, theta: FloatArray, weights: FloatArray, scatter: int, now: Events
 ) -> Events:
     """The Gauss-Newton step from ``now``, about which the pieces are linear; component ``scatter`` is the events'."""
@@ -116,7 +116,7 @@ def shortened(misfit: Misfit, scatter: float, now: Events, aim: Events) -> Event
     return trials[best] if heights[best] < height(now) else None
 
 
-def about(misfit: Misfit, events: Events) -> Misfit:
+def linear_about(misfit: Misfit, events: Events) -> Misfit:
     """The misfit linear about these events."""
     m, pulses = misfit.measured, events.pulses(misfit.measured)
 

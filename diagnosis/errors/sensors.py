@@ -33,7 +33,7 @@ def of_sensors(
     places = [names.index(name) if name in names else -1 for name in m.channels]
     known = np.append(unit, 1.0)[places]
     units = m.units if m.stretches is None else np.broadcast_to(known, m.sigma.shape)
-    grown, stationary = growth(m, np.append(peaks, 1.0)[places], known), {}
+    grown, stationary = growth(m, np.append(peaks, 1.0)[places], known / units), {}
     for w, window in enumerate(m.windows):
         stride = int(m.strides[w])
         step = m.recordings[window.recording].time_step * stride

@@ -29,6 +29,7 @@ from benchmarks.faults.row import Row
 from benchmarks.faults.studies import MODELS, NAME, compare_cubes, plan_text
 from grids.plan import parse_plan
 from models.errors import InputError
+from study.cluster import ClusterPool
 from study.computing import compute
 from study.keys import Setting
 from study.manifest import Manifest
@@ -37,7 +38,7 @@ from study.run import Progress, WorkerLost, run
 from study.schedulers import Pool
 from study.seal import seal
 from study.store import BlockStore
-from study.task import make_task
+from study.task import Outcome, Task, make_task
 from study.workers import MARK, Needs, UnfitWorker
 from tests.study.cubes import assert_identical
 from tests.study.plans import small_plan
@@ -75,6 +76,29 @@ class Deadly(Pool):
 
     def lost(self, future: Future[Any]) -> bool:
         return isinstance(future.exception(), MemoryError)
+
+
+class Leaving(Pool):
+    """Its workers have gone after a first look, and come back for every block."""
+
+    def __init__(self) -> None:
+        super().__init__(SynchronousExecutor(), 1)
+        self.looks = 0
+
+    def places(self) -> int:
+        self.looks += 1
+        return int(self.looks < 2)
+
+
+class Foreign(Pool):
+    """Its workers do not know what they are given."""
+
+    unfit = ClusterPool.unfit  # type: ignore[assignment]
+
+    def submit(self, work: Callable[[Any], Any], given: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        future.set_exception(ModuleNotFoundError("No module named 'study'"))
+        return future
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -215,32 +239,47 @@ def test_a_block_without_an_answer_from_two_workers_has_failed(tmp_path: Path, m
     """The only workers are stopped one after the other; the run goes on to its end with what others bring."""
     monkeypatch.setattr("study.computing.LEAST_PATIENCE", 0.2)
     monkeypatch.setattr("study.computing.PATIENCE", 0.0)
-    plan = small_plan()
-    folder = tmp_path / plan.name
-    folder.mkdir()
-    (folder / MARK).touch()
-    setting, needs = Setting.of(plan), Needs.of_run(folder)
-    tasks = [make_task(plan, setting, needs, key, block) for key, block in Manifest.start(plan, 20, "").blocks.items()]
+    tasks, store = _tasks(tmp_path)
     pool, told = Silent(tasks[0].key), []
-    compute(tasks, pool, BlockStore(folder), 0.0, told.append)
+    compute(tasks, pool, store, 0.0, told.append)
     assert pool.dropped == 2 and [o.key for o in told if o.failure] == [tasks[0].key]
-    assert BlockStore(folder).failures().keys() == {tasks[0].key}
+    assert store.failures().keys() == {tasks[0].key}
     assert len(told) == len(tasks) > 1
 
 
 @pytest.mark.parametrize(("deaths", "failed"), [(1, 0), (2, 1)])
 def test_a_block_that_is_lost_with_its_workers_is_given_out_once_more(deaths: int, failed: int, tmp_path: Path) -> None:
+    tasks, store = _tasks(tmp_path)
+    pool, told = Deadly(tasks[0].key, deaths), []
+    compute(tasks, pool, store, 0.0, told.append)
+    assert sum(outcome.failure is not None for outcome in told) == failed
+    assert len(told) == len(tasks) and pool.deaths == 0
+    assert len(store.finished()) == len(tasks) - failed
+
+
+def _tasks(tmp_path: Path) -> tuple[list[Task], BlockStore]:
     plan = small_plan()
     folder = tmp_path / plan.name
     folder.mkdir()
     (folder / MARK).touch()
     setting, needs = Setting.of(plan), Needs.of_run(folder)
-    tasks = [make_task(plan, setting, needs, key, block) for key, block in Manifest.start(plan, 20, "").blocks.items()]
-    pool, told = Deadly(tasks[0].key, deaths), []
-    compute(tasks, pool, BlockStore(folder), 0.0, told.append)
-    assert sum(outcome.failure is not None for outcome in told) == failed
-    assert len(told) == len(tasks) and pool.deaths == 0
-    assert len(BlockStore(folder).finished()) == len(tasks) - failed
+    blocks = Manifest.start(plan, 20, "").blocks
+    return [make_task(plan, setting, needs, key, block) for key, block in blocks.items()], BlockStore(folder)
+
+
+def test_no_block_is_forgotten_while_all_workers_are_away(tmp_path: Path) -> None:
+    tasks, store = _tasks(tmp_path)
+    told: list[Outcome] = []
+    compute(tasks, Leaving(), store, 0.0, told.append)
+    assert len(told) == len(tasks) > 2
+    assert len(store.finished()) == len(tasks)
+
+
+def test_a_worker_that_lacks_the_program_ends_the_run_and_fails_no_block(tmp_path: Path) -> None:
+    tasks, store = _tasks(tmp_path)
+    with pytest.raises(UnfitWorker, match=r"cannot run this program .*No module named 'study'.*install the same"):
+        compute(tasks, Foreign(SynchronousExecutor(), 1), store, 0.0, lambda outcome: None)
+    assert not store.failures()
 
 
 def test_without_any_worker_the_run_ends_with_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 from diagnosis.data.measured import AsItWas
 from diagnosis.errors.kicks import kicks
 from diagnosis.errors.model import Errors, calibrated, followed, refitted
-from diagnosis.errors.scattered import Events, known_changes
+from diagnosis.errors.scattered import Events, known_changes, linear_about
 from diagnosis.fit.intervals import covariances
 from diagnosis.fit.setup import base_fit, measure
 from diagnosis.fit.solver import Fitted
@@ -112,3 +112,16 @@ def test_windows_end_where_small_changes_no_longer_leave_small_ones() -> None:
 
     assert bent(whole).max() > 5.0
     assert bent(cut).max() < 1.0
+
+
+def test_pulses_that_stood_for_what_is_gone_go_too() -> None:
+    """A mechanism that is found takes what passed for scatter: the motion is no longer one with these changes."""
+    measured = measure(SPECIMEN, [made.scattered("still", 6, noise=0.003)])
+    fitted, errors = calibrated(SPECIMEN, measured)
+    assert not errors.scatters and fitted.measured.as_it_was is None
+    changes = np.full(errors.kicks.window.size, 0.01)
+    other = linear_about(fitted.misfit, Events(fitted.u, fitted.states, errors.kicks, changes))
+    again, found = refitted(replace(fitted, misfit=other), errors.base, errors)
+    assert again.measured.as_it_was is None and not found.scatters
+    sd = np.sqrt(np.diag(covariances(fitted)[0]))
+    assert np.all(np.abs(again.u - fitted.u) < 0.2 * sd)
