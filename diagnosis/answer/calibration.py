@@ -104,7 +104,7 @@ def calibrate(
         steps(f"fitting {recording.name} alone")
         each[recording.name] = calibrated(specimen, measure(specimen, [recording], measured.reference_peak), seed)[0]
     by_recording = {name: estimates(one) for name, one in each.items()}
-    found = _summary(fitted, errors, measured, profile, by_recording, steps)
+    found = _summary(fitted, errors, fitted.measured.undisturbed, profile, by_recording, steps)
     instruments = {name: values for name, values in specimen.mechanisms.items() if name not in given}
     drifts = _drifts(by_recording, list(each.values()))
     return replace(found, drifts=drifts, seen=tuple(str(one) for one in seen), instruments=instruments)

@@ -104,7 +104,7 @@ def _assemble(
     finished: bool,
 ) -> Diagnosis:
     stages = Stages(stopped=not finished)
-    measured = found.measured
+    measured = found.measured.undisturbed
     shown = [stages.needed(lambda: compare(found.base, found.chosen, measured, found.errors))]
     unexplained = not explains(shown[0])
     if unexplained:  # what a model says that explains nothing is no name

@@ -192,6 +192,11 @@ class Measured:
         """The same starts with other lengths."""
         return replace(self, windows=windows, as_it_was=None, **gather(self.recordings, windows, self.channels))
 
+    @property
+    def undisturbed(self) -> Measured:
+        """The same, events taken to be as the law has them."""
+        return self if self.as_it_was is None else replace(self, as_it_was=None)
+
     def disturbed(self, shaking: Shaking, recording: int) -> Shaking:
         """The base motion of a recording with the pulses that make its events as they were."""
         if self.as_it_was is None:

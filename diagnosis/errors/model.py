@@ -110,7 +110,7 @@ def calibrated(specimen: Specimen, measured: Measured, seed: int = 0) -> tuple[F
 def followed(fitted: Fitted) -> Fitted:
     """The base fit with windows that end where small changes no longer leave small ones, and without those too short.
 
-    Where a body comes close to rest a slightly larger rate means one impact more: what happens then tells nothing.
+    Where a body comes close to rest a slightly larger rate means one event more: what happens then tells nothing.
     """
     m, predictor = fitted.measured, fitted.misfit.predictor
     last = kicks(predictor, fitted.point).followed
@@ -157,7 +157,7 @@ def _about_the_events(fitted: Fitted, errors: Errors) -> tuple[Fitted, Errors]:
     if errors.scatters or fitted.measured.as_it_was is None:
         return fitted, errors
     predictor = fitted.misfit.predictor
-    predictor = replace(predictor, measured=replace(fitted.measured, as_it_was=None))
+    predictor = replace(predictor, measured=fitted.measured.undisturbed)
     fitted = replace(fitted, misfit=replace(fitted.misfit, predictor=predictor))
     return fitted, estimate(fitted, errors.base, errors)
 

@@ -56,17 +56,21 @@ class Explanation:
 def extend(
     explanation: Explanation, candidate: Candidate, start: FloatArray, iterations: int = ITERATIONS
 ) -> Explanation:
-    """Fit with one more mechanism, from the explanation's optimum and the candidate's ``start``."""
+    """Fit with one more mechanism, from the explanation's optimum and the candidate's ``start``.
+
+    About the motion with the events as they were, or without what they were: that may stand for the mechanism.
+    """
     base = explanation.fitted
     misfit = replace(
         in_spell(base.misfit, candidate.name, candidate.spell),
         unknowns=(*base.misfit.unknowns, *candidate.unknowns),
         fixed={**base.misfit.fixed, **candidate.held},
     )
-    return Explanation(
-        (*explanation.candidates, candidate),
-        fit(misfit, np.concatenate([base.u, start]), base.states, iterations),
-    )
+    u, ways = np.concatenate([base.u, start]), [misfit]
+    if base.measured.as_it_was is not None:
+        ways.append(replace(misfit, predictor=replace(misfit.predictor, measured=base.measured.undisturbed)))
+    fits = [fit(way, u, base.states, iterations) for way in ways]
+    return Explanation((*explanation.candidates, candidate), min(fits, key=lambda f: f.loss))
 
 
 def joined(explanation: Explanation, single: Explanation) -> Explanation:

@@ -22,9 +22,11 @@ MOST, MOST_OWN = 6, 4
 
 
 def reweighed(explanation: Explanation, errors: Errors) -> Explanation:
-    """The explanation refitted under these errors."""
-    f = explanation.fitted
-    return replace(explanation, fitted=fit(errors.on(f.misfit), f.u, f.states))
+    """The explanation refitted under these errors, about the events as these have them or without."""
+    f, ways = explanation.fitted, [errors.on(explanation.fitted.misfit)]
+    if ways[0].measured.as_it_was is not None:
+        ways.append(replace(ways[0], predictor=replace(f.misfit.predictor, measured=ways[0].measured.undisturbed)))
+    return replace(explanation, fitted=min((fit(way, f.u, f.states) for way in ways), key=lambda one: one.loss))
 
 
 def as_white_noise(fitted: Fitted, errors: Errors) -> Fitted:
