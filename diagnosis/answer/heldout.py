@@ -59,7 +59,9 @@ def frozen(
     if not measured.free:
         point = Point(fixed, measured.states, predictor.coordinates)
         return point, predictor.predict([point])[0]
-    states, whitening = measured.states, errors.of_sensors(measured)
+    own = explanation.measured
+    learned = measured.windows == own.windows and measured.recordings == own.recordings
+    states, whitening = explanation.fitted.states if learned else measured.states, errors.of_sensors(measured)
     for _ in range(2):
         alone = Misfit(predictor, whitening, (), fixed)
         states = fit_thoroughly(alone, np.zeros(0), states).states
