@@ -30,7 +30,7 @@ from diagnosis.search.candidates import Candidate
 from diagnosis.search.found import MISSING, Search, adjusted, explains_all, price, survives
 from diagnosis.search.instants import NO_UNKNOWNS, WHOLE, ends_of
 from diagnosis.search.null import null_distribution
-from diagnosis.search.refit import QUICK, Explanation, again, best_of, extend, with_memory
+from diagnosis.search.refit import QUICK, Explanation, again, best_of, extend, with_memory, without
 from diagnosis.search.runs import SHORTEST, InRuns, chance, in_runs, runs
 from diagnosis.search.spells import Spell, in_spell, of_windows
 from diagnosis.search.weighing import by_white_noise, weigh_again
@@ -115,10 +115,13 @@ def _needed(found: Search, start: Explanation, single: Explanation) -> bool:
 
 
 def _settled(found: Search) -> bool:
-    """Whether one effect that always acts explains everything."""
+    """Whether one effect that always acts explains everything, and events repeat with it.
+
+    Events that scatter may be a law that changes.
+    """
     if found.best is None or found.outside is not None or len(found.best.candidates) > 1:
         return False
-    if not explains_all(found.best):
+    if found.errors.scatters or not explains_all(found.best):
         return False
     if not found.measured.identification.forces:
         return True
@@ -256,6 +259,10 @@ def _weighed(found: Search, fits: Sequence[Explanation]) -> Search | None:
         return None
     if before is not None and _likelihood(trial) >= _likelihood(found):
         return None
+    for candidate in trial.best.candidates:  # what stood in for the one that begins is needed no more
+        rest = without(trial.best, candidate)
+        if rest.in_spell and adjusted(rest) - adjusted(trial.best) < MISSING:
+            trial.best = rest
     trial.best = with_memory(_thorough(trial.best))
     return trial
 
