@@ -15,6 +15,8 @@ from study.schedulers import Pool, R, T
 from study.workers import Needs, UnfitWorker
 
 CONNECT_SECONDS = 10
+SPOKEN = ("distributed", "tornado", "asyncio")
+"""Loggers of dask and of what carries its messages: callbacks that find the scheduler gone end there."""
 ANSWER_SECONDS = 10
 """s that idle workers take at most to say what they have."""
 
@@ -113,8 +115,9 @@ def open_cluster(address: str, needs: Needs) -> Iterator[ClusterPool]:
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """Without the tracebacks that dask logs when its scheduler goes: the run says in a sentence what happened."""
-    loggers = [logging.getLogger(name) for name in logging.root.manager.loggerDict if name.startswith("distributed")]
+    """Without the tracebacks that are logged when dask's scheduler goes: the run says in a sentence what happened."""
+    known = [name for name in logging.root.manager.loggerDict if name.startswith(SPOKEN)]
+    loggers = [logging.getLogger(name) for name in (*known, *SPOKEN)]
     levels = [logger.level for logger in loggers]
     for logger in loggers:
         logger.setLevel(logging.CRITICAL)
