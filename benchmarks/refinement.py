@@ -27,7 +27,7 @@ from study.store import write_text
 OUT = Path("results/bench/refinement.json")
 BUDGETS = (0.02, 0.05, 0.1, 0.2, 0.3)
 CROP, SEEDS = 96, 100
-HEAD = """
+BLOCKS = """
 [study]
 name = "{name}"
 model = "housner"
@@ -40,8 +40,9 @@ mass = "1 t"
 [axes]
 {axes}
 [outputs]
-names = ["overturned"]
+names = {names}
 """
+"""A study of single blocks of one tonne under a Ridgecrest record."""
 FLAT = """
 aspect_ratio = {{ linspace = [0.1, 0.4, {n}] }}
 pga = {{ linspace = [0.05, 1.2, {n}], unit = "g" }}
@@ -56,7 +57,7 @@ pga = {{ linspace = [0.05, 0.6, {n}], unit = "g" }}
 
 def whole(name: str, fixed: str, axes: str) -> Labels:
     """Status of every cell of a plan, computed."""
-    report = run(parse_plan(HEAD.format(name=name, fixed=fixed, axes=axes), Path.cwd()))
+    report = run(parse_plan(BLOCKS.format(name=name, fixed=fixed, axes=axes, names=["overturned"]), Path.cwd()))
     return np.asarray(open_study(report.folder)["status"].values, dtype=np.int8)
 
 

@@ -55,22 +55,11 @@ AXES = {
     },
 }  # fmt: skip
 """Points of the axes of every size: aspect ratio, height, PGA; aspect ratio, top mass, modulus, damping, PGA."""
-BLOCKS = """
-[study]
-name = "scale"
-model = "housner"
-[motion]
-files = ["ridgecrest_2019_clc"]
-vertical = false
-[parameters]
-mass = "1 t"
-[axes]
-aspect_ratio = {{ linspace = [0.1, 0.4, {0}] }}
+BLOCKS = """aspect_ratio = {{ linspace = [0.1, 0.4, {0}] }}
 height = {{ linspace = [1, 4, {1}], unit = "m" }}
 pga = {{ geomspace = [0.1, 1.0, {2}], unit = "g" }}
-[outputs]
-names = ["peak_rotation", "uplift_duration", "overturned", "onset_time"]
 """
+OUTPUTS = ["peak_rotation", "uplift_duration", "overturned", "onset_time"]
 WALLS = """[axes]
 aspect_ratio = {{ linspace = [0.3, 0.75, {0}] }}
 top_mass = {{ linspace = [1000, 5000, {1}], unit = "kg" }}
@@ -86,7 +75,8 @@ def plan_text(model: str, cells: int) -> str:
     """Blocks on rigid ground, or the rubber study over the same ranges with other numbers of points."""
     points = AXES[model][cells]
     if model == "housner":
-        return BLOCKS.format(*points)
+        axes = BLOCKS.format(*points)
+        return refinement.BLOCKS.format(name="scale", fixed="", axes=axes, names=OUTPUTS)
     head, tail = BASE.read_text().partition("[axes]")[::2]
     return head.replace("rubber_interface", "scale") + WALLS.format(*points) + tail[tail.index("[outputs]") :]
 

@@ -156,9 +156,7 @@ def _about_the_events(fitted: Fitted, errors: Errors) -> tuple[Fitted, Errors]:
         errors = estimate(fitted, errors.base, errors)
     if errors.scatters or fitted.measured.as_it_was is None:
         return fitted, errors
-    predictor = fitted.misfit.predictor
-    predictor = replace(predictor, measured=fitted.measured.undisturbed)
-    fitted = replace(fitted, misfit=replace(fitted.misfit, predictor=predictor))
+    fitted = replace(fitted, misfit=fitted.misfit.undisturbed)
     return fitted, estimate(fitted, errors.base, errors)
 
 

@@ -87,6 +87,11 @@ class Misfit:
         """Of the errors that windows share (S,), in their standard deviations."""
         return np.zeros(0) if self.whitening.level is None else self.whitening.level
 
+    @property
+    def undisturbed(self) -> Misfit:
+        """The same with events taken to be as the law has them."""
+        return replace(self, predictor=replace(self.predictor, measured=self.measured.undisturbed))
+
     def at_level(self, level: FloatArray) -> Misfit:
         return replace(self, whitening=replace(self.whitening, level=level)) if level.size else self
 

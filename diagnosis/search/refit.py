@@ -68,7 +68,7 @@ def extend(
     )
     u, ways = np.concatenate([base.u, start]), [misfit]
     if base.measured.as_it_was is not None:
-        ways.append(replace(misfit, predictor=replace(misfit.predictor, measured=base.measured.undisturbed)))
+        ways.append(misfit.undisturbed)
     fits = [fit(way, u, base.states, iterations) for way in ways]
     return Explanation((*explanation.candidates, candidate), min(fits, key=lambda f: f.loss))
 

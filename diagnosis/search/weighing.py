@@ -25,7 +25,7 @@ def reweighed(explanation: Explanation, errors: Errors) -> Explanation:
     """The explanation refitted under these errors, about the events as these have them or without."""
     f, ways = explanation.fitted, [errors.on(explanation.fitted.misfit)]
     if ways[0].measured.as_it_was is not None:
-        ways.append(replace(ways[0], predictor=replace(f.misfit.predictor, measured=ways[0].measured.undisturbed)))
+        ways.append(ways[0].undisturbed)
     return replace(explanation, fitted=min((fit(way, f.u, f.states) for way in ways), key=lambda one: one.loss))
 
 
