@@ -46,7 +46,8 @@ def open_study(folder: str | Path, outputs: Collection[str] | None = None, *, la
             with NETCDF_LOCK, bounded_cache():
                 cube = xr.open_dataset(path, engine="netcdf4", chunks={}, lock=NETCDF_LOCK)
             found = _of_today(cube if outputs is None else cube[list(outputs)])
-            found.set_close(cube.close)
+            if found is not cube:
+                found.set_close(cube.close)
             return found
         with NETCDF_LOCK, xr.open_dataset(path, engine="netcdf4") as cube:
             return _of_today((cube if outputs is None else cube[list(outputs)]).load())
