@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
 
 
 @dataclass(frozen=True)
@@ -47,6 +52,14 @@ class Shaking:
     def time(self) -> NDArray[np.float64]:
         """Times (n,) of the samples, in s."""
         return np.asarray(np.arange(self.horizontal.size) * self.time_step, np.float64)
+
+    @cached_property
+    def splines(self) -> tuple[CubicSpline, CubicSpline | None]:
+        """Cubic splines through both components over `time`, m s-2; made once, for readings off the samples."""
+        from scipy.interpolate import CubicSpline
+
+        time = self.time
+        return CubicSpline(time, self.horizontal), None if self.vertical is None else CubicSpline(time, self.vertical)
 
     def scaled(self, factor: float) -> Shaking:
         """The same motion with both components times ``factor``."""

@@ -139,4 +139,4 @@ class LowRank:
         return np.asarray(self.columns @ (self.columns.T @ vector))
 
     def trace(self, matrix: FloatArray) -> float:
-        return float(np.einsum("iq,ij,jq->", self.columns, matrix, self.columns, optimize=True))
+        return float(np.vdot(self.columns, matrix @ self.columns))

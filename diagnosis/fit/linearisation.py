@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -23,23 +24,29 @@ class Linearisation:
     inverse: FloatArray
     gradient: FloatArray
 
+    @cached_property
+    def weighted(self) -> FloatArray:
+        """Base derivatives times the windows' weights, flat (W M, k)."""
+        windows, samples, k = self.by_unknown.shape
+        return (self.weights[:, None, None] * self.by_unknown).reshape(windows * samples, k)
+
     def reduced(self, residual: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Weighted residuals (..., W, M) off the states, and their products with the base derivatives."""
-        inside = np.einsum("wms,...wm->...ws", self.basis, residual, optimize=True)
-        off = residual - np.einsum("wms,...ws->...wm", self.basis, inside, optimize=True)
-        return off, np.einsum("w,wmi,...wm->...i", self.weights, self.by_unknown, off, optimize=True)
+        column = residual[..., None]
+        off = (column - self.basis @ (np.swapaxes(self.basis, 1, 2) @ column))[..., 0]
+        return off, off.reshape(*off.shape[:-2], len(self.weighted)) @ self.weighted
 
     def product(self, one: FloatArray, other: FloatArray) -> float:
         """Inner product of two reduced columns with the base parameters projected out."""
-        plain = np.einsum("w,wm,wm->", self.weights, one, other, optimize=True)
+        plain = np.vdot(self.weights[:, None] * one, other)
         return float(plain - self._along(one) @ self.inverse @ self._along(other))
 
     def _along(self, column: FloatArray) -> FloatArray:
-        return np.asarray(np.einsum("w,wmi,wm->i", self.weights, self.by_unknown, column, optimize=True))
+        return np.asarray(column.ravel() @ self.weighted)
 
     def scores_with_residual(self, column: FloatArray) -> float:
         """d'r for a reduced column d, priors included."""
-        plain = np.einsum("w,wm,wm->", self.weights, column, self.residual, optimize=True)
+        plain = np.vdot(self.weights[:, None] * column, self.residual)
         return float(plain - self._along(column) @ self.inverse @ self.gradient)
 
     def by_window(self, column: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -195,11 +195,13 @@ class Predictor:
         base = np.pad(m.base[windows][:, :compared], ((0, 0), (0, samples - compared)))
         start = np.asarray(time_step * m.first[windows, None], float)
         around = Surroundings(time_step, base, m.reference_peak, start)
-        for k, p in enumerate(members):
-            true = {c: found[c][k] for c in m.channels}
-            recorded = recorded_in_stages(true, self.sets(instruments[p], recording), around, recorded_in_windows)
+        for alike in _alike([instruments[p] for p in members]):
+            true = {c: found[c][alike] for c in m.channels}
+            sets = self.sets(instruments[members[alike[0]]], recording)
+            recorded = recorded_in_stages(true, sets, around, recorded_in_windows)
+            rows = np.array([members[k] for k in alike])[:, None]
             for c, channel in enumerate(m.channels):
-                out[p, windows, c, :compared] = recorded[channel][:, :compared]
+                out[rows, windows, c, :compared] = recorded[channel][..., :compared]
 
     def _through(
         self,
@@ -259,6 +261,15 @@ class Predictor:
                 column[:] = self.measured.model.mechanisms[mechanism].parameter(parameter).null
             values[name] = column[0] if np.all(column == column[0]) else np.repeat(column, windows)
         return values
+
+
+def _alike(instruments: Sequence[Switched]) -> list[list[int]]:
+    """Which of several settings of the instruments are the same."""
+    groups: dict[frozenset[object], list[int]] = {}
+    for k, switched in enumerate(instruments):
+        key = frozenset((name, frozenset(values.items())) for name, values in switched.items())
+        groups.setdefault(key, []).append(k)
+    return list(groups.values())
 
 
 def _held(

@@ -149,9 +149,10 @@ def fit(misfit: Misfit, u: FloatArray, states: FloatArray, iterations: int = ITE
 
 def normal(misfit: Misfit, reduced: Reduced, weights: FloatArray, u: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Gauss-Newton Hessian (k, k) and gradient (k,) of half the loss, priors included; shared errors last."""
-    j = reduced.by_unknown
-    hessian = np.einsum("w,wmi,wmj->ij", weights, j, j, optimize=True)
-    gradient = np.einsum("w,wmi,wm->i", weights, j, reduced.residual, optimize=True)
+    windows, samples, k = reduced.by_unknown.shape
+    j = reduced.by_unknown.reshape(windows * samples, k)
+    weighted = np.repeat(weights, samples)[:, None] * j
+    hessian, gradient = weighted.T @ j, reduced.residual.ravel() @ weighted
     precision, slope = misfit.prior_normal(u)
     return hessian + precision, gradient + slope
 

@@ -10,7 +10,7 @@ the first samples.
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,17 +23,32 @@ LEAD_IN = 0.2
 """s of parabola before the first sample."""
 FITTED = 8
 """Samples through which the parabola is laid."""
-System = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]
+
+
+class Discrete(NamedTuple):
+    """A filter for an input linear between samples: its polynomials in z^-1, and what it makes of a constant one."""
+
+    numerator: NDArray[np.float64]
+    denominator: NDArray[np.float64]
+    steady: float
 
 
 @lru_cache(maxsize=4096)
-def discrete(corner_hz: float, order: int, kind: Kind, time_step: float) -> System:
-    """State space (A, B, C, D) of the filter for an input linear between samples."""
-    from scipy.signal import butter, cont2discrete, tf2ss
+def discrete(corner_hz: float, order: int, kind: Kind, time_step: float) -> Discrete:
+    from scipy.signal import butter, cont2discrete, ss2tf, tf2ss
 
     numerator, denominator = butter(order, 2.0 * np.pi * corner_hz, btype=kind, analog=True, output="ba")
-    found = cont2discrete(tf2ss(numerator, denominator), time_step, method="foh")
-    return found[0], found[1], found[2], found[3]
+    a, b, c, d, _ = cont2discrete(tf2ss(numerator, denominator), time_step, method="foh")
+    rows, poles = ss2tf(a, b, c, d)
+    unit = np.linalg.solve(np.eye(a.shape[0]) - a, b[:, 0])
+    return Discrete(rows[0], poles, float(c[0] @ unit + d[0, 0]))
+
+
+@lru_cache(maxsize=64)
+def backwards(few: int, count: int) -> NDArray[np.float64]:
+    """Takes ``few`` samples to the ``count`` before them (few, count) on the parabola through them."""
+    bend = np.linalg.pinv(np.vander(np.arange(few), 3, increasing=True).astype(float))
+    return np.asarray((np.vander(np.arange(-count, 0), 3, increasing=True).astype(float) @ bend).T)
 
 
 def stages(values: Values) -> list[tuple[float, int, Kind]]:
@@ -46,23 +61,16 @@ def stages(values: Values) -> list[tuple[float, int, Kind]]:
     return found
 
 
-def run(system: System, signal: FloatArray, time_step: float) -> FloatArray:
+def run(system: Discrete, signal: FloatArray, time_step: float) -> FloatArray:
     """Output of the filter for signals (..., samples), each led in by its own parabola."""
-    from scipy.signal import lfilter, ss2tf
+    from scipy.signal import lfilter
 
-    a, b, c, d = system
-    numerator, denominator = ss2tf(a, b, c, d)
     count = int(np.ceil(LEAD_IN / time_step))
     few = min(FITTED, signal.shape[-1])
-    steps = np.arange(few)
-    bend = np.linalg.pinv(np.vander(steps, 3, increasing=True).astype(float))
-    coefficients = np.tensordot(signal[..., :few], bend, axes=(-1, -1))
-    before = coefficients @ np.vander(np.arange(-count, 0), 3, increasing=True).astype(float).T
-    whole = np.concatenate([before, signal], axis=-1)
+    whole = np.concatenate([signal[..., :few] @ backwards(few, count), signal], axis=-1)
     first = whole[..., :1]
-    unit = np.linalg.solve(np.eye(a.shape[0]) - a, b[:, 0])
-    steady = float(c[0] @ unit + d[0, 0])
-    return np.asarray(lfilter(numerator[0], denominator, whole - first, axis=-1) + steady * first)[..., count:]
+    passed = lfilter(system.numerator, system.denominator, whole - first, axis=-1) + system.steady * first
+    return np.asarray(passed)[..., count:]
 
 
 def delay(values: Values) -> float:

@@ -6,6 +6,7 @@ base is read at (1 + rate) t - lag and a window starts where it started, so noth
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -46,18 +47,18 @@ def moved_in_windows(shaking: Shaking, mechanisms: Switched) -> Shaking:
 
 def read_at(shaking: Shaking, rate: float, lag: float) -> Shaking:
     """The shaking with sample k read at (1 + rate) t_k - lag, on a step (1 + rate) times as long."""
-    from scipy.interpolate import CubicSpline
+    end = shaking.duration
+    at = (1.0 + rate) * shaking.time - lag
+    inside = (at >= 0.0) & (at <= end)
+    held = np.clip(at, 0.0, end)
 
-    time = shaking.time
-    at = (1.0 + rate) * time - lag
-    inside = (at >= 0.0) & (at <= time[-1])
+    def read(spline: Callable[[FloatArray], FloatArray]) -> FloatArray:
+        return np.where(inside, spline(held), 0.0)
 
-    def read(samples: FloatArray) -> FloatArray:
-        return np.where(inside, CubicSpline(time, samples)(np.clip(at, 0.0, time[-1])), 0.0)
-
-    vertical = None if shaking.vertical is None else read(shaking.vertical)
+    horizontal, vertical = shaking.splines
     step = (1.0 + rate) * shaking.time_step
-    return replace(shaking, time_step=step, horizontal=read(shaking.horizontal), vertical=vertical)
+    vertically = None if vertical is None else read(vertical)
+    return replace(shaking, time_step=step, horizontal=read(horizontal), vertical=vertically)
 
 
 def recorded_in_windows(channels: Channels, mechanisms: Switched, around: Surroundings) -> Channels:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -148,7 +149,7 @@ class Block:
         """Whether a law in a table acts (n,): its reaches alone do nothing."""
         return np.asarray(np.any(self.table[:, REACHES:] != 0.0, axis=1))
 
-    @property
+    @cached_property
     def plain(self) -> bool:
         """Whether no mechanism adds a couple, a rolling corner, pitch, sliding, flight or flexure."""
         nulls = (

@@ -9,6 +9,7 @@ import stat
 import tempfile
 from collections.abc import Callable
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 from typing import TypeVar, cast
 
@@ -33,13 +34,21 @@ def sources(module: str, root: Path = _ROOT) -> list[Path]:
         if name in found or not path.is_file():
             continue
         found[name] = path
-        for node in ast.walk(ast.parse(path.read_bytes())):
-            if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "models":
-                # a name may be a module of its own
-                waiting += [f"{node.module}", *(f"{node.module}.{alias.name}" for alias in node.names)]
-            elif isinstance(node, ast.Import):
-                waiting += [alias.name for alias in node.names if alias.name.startswith("models.")]
+        waiting += _imports(path.read_bytes())
     return [found[name] for name in sorted(found)]
+
+
+@cache
+def _imports(source: bytes) -> tuple[str, ...]:
+    """What a source may import of `models`."""
+    found: list[str] = []
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "models":
+            # a name may be a module of its own
+            found += [f"{node.module}", *(f"{node.module}.{alias.name}" for alias in node.names)]
+        elif isinstance(node, ast.Import):
+            found += [alias.name for alias in node.names if alias.name.startswith("models.")]
+    return tuple(found)
 
 
 def source_hash(module: str, root: Path = _ROOT) -> str:

@@ -50,6 +50,8 @@ def part(whole: Tables, lanes: slice) -> Tables:
 def logged(tables: Tables, kinds: Sequence[str]) -> tuple[tuple[Event, ...], ...]:
     """The events, lane by lane; ``kinds`` in the order of the kernel's numbers."""
     most = tables.log.shape[1]
+    if not most:
+        return ((),) * len(tables.log)
     return tuple(
         tuple(Event(float(time), kinds[int(kind)], int(body)) for time, kind, body in lane[: min(length, most)])
         for lane, length in zip(tables.log, tables.length.tolist(), strict=True)

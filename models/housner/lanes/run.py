@@ -107,18 +107,20 @@ def run(block: Block, request: Request, refinement: int = 1) -> Run:
     found, steps = empty(request, r.N_RESULT, 3), 0
     pitched = np.where(block.pitch_per_acceleration != 0.0, block.pitch_low_pass, 0.0)
     for (per_sample, corner), lanes in groups(substeps(block, shaking.time_step) * refinement, pitched):
-        part, asked = block.take(lanes), request.take(lanes)
+        whole = lanes.size == block.size
+        part, asked = (block, request) if whole else (block.take(lanes), request.take(lanes))
         psi = pitch(shaking.horizontal, shaking.time_step, corner) if corner > 0.0 else (None, None)
         record = recorded(shaking, per_sample, request.tail, psi)
         first, last = asked.steps(per_sample, record.end)
-        tables = empty(asked, r.N_RESULT, 3)
+        tables = found if whole else empty(asked, r.N_RESULT, 3)
         general = None if part.plain else 1 if np.any(part.tabulated) else True
         steps += advance(
             record, first, last, given_table(part, asked.scale, asked.initial), tables,
             per_sample if asked.history else 0, asked.history, general,
             True if request.linear else None,
         )  # fmt: skip
-        put(found, lanes, tables)
+        if not whole:
+            put(found, lanes, tables)
     return Run(outputs(block, found.result), found.trace, logged(found, EVENTS), steps)
 
 
