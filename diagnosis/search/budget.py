@@ -7,7 +7,9 @@ from dataclasses import dataclass, field, replace
 from models.runs import DONE
 
 MOST = 150_000_000
-"""Lane-steps of a search: one to two and a half minutes of one core, by what each of them costs."""
+"""Lane-steps of the search for the first effect: about a minute of one core, by what each of them costs."""
+FURTHER = 200_000_000
+"""Lane-steps for effects beside the first, whatever was spent before: where two act, the first explains little."""
 RESERVED = 60_000_000
 """Lane-steps for effects that begin or end, whatever was spent before: they come last and may explain everything."""
 LADDER = 60_000_000

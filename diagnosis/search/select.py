@@ -12,6 +12,7 @@ from diagnosis.errors.model import estimate
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.progress import Progress
 from diagnosis.search.beside import POOL_SHARE, THOROUGH, extended, seconds, starts_of, worth_a_refit
+from diagnosis.search.budget import FURTHER
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.exchange import exchanged
 from diagnosis.search.found import MISSING, Search, adequate, adjusted, survives
@@ -68,13 +69,14 @@ def further_effects(found: Search, progress: Progress) -> Iterator[Search]:
     """The same with a second and a third mechanism beside the first; the last one is the answer."""
     if found.best is None or found.best.in_spell:
         return
-    _pairs(found, progress)
-    yield found
-    if found.outside is None:
-        _more(found, progress)
+    with found.work_of_its_own(int(FURTHER * found.measured.identification.speed)):
+        _pairs(found, progress)
         yield found
-    if found.outside is None:
-        exchanged(found, progress)
+        if found.outside is None:
+            _more(found, progress)
+            yield found
+        if found.outside is None:
+            exchanged(found, progress)
     settle_ties(found)
     if found.best is not None:
         found.best = with_memory(again(found.best))
