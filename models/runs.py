@@ -83,9 +83,10 @@ class Request:
 
 @dataclass
 class Work:
-    """What the kernels of this process have computed: lane-steps. A budget that does not depend on the machine."""
+    """What this process has asked of the kernels: lane-steps and calls. It does not depend on the machine."""
 
     steps: int = 0
+    calls: int = 0
 
 
 DONE = Work()

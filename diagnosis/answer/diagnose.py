@@ -33,7 +33,7 @@ from diagnosis.forces.constancy import Constancy, Tested, flags, tests
 from diagnosis.progress import Progress, Stages, silent
 from diagnosis.search import bootstrap as bootstrapping
 from diagnosis.search.beginnings import alone, beside
-from diagnosis.search.budget import MOST, Budget
+from diagnosis.search.budget import Budget
 from diagnosis.search.candidates import absent, candidates
 from diagnosis.search.found import Search, misfit_per_sample, rivals
 from diagnosis.search.ladder import Climbed, climb, rungs
@@ -68,7 +68,7 @@ def diagnose(
     measured = measure(specimen, training)
     held = measure(specimen, holdout, measured.reference_peak) if holdout else None  # refused before the search
     fitted, errors = calibrated(specimen, measured, seed)
-    budget = Budget(int(MOST * measured.identification.speed))
+    budget = Budget(speed=measured.identification.speed)
     found = Search(Explanation((), fitted), candidates(measured, specimen), errors, budget=budget)
     climbed: Climbed | None = None
     finished = True

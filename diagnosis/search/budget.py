@@ -1,4 +1,4 @@
-"""A search ends when its work is done: lane-steps of the kernels, so that an answer does not depend on the machine."""
+"""A search ends when its work is done: lane-steps and calls of kernels, so that an answer depends on no machine."""
 
 from __future__ import annotations
 
@@ -6,28 +6,36 @@ from dataclasses import dataclass, field, replace
 
 from models.runs import DONE
 
-MOST = 150_000_000
-"""Lane-steps of the search for the first effect: about a minute of one core, by what each of them costs."""
-FURTHER = 200_000_000
+CALL = 50_000
+"""What a call of a kernel costs beside its lane-steps, in lane-steps: coefficients, tables, instruments (5 ms)."""
+MOST = 300_000_000
+"""Lane-steps of the search for the first effect: half a minute to a minute of one core."""
+FURTHER = 500_000_000
 """Lane-steps for effects beside the first, whatever was spent before: where two act, the first explains little."""
-RESERVED = 60_000_000
+RESERVED = 150_000_000
 """Lane-steps for effects that begin or end, whatever was spent before: they come last and may explain everything."""
-LADDER = 60_000_000
+LADDER = 150_000_000
 """Lane-steps after which no further base model is tried."""
 ENDED = "the search's budget of work ended before it"
 
 
 @dataclass(frozen=True)
 class Budget:
-    """Lane-steps from ``begin`` on."""
+    """Work from so many ``steps`` and ``calls`` on, ``most`` in lane-steps of a wall's kernel.
 
-    most: int = MOST
-    begin: int = field(default_factory=lambda: DONE.steps)
+    ``speed``: lane-steps a second of the model's kernel over those of a wall's (`Identification.speed`).
+    """
+
+    most: float = MOST
+    speed: float = 1.0
+    steps: int = field(default_factory=lambda: DONE.steps)
+    calls: int = field(default_factory=lambda: DONE.calls)
 
     @property
     def spent(self) -> bool:
-        return DONE.steps - self.begin > self.most
+        return (DONE.steps - self.steps) / self.speed + CALL * (DONE.calls - self.calls) > self.most
 
     def after(self, other: Budget) -> Budget:
         """This budget once ``other``, begun later, has been worked on."""
-        return replace(self, begin=self.begin + DONE.steps - other.begin)
+        steps, calls = DONE.steps - other.steps, DONE.calls - other.calls
+        return replace(self, steps=self.steps + steps, calls=self.calls + calls)

@@ -83,12 +83,16 @@ def _drop(found: Search) -> None:
 
 
 def _try_others(found: Search, widely: bool) -> None:
-    """Refits of the best with each effect exchanged, but where that was tried beside the others before."""
+    """Refits of the best with each effect exchanged, but where that was tried beside the others before.
+
+    From where the others stand: fitted again without the effect they may move into another valley, as a clock does
+    without the filter whose lag it then takes for its own. From there too where what stands is incomplete.
+    """
     if (best := found.best) is None:
         return
     for candidate in best.candidates:
         others = frozenset(best.candidates) - {candidate}
         if others not in found.exchanged and found.affordable(f"others in the place of {candidate.name}"):
             found.exchanged.add(others)
-            rest = without(best, candidate)
-            found.tried += extended(found, rest, seconds(found, rest), widely)
+            for rest in [without(best, candidate, 0), *([without(best, candidate)] if widely else [])]:
+                found.tried += extended(found, rest, seconds(found, rest), widely)

@@ -96,9 +96,9 @@ class Search:
         return not self.budget.spent
 
     @contextmanager
-    def work_of_its_own(self, most: int) -> Iterator[None]:
+    def work_of_its_own(self, most: float) -> Iterator[None]:
         """Within, the budget is ``most`` lane-steps; what they cost is not taken off the budget outside."""
-        outer, self.budget = self.budget, Budget(most)
+        outer, self.budget = self.budget, Budget(most, self.budget.speed)
         try:
             yield
         finally:

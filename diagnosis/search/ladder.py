@@ -39,7 +39,6 @@ from models import get
 from models.base import FloatArray
 from models.errors import InputError
 from models.identification import Rung
-from models.runs import DONE
 
 LEFT = 1.5
 """Misfit per sample, over the sensors' noise, from which on other base models are tried."""
@@ -112,8 +111,7 @@ def rungs(
                 why = str(error)
         if why:
             found.not_tried[rung.name] = why
-    # the search's own work goes on where it was
-    found.budget = replace(found.budget, begin=found.budget.begin + DONE.steps - budget.begin)
+    found.budget = found.budget.after(budget)  # the search's own work goes on where it was
     return tried
 
 

@@ -83,8 +83,8 @@ def joined(explanation: Explanation, single: Explanation) -> Explanation:
     return best_of([extend(way, candidate, single.part(candidate), QUICK) for way in ways])
 
 
-def without(explanation: Explanation, candidate: Candidate) -> Explanation:
-    """Fit without one of the mechanisms, from the explanation's own optimum."""
+def without(explanation: Explanation, candidate: Candidate, iterations: int = ITERATIONS) -> Explanation:
+    """Fit without one of the mechanisms, from the explanation's own optimum; with no iteration all else stays there."""
     base = explanation.fitted
     gone = {x.name for x in candidate.unknowns}
     keep = [i for i, x in enumerate(base.misfit.unknowns) if x.name not in gone]
@@ -94,7 +94,7 @@ def without(explanation: Explanation, candidate: Candidate) -> Explanation:
         fixed={k: v for k, v in base.misfit.fixed.items() if k not in candidate.held},
     )
     rest = tuple(c for c in explanation.candidates if c is not candidate)
-    return Explanation(rest, fit(misfit, base.u[keep], base.states))
+    return Explanation(rest, fit(misfit, base.u[keep], base.states, iterations))
 
 
 def again(explanation: Explanation) -> Explanation:

@@ -69,14 +69,12 @@ def further_effects(found: Search, progress: Progress) -> Iterator[Search]:
     """The same with a second and a third mechanism beside the first; the last one is the answer."""
     if found.best is None or found.best.in_spell:
         return
-    with found.work_of_its_own(int(FURTHER * found.measured.identification.speed)):
+    with found.work_of_its_own(FURTHER):
         _pairs(found, progress)
         yield found
         if found.outside is None:
             _more(found, progress)
             yield found
-        if found.outside is None:
-            exchanged(found, progress)
     settle_ties(found)
     if found.best is not None:
         found.best = with_memory(again(found.best))
@@ -183,8 +181,7 @@ def _pairs(found: Search, progress: Progress) -> None:
     if adjusted(found.best) - adjusted(pair) >= found.more and survives(alone, pair, found.more):
         found.best = again(reshaped(pair))
         weigh_again(found)
-        if found.incomplete:
-            exchanged(found, progress)
+        exchanged(found, progress)  # before a third: what stands in for another effect leaves traces of its own
 
 
 def _more(found: Search, progress: Progress) -> None:
@@ -197,8 +194,7 @@ def _more(found: Search, progress: Progress) -> None:
             found.outside = outside(found.best, others, found.errors)
             if found.outside is not None:
                 return
-        incomplete = found.incomplete
-        further = extended(found, found.best, others, incomplete)
+        further = extended(found, found.best, others, found.incomplete)
         if not further:
             return
         found.tried += further
@@ -207,8 +203,7 @@ def _more(found: Search, progress: Progress) -> None:
             return
         found.best = best
         weigh_again(found)
-        if incomplete:
-            exchanged(found, progress)
+        exchanged(found, progress)
 
 
 def settle_ties(found: Search) -> None:

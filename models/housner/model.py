@@ -14,6 +14,7 @@ from models.housner import declaration
 from models.housner.block import Block, assemble
 from models.housner.identification import IDENTIFICATION
 from models.model import Model
+from models.observed import Observed
 from models.runs import Request, Run
 
 
@@ -102,31 +103,43 @@ class Housner(Model[Block]):
 
         return run(coefficients, request)
 
-    def observe(self, coefficients: Block, samples: FloatArray) -> dict[str, FloatArray]:
+    def observe(self, coefficients: Block, samples: FloatArray) -> Observed:
         """The observables of theta, theta' and what sliding, bouncing or bending adds to the displacement (m)."""
         rotation, rate, shift = np.moveaxis(samples, -1, 0)
-        rho = coefficients.corner_radius[:, None]
-        h = coefficients.height[:, None] - rho
-        b = np.where(rotation >= 0.0, coefficients.right[:, None], coefficients.left[:, None]) - rho
-        across = h * np.sin(rotation) + rho * rotation + np.sign(rotation) * b * (1.0 - np.cos(rotation))
-        return {
-            "rotation_1": rotation,
-            "rotation_rate_1": rate,
-            "displacement_1_x": across + shift,
-            "contact_1": ((rotation == 0.0) & (rate == 0.0)).astype(float),
-        }
+
+        def displacement() -> FloatArray:
+            rho = coefficients.corner_radius[:, None]
+            h = coefficients.height[:, None] - rho
+            b = np.where(rotation >= 0.0, coefficients.right[:, None], coefficients.left[:, None]) - rho
+            across = h * np.sin(rotation) + rho * rotation + np.sign(rotation) * b * (1.0 - np.cos(rotation))
+            return np.asarray(across + shift)
+
+        return Observed(
+            {
+                "rotation_1": lambda: rotation,
+                "rotation_rate_1": lambda: rate,
+                "displacement_1_x": displacement,
+                "contact_1": lambda: ((rotation == 0.0) & (rate == 0.0)).astype(float),
+            }
+        )
 
     def poses(self, coefficients: Block, samples: FloatArray) -> Mapping[str, FloatArray]:
         """The underside turns about the pivot it stands on, rolls on a rounded corner, and slides."""
         rotation, _, shift = np.moveaxis(samples, -1, 0)
         rho = coefficients.corner_radius[:, None]
         half = 0.5 * (coefficients.right + coefficients.left)[:, None] - rho
-        less = 1.0 - np.cos(rotation)
-        return {
-            "underside_1_x": rho * (rotation - np.sin(rotation)) + np.sign(rotation) * half * less + shift,
-            "underside_1_z": half * np.abs(np.sin(rotation)) + rho * less,
-            "underside_1_height": np.zeros_like(rotation),
-        }
+
+        def across() -> FloatArray:
+            rolled = rho * (rotation - np.sin(rotation))
+            return np.asarray(rolled + np.sign(rotation) * half * (1.0 - np.cos(rotation)) + shift)
+
+        return Observed(
+            {
+                "underside_1_x": across,
+                "underside_1_z": lambda: half * np.abs(np.sin(rotation)) + rho * (1.0 - np.cos(rotation)),
+                "underside_1_height": lambda: np.zeros_like(rotation),
+            }
+        )
 
     def resume(
         self, states: FloatArray, outputs: Mapping[str, NDArray[Any]], initial: Mapping[str, FloatArray]
