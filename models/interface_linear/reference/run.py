@@ -6,10 +6,12 @@ The rules of the switches are those of `models.interface_linear.equation`.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq, fminbound
 
 from models.base import STATUS, FloatArray
 from models.ground import Piece, pieces
@@ -114,7 +116,14 @@ class _Run:
         if not solution.success:
             self.account.failed = self.finished = True
             return
-        self._note(solution, piece)
+        dense: Any = solution.sol
+        if (missed := self._missed(solution.t, dense, [watch(*each) for each in watches])) is not None:
+            at, number = missed
+            self._note(np.append(solution.t[solution.t < at], at), dense, piece)
+            self.time, self.y = at, np.asarray(dense(at))
+            self._switch(watches[number][0], watches[number][1] == 1, piece)
+            return
+        self._note(solution.t, dense, piece)
         self.time, self.y = float(solution.t[-1]), solution.y[:, -1]
         if solution.status == 1 and solution.t_events is not None:
             if solution.t_events[-1].size:
@@ -123,6 +132,33 @@ class _Run:
                 return
             joint, which = next(each for each, times in zip(watches, solution.t_events[:-1], strict=True) if times.size)
             self._switch(joint, which == 1, piece)
+
+    def _missed(
+        self, nodes: FloatArray, dense: Any, watched: Sequence[Callable[[float, FloatArray], float]]
+    ) -> tuple[float, int] | None:
+        """Time and number of the first switch that came and went within a step, which its ends do not show."""
+        times, found = _between(nodes, 4), []
+        states = dense(times).T
+        for number, watch in enumerate(watched):
+            here = np.array([watch(t, y) for t, y in zip(times, states, strict=True)])
+            left, middle, right = here[:-2], here[1:-1], here[2:]
+            bend, slope = left - 2.0 * middle + right, 0.5 * (right - left)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                top = middle - 0.5 * slope**2 / bend  # of the parabola through the three
+            reached = top > bend  # within its error of zero
+            hidden = (middle >= left) & (middle >= right) & (middle < 0.0) & (bend < 0.0) & reached
+            for k in np.flatnonzero((left < 0.0) & ((middle > 0.0) | hidden)) + 1:
+
+                def below(t: float, watch: Callable[[float, FloatArray], float] = watch) -> float:
+                    return -watch(t, dense(t))
+
+                highest = float(times[k])
+                if here[k] < 0.0:
+                    highest = float(fminbound(below, times[k - 1], times[k + 1], xtol=1e-12))
+                if below(highest) < 0.0:
+                    found.append((float(brentq(below, times[k - 1], highest, xtol=1e-15)), number))
+                    break
+        return min(found, default=None)
 
     def _switch(self, joint: int, second: bool, piece: Piece) -> None:
         """A joint changes its state, its watched value (the second one or the first) having become positive."""
@@ -161,10 +197,9 @@ class _Run:
         moved = free @ np.linalg.solve(free.T @ solved.matrices(self.joints)[0] @ free, free.T @ push)
         self.y[4:8] -= moved @ np.linalg.solve(normal @ moved, normal @ self.y[4:8])
 
-    def _note(self, solution: object, piece: Piece) -> None:
-        """Samples of the steps just taken: outputs at four points a step, history at the grid's times."""
-        nodes, dense = solution.t, solution.sol  # type: ignore[attr-defined]
-        fine = np.interp(np.arange(4 * (nodes.size - 1) + 1) / 4.0, np.arange(nodes.size), nodes)
+    def _note(self, nodes: FloatArray, dense: Any, piece: Piece) -> None:
+        """Samples between ``nodes`` by their interpolant: outputs four a step, history at the grid's times."""
+        fine = _between(nodes, 4)
         for time, y in zip(fine.tolist(), dense(fine).T, strict=True):
             reading = self.equation.read(self.joints, y[:4], y[4:8], piece.at(time))
             self.account.work = y[8:].tolist()
@@ -188,3 +223,8 @@ class _Run:
         if outputs["minimum_contact"] == 0.0 and not self.account.failed:
             outputs["status"] = float(STATUS.index("outside_model"))
         return Run.of_one(outputs, self.history.T, *with_onset([tuple(self.account.events)]))
+
+
+def _between(nodes: FloatArray, points: int) -> FloatArray:
+    """Times at so many ``points`` of every step between ``nodes``."""
+    return np.interp(np.arange(points * (nodes.size - 1) + 1) / points, np.arange(nodes.size), nodes)

@@ -24,8 +24,9 @@ from tests.diagnosis.made import SPECIMEN, recording
 
 
 @cache
-def null() -> Search:
-    measured = measure(SPECIMEN, [recording("train_1", 1)])
+def null(restitution: float = 1.0) -> Search:
+    acting = {} if restitution == 1.0 else {"restitution": {"factor_on_housner": restitution}}
+    measured = measure(SPECIMEN, [recording("train_1", 1, acting)])
     fitted, errors = calibrated(SPECIMEN, measured)
     return Search(Explanation((), fitted), candidates(measured, SPECIMEN), errors)
 
@@ -69,5 +70,7 @@ def test_the_tail_goes_on_where_the_draws_end() -> None:
     assert tail_probability(1e4, gains[:9]) == 0.1
 
 
-def test_nothing_missing_is_likely_by_chance() -> None:
-    assert p_value(SPECIMEN, null(), 4, 1, lambda text, share: None) > 0.1
+def test_what_is_missing_is_beyond_every_draw_and_what_is_not_within() -> None:
+    """With two draws p is a third if the recording gains more than any of them."""
+    found, missing = (p_value(SPECIMEN, null(factor), 2, 1, lambda text, share: None) for factor in (1.0, 0.95))
+    assert missing == 1 / 3 < found

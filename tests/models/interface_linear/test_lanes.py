@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, example, given, settings
 
 from models.base import STATUS
 from models.interface.lanes import run as full_lanes
@@ -71,8 +71,9 @@ def test_the_first_switch_is_where_the_exponential_says() -> None:
     assert ran.outputs["onset_time"][0] == at
 
 
-@settings(max_examples=3, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=2, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(seed=SEEDS)
+@example(seed=1138)  # a joint that closes for 16 microseconds, within a step of the reference
 def test_lanes_agree_with_the_reference_on_random_walls(seed: int) -> None:
     one, shaking, scale = case(seed, 0.4)
     count = shaking.horizontal.size
