@@ -11,6 +11,7 @@ from diagnosis.answer.when import held_text, when_text
 from diagnosis.data.measured import identification_of
 from diagnosis.fit.unknowns import effects
 from diagnosis.forces.constancy import FOR_A_WHILE, Constancy
+from diagnosis.search.budget import ENDED
 from diagnosis.search.found import MISSING
 from diagnosis.search.null import LEAST_P
 from models.base import Mechanism
@@ -55,6 +56,7 @@ def statement(found: Diagnosis, model: Model) -> str:
     parts += _acts(found.located, words_of(declared))
     if found.verdict == "not_in_library" and not found.unexplained:
         parts.append("That does not settle it: what is missing is not in the library of mechanisms.")
+        parts += _left_out(found)
         parts += [_flag(flag, declared) for flag in _distinct(found.constancy)[:2]]
         if found.missing_force:
             what = " and a ".join(term["meaning"] for term in found.missing_force["terms"])
@@ -160,6 +162,12 @@ def _by_recording(gains: Mapping[str, float]) -> list[str]:
 
 def _skipped(found: Diagnosis) -> list[str]:
     return [f"Stopped after the search; left out: {', '.join(found.skipped)}."] if found.skipped else []
+
+
+def _left_out(found: Diagnosis) -> list[str]:
+    """What the search's budget of work did not reach: the library may say more than it did."""
+    names = [name.replace("_", " ") for name, why in found.not_tried.items() if why == ENDED]
+    return [f"The search's budget of work ended before it had tried: {', '.join(names)}."] if names else []
 
 
 def _distinct(found: Sequence[Constancy]) -> list[Constancy]:

@@ -14,6 +14,7 @@ from diagnosis.fit.intervals import Estimate
 from diagnosis.forces.constancy import Constancy
 from diagnosis.report import diagnosis_json
 from diagnosis.report.page import headline
+from diagnosis.search.budget import ENDED
 from diagnosis.search.null import LEAST_P
 from grids.instruments import INSTRUMENTS
 from tests.diagnosis.report.example import diagnosis
@@ -133,3 +134,10 @@ def test_what_every_recording_says_is_stated(gains: dict[str, float], expected: 
     assert expected in said(provenance={"gain_by_recording": gains})
     assert "the recordings give" not in said(provenance={"gain_by_recording": dict(list(gains.items())[:1])})
     assert "the recordings give" not in said("nothing_missing", provenance={"gain_by_recording": gains})
+
+
+def test_what_the_budget_did_not_reach_is_said_where_the_library_did_not_suffice() -> None:
+    left = {"tilt": ENDED, "a second effect beside gain": ENDED, "vertical_acceleration": "no vertical motion"}
+    text = said("not_in_library", not_tried=left)
+    assert "ended before it had tried: tilt, a second effect beside gain." in text and "vertical" not in text
+    assert "budget" not in said("not_in_library", not_tried={}) + said("missing", not_tried=left)
