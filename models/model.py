@@ -138,8 +138,7 @@ class Model(Placing, ABC, Generic[C]):
     def _integrated(self, integrator: str, coefficients: C, request: Request) -> Run:
         if integrator == "lanes":
             found = self.run_lanes(coefficients, request)
-            DONE.steps += found.steps
-            DONE.calls += 1
+            DONE.call(found.steps)
             return found
         lanes = [slice(k, k + 1) for k in range(coefficients.size)]
         return Run.joined([self.run_reference(coefficients.take(k), request.take(k)) for k in lanes])

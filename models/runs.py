@@ -88,6 +88,11 @@ class Work:
     steps: int = 0
     calls: int = 0
 
+    def call(self, steps: int) -> None:
+        """One call of a kernel, of so many lane-steps."""
+        self.steps += steps
+        self.calls += 1
+
 
 DONE = Work()
 
