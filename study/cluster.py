@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import uuid
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
 from concurrent.futures import BrokenExecutor, Future, wait
 from contextlib import contextmanager
 from typing import Any
@@ -61,16 +61,18 @@ class ClusterPool(Pool):
 
         return not future.cancelled() and isinstance(future.exception(), KilledWorker)
 
-    def drop(self, future: Future[Any]) -> bool:
-        key = self._keys[future]
-        holders = [address for address, keys in self._client.processing().items() if key in keys]
+    def drop(self, futures: Sequence[Future[Any]]) -> Collection[Future[Any]]:
+        # all looked up before any is taken away: what it held goes to a worker that is well
+        held = {key: address for address, keys in self._client.processing().items() for key in keys}
+        dropped = [future for future in futures if self._keys[future] in held]
+        holders = {held[self._keys[future]] for future in dropped}
 
         async def remove(dask_scheduler: Any = None) -> None:  # not by name: the scheduler may lack this package
             for address in holders:
                 await dask_scheduler.remove_worker(address=address, stimulus_id="no-answer")
 
         self._client.run_on_scheduler(remove)
-        return bool(holders)
+        return dropped
 
     def close(self) -> None:
         """Take back what has not begun; what has goes on where it is, and its block is kept."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 import traceback
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Future, wait
 from dataclasses import dataclass, field
 from itertools import islice
@@ -66,10 +66,9 @@ def compute(
             tell(outcome)
         # before it begins, a block waits for those that were given out with it
         late = [f for f, flight in running.items() if time.monotonic() - flight.since > AHEAD * limit]
-        for future in late:
-            if (failed := _without_answer(future, running, pool, store, limit)) is not None:
-                tell(failed)
         if late:
+            for failed in _without_answer(late, running, pool, store, limit):
+                tell(failed)
             _begin_anew(running)
 
 
@@ -80,21 +79,21 @@ def _begin_anew(running: dict[Future[Outcome], Flight]) -> None:
 
 
 def _without_answer(
-    future: Future[Outcome], running: dict[Future[Outcome], Flight], pool: Pool, store: BlockStore, limit: float
-) -> Outcome | None:
-    """Take the worker of a late block away; the outcome where it is late for the second time."""
-    flight = running[future]
-    dropped = pool.drop(future)
+    late: Sequence[Future[Outcome]], running: dict[Future[Outcome], Flight], pool: Pool, store: BlockStore, limit: float
+) -> Iterator[Outcome]:
+    """Take the workers of late blocks away; the outcomes of those that are late for the second time."""
+    dropped = pool.drop(late)
     if not dropped and pool.places() == 0:
         raise BrokenExecutor("no worker is left")
-    flight.losses += dropped
-    if flight.losses < 2:
-        return None
-    del running[future]
-    future.cancel()
-    sentence = f"lost with its workers twice, at last for want of an answer within {limit:.0f} s"
-    store.fail(flight.task.key, sentence + "\n")
-    return Outcome(flight.task.key, flight.task.grid.size, 0.0, 0.0, sentence)
+    for future in dropped:
+        flight = running[future]
+        flight.losses += 1
+        if flight.losses == 2:
+            del running[future]
+            future.cancel()
+            sentence = f"lost with its workers twice, at last for want of an answer within {limit:.0f} s"
+            store.fail(flight.task.key, sentence + "\n")
+            yield Outcome(flight.task.key, flight.task.grid.size, 0.0, 0.0, sentence)
 
 
 def _outcome(future: Future[Outcome], task: Task, store: BlockStore, pool: Pool) -> Outcome:

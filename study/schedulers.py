@@ -10,7 +10,7 @@ import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import contextmanager
 from multiprocessing.connection import wait
@@ -61,9 +61,9 @@ class Pool:
         """Whether a block came to nothing because workers died that held it, perhaps for other reasons."""
         return False
 
-    def drop(self, future: Future[Any]) -> bool:
-        """Take away the worker that holds a block, so that others get its blocks; False where that cannot be done."""
-        return False
+    def drop(self, futures: Sequence[Future[Any]]) -> Collection[Future[Any]]:
+        """Take away the workers that hold these blocks, so that others get them; the blocks that were held."""
+        return ()
 
     def unfit(self, error: Exception) -> Exception | None:
         """What a block's error says of the worker it came from; None: nothing."""

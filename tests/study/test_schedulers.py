@@ -9,7 +9,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
 from concurrent.futures import Future
 from dataclasses import replace
 from pathlib import Path
@@ -54,9 +54,32 @@ class Silent(Pool):
     def submit(self, work: Callable[[Any], Any], given: Any) -> Future[Any]:
         return Future() if given.key == self.key else super().submit(work, given)
 
-    def drop(self, future: Future[Any]) -> bool:
-        self.dropped += 1
-        return True
+    def drop(self, futures: Sequence[Future[Any]]) -> Sequence[Future[Any]]:
+        self.dropped += len(futures)
+        return futures
+
+
+class Crowded(Pool):
+    """One of two workers hangs with several blocks; all of them go to the other once it is taken away."""
+
+    def __init__(self, keys: Collection[str]) -> None:
+        super().__init__(SynchronousExecutor(), 2)
+        self.keys, self.drops = set(keys), 0
+        self.held: dict[Future[Any], tuple[Callable[[Any], Any], Any]] = {}
+
+    def submit(self, work: Callable[[Any], Any], given: Any) -> Future[Any]:
+        if given.key not in self.keys:
+            return super().submit(work, given)
+        future: Future[Any] = Future()
+        self.held[future] = work, given
+        return future
+
+    def drop(self, futures: Sequence[Future[Any]]) -> Sequence[Future[Any]]:
+        self.drops += 1
+        for future in futures:
+            work, given = self.held.pop(future)
+            future.set_result(work(given))
+        return futures
 
 
 class Deadly(Pool):
@@ -234,6 +257,18 @@ def test_a_worker_that_hangs_costs_only_its_blocks(tmp_path: Path, monkeypatch: 
         there = run(plan, results=tmp_path / "there", scheduler=hanging.address, progress=stop)
     assert begun and there.failed == 0 and there.computed == there.blocks > 2
     assert_identical(open_study(there.folder), open_study(here.folder))
+
+
+def test_what_a_hung_worker_held_does_not_take_the_next_one_along(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """All late blocks are looked up before a worker is taken away: afterwards one that is well holds them."""
+    monkeypatch.setattr("study.computing.LEAST_PATIENCE", 0.2)
+    monkeypatch.setattr("study.computing.PATIENCE", 0.0)
+    tasks, store = _tasks(tmp_path)
+    pool = Crowded([task.key for task in tasks[:2]])
+    compute(tasks, pool, store, 0.0, lambda outcome: None)
+    assert pool.drops == 1 and not store.failures() and len(store.finished()) == len(tasks)
 
 
 def test_a_block_without_an_answer_from_two_workers_has_failed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
