@@ -35,6 +35,7 @@ class Discrete(NamedTuple):
 
 @lru_cache(maxsize=4096)
 def discrete(corner_hz: float, order: int, kind: Kind, time_step: float) -> Discrete:
+    """The Butterworth filter for samples ``time_step`` (s) apart."""
     from scipy.signal import butter, cont2discrete, ss2tf, tf2ss
 
     numerator, denominator = butter(order, 2.0 * np.pi * corner_hz, btype=kind, analog=True, output="ba")
