@@ -86,7 +86,7 @@ def _try_others(found: Search, widely: bool) -> None:
     """Refits of the best with each effect exchanged, but where that was tried beside the others before.
 
     From where the others stand: fitted again without the effect they may move into another valley, as a clock does
-    without the filter whose lag it then takes for its own. Where what stands is incomplete, fitted again without it too.
+    without the filter whose lag it then takes for its own. Where what stands is incomplete, from that valley too.
     """
     if (best := found.best) is None:
         return
