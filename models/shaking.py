@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -60,6 +63,16 @@ class Shaking:
 
         time = self.time
         return CubicSpline(time, self.horizontal), None if self.vertical is None else CubicSpline(time, self.vertical)
+
+    @cached_property
+    def _kept(self) -> dict[Hashable, Any]:
+        return {}
+
+    def once(self, key: Hashable, make: Callable[[], T]) -> T:
+        """What ``make`` gives, made once for each ``key``: every run under this motion reads the same."""
+        if key not in self._kept:
+            self._kept[key] = make()
+        return cast(T, self._kept[key])
 
     def scaled(self, factor: float) -> Shaking:
         """The same motion with both components times ``factor``."""

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
+
+# tests run beside each other: more threads a process cost more than they give; read when numpy is imported
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 # how long an example takes says something of the machine's load, nothing of the code
 settings.register_profile("any machine", deadline=None, suppress_health_check=[HealthCheck.too_slow])

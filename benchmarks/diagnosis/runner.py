@@ -13,7 +13,6 @@ from benchmarks.diagnosis import cases as blocks
 from benchmarks.diagnosis.files import write_case
 from benchmarks.diagnosis.suite import CaseDesign
 from diagnosis.prove.answers import Answering, answer, diagnosed, read_json
-from diagnosis.prove.chain import one_thread
 from diagnosis.prove.scores import Scored
 
 
@@ -42,7 +41,6 @@ def run_all(
     waiting = [w for w in designs if not (answers / f"{w.label}.json").is_file()]
     say(f"{len(designs) - len(waiting)} of {len(designs)} cases were answered before")
     context = multiprocessing.get_context("spawn")
-    one_thread()
     with ProcessPoolExecutor(jobs, mp_context=context) as pool:
         running: dict[Future[str], CaseDesign] = {}
         while waiting or running:

@@ -17,6 +17,7 @@ from diagnosis.fit.intervals import Estimate, correlation, estimates, profile_ri
 from diagnosis.fit.setup import as_recorded, measure
 from diagnosis.fit.solver import Fitted
 from diagnosis.fit.unknowns import instruments_of
+from diagnosis.one_thread import one_thread
 from diagnosis.progress import Progress, silent
 from diagnosis.search.refit import Explanation
 from grids.instruments.staged import moved_in_stages
@@ -73,6 +74,7 @@ class Calibration:
         return "\n".join(lines)
 
 
+@one_thread
 def calibrate(
     specimen: Specimen,
     recordings: Sequence[Recording],

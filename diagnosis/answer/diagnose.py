@@ -30,6 +30,7 @@ from diagnosis.fit.intervals import Estimate, settled
 from diagnosis.fit.setup import as_recorded, measure
 from diagnosis.forces.columns import Forces, forces
 from diagnosis.forces.constancy import Constancy, Tested, flags, tests
+from diagnosis.one_thread import one_thread
 from diagnosis.progress import Progress, Stages, silent
 from diagnosis.search import bootstrap as bootstrapping
 from diagnosis.search.beginnings import alone, beside
@@ -47,6 +48,7 @@ from grids.specimen import Specimen
 from models.base import FloatArray
 
 
+@one_thread
 def diagnose(
     specimen: Specimen,
     training: Sequence[Recording],

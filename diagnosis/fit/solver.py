@@ -14,7 +14,7 @@ import numpy as np
 from scipy.stats import qmc
 
 from diagnosis.data.measured import Measured
-from diagnosis.fit.misfit import NU, Misfit, Reduced, reduce
+from diagnosis.fit.misfit import NU, Linear, Misfit, Reduced, reduce
 from diagnosis.fit.prediction import Point
 from diagnosis.fit.unknowns import clip, values_of
 from models.base import FloatArray
@@ -23,7 +23,7 @@ DAMPINGS = (0.0, 0.1, 3.0)
 STATE_STEPS = (1.0, 0.3, 0.0)
 ITERATIONS = 14
 TOLERANCE = 0.02
-"""Gain in 2 log likelihood under which an iteration ends the fit."""
+"""Gain in 2 log likelihood, expected or reached in two iterations, under which the fit ends."""
 BADLY, SCATTERED = 1.5, 256
 """Squared misfit per sample of a stuck window (over that of most windows), and the states tried for it."""
 SCATTERINGS = 3
@@ -113,6 +113,8 @@ def fit(misfit: Misfit, u: FloatArray, states: FloatArray, iterations: int = ITE
         weights = misfit.weights(linear.residual)
         hessian, gradient = normal(misfit, reduced, weights, u)
         changes = [_step(misfit, hessian, gradient, u, damping * d) for d in DAMPINGS]
+        if _ahead(misfit, linear, reduced, (hessian, gradient), u, changes[0]) < TOLERANCE:
+            break
         steps = [clip(misfit.unknowns, u + change[: u.size]) for change in changes]
         levels = [misfit.level + change[u.size :] for change in changes]
         points, moved = [], []
@@ -155,6 +157,18 @@ def normal(misfit: Misfit, reduced: Reduced, weights: FloatArray, u: FloatArray)
     hessian, gradient = weighted.T @ j, reduced.residual.ravel() @ weighted
     precision, slope = misfit.prior_normal(u)
     return hessian + precision, gradient + slope
+
+
+def _ahead(
+    misfit: Misfit, linear: Linear, reduced: Reduced, normals: tuple[FloatArray, FloatArray], u: FloatArray,
+    change: FloatArray,
+) -> float:  # fmt: skip
+    """What a step, and the best states, would gain if all were linear: where that is nothing the fit has ended."""
+    hessian, gradient = normals
+    inside = np.concatenate([clip(misfit.unknowns, u + change[: u.size]) - u, change[u.size :]])
+    along = np.einsum("wms,wm->ws", reduced.basis, linear.residual)
+    states = misfit.weights(linear.residual) @ np.sum(along**2, axis=1)
+    return float(states - inside @ (2.0 * gradient + hessian @ inside))
 
 
 def _step(misfit: Misfit, hessian: FloatArray, gradient: FloatArray, u: FloatArray, damping: float) -> FloatArray:

@@ -6,6 +6,7 @@ import numpy as np
 
 import models
 from diagnosis.fit.unknowns import of_specimen
+from diagnosis.one_thread import one_thread
 from diagnosis.outcomes.answer import OutcomeDiagnosis
 from diagnosis.outcomes.assembly import assemble
 from diagnosis.outcomes.bank import Drawn, Spread, filled
@@ -22,6 +23,7 @@ FEWEST = 10
 """Runs, and of those that overturned and stood at least two, below which nothing is diagnosed."""
 
 
+@one_thread
 def diagnose_outcomes(
     specimen: Specimen, outcomes: Outcomes, *, seed: int = 0, progress: Progress = silent
 ) -> OutcomeDiagnosis:

@@ -7,7 +7,6 @@ answers.json beside them, ``{"cases": {"case_NN": {"kind", "effects", "recording
 from __future__ import annotations
 
 import multiprocessing
-import os
 import time
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor, as_completed
@@ -23,12 +22,6 @@ from models.errors import InputError
 KEY = "answers.json"
 HALVES = ("all", "odd", "even")
 HASHES = "sha256.json"
-
-
-def one_thread() -> None:
-    """Called before processes begin: each may use one core."""
-    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"):
-        os.environ[name] = "1"
 
 
 def cases_in(folder: Path, half: str = "all", model: str | None = None) -> list[Path]:
@@ -76,7 +69,6 @@ def prove(
     waiting = [path for path in chosen if not (answers / f"{path.name}.json").is_file()]
     say(f"{len(chosen) - len(waiting)} of {len(chosen)} cases were answered before")
     end = time.monotonic() + 60.0 * minutes
-    one_thread()
     with ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn")) as pool:
         while waiting and time.monotonic() < end:
             batch, waiting = waiting[:jobs], waiting[jobs:]

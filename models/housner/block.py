@@ -176,11 +176,12 @@ def assemble(values: Values, vertical: bool, size: int | None = None) -> Block:
     I = I1 + m1 (h - h1)^2 + I2 + m2 (2 h1 + h2 - h)^2. A solid rectangle has
     I1 = m1 (width^2 + height^2)/12.
     """
-    given = {name: np.atleast_1d(np.asarray(value, float)) for name, value in values.items()}
+    given = {name: np.asarray(value, float) for name, value in values.items()}
     shape = np.broadcast_shapes(*(v.shape for v in given.values()), (size or 1,))
 
     def value(name: str, default: float) -> FloatArray:
-        array: FloatArray = np.broadcast_to(given.get(name, np.asarray(default)), shape).astype(float)
+        array = np.empty(shape)
+        array[:] = given.get(name, default)
         return array
 
     height = value("height", np.nan)

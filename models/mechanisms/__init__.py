@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from functools import cache
+from types import MappingProxyType
 from typing import Any, TypeVar
 
 from models.base import Mechanism, Values
@@ -72,9 +75,10 @@ parameters on other models."""
 Coefficients = TypeVar("Coefficients")
 
 
-def acting_on(model: str) -> dict[str, Mechanism]:
+@cache
+def acting_on(model: str) -> Mapping[str, Mechanism]:
     """The mechanisms that act on ``model``, by name."""
-    return {mechanism.name: mechanism for mechanism in MECHANISMS if model in mechanism.acts}
+    return MappingProxyType({mechanism.name: mechanism for mechanism in MECHANISMS if model in mechanism.acts})
 
 
 def applied(model: str, coefficients: Coefficients, values: Values) -> Coefficients:

@@ -191,6 +191,18 @@ def attend(
     return not theta == theta
 
 
+@inlined
+def keep(
+    given: Table, result: Table, w: Table, trace: Any, lane: int, slot: int, k: int, general: Any
+) -> None:  # fmt: skip
+    """Let the trace take the state of a lane as its sample ``k``, if it asks for so many."""
+    if k < trace.shape[1]:
+        trace[lane, k, 0] = w[r.TH, slot]
+        trace[lane, k, 1] = w[r.OM, slot]
+        if general is not None:
+            trace[lane, k, 2] = shift(given, result, w, lane, slot)
+
+
 @compiled
 def advance(
     record: Record, first: Counts, last: Counts, given: Table, tables: Tables, every: int, fall: bool,
@@ -209,6 +221,7 @@ def advance(
     w = np.zeros((r.N_WORK, r.W))
     at = np.zeros(r.W, np.int64)
     bound = np.zeros(r.W, np.int64)
+    due = np.full(r.W, -1)  # the step at which the trace takes the lane's next state
     of = np.full(r.W, -1)
     waiting, active, steps = 0, 0, 0
     for slot in range(r.W):
@@ -232,22 +245,14 @@ def advance(
                     if general is not None:
                         if given[lane, r.Q_FREQUENCY] < math.inf and result[lane, r.R_MODE] == r.UP:
                             relax(given, w, lane, slot, samples, at[slot], general, linear)
-                    bound[slot] = at[slot]
-                if at[slot] == bound[slot]:
-                    if every > 0 and (at[slot] - first[lane]) % every == 0:
-                        k = (at[slot] - first[lane]) // every
-                        if k < trace.shape[1]:
-                            trace[lane, k, 0] = w[r.TH, slot]
-                            trace[lane, k, 1] = w[r.OM, slot]
-                            if general is not None:
-                                trace[lane, k, 2] = shift(given, result, w, lane, slot)
+                    if every > 0:
+                        keep(given, result, w, trace, lane, slot, 0, general)
+                        due[slot] = at[slot] + every
                 if result[lane, r.R_MODE] == r.DOWN:
-                    came = at[slot]
                     at[slot] = next_onset(given, w, lane, slot, samples, at[slot], last[lane], chunk, linear)
-                    if every > 0 and w[r.U, slot] != 0.0:
-                        for k in range((came - first[lane] - 1) // every + 1, (at[slot] - first[lane]) // every + 1):
-                            if k < trace.shape[1]:
-                                trace[lane, k, 2] = w[r.U, slot]
+                    while every > 0 and due[slot] <= at[slot]:
+                        keep(given, result, w, trace, lane, slot, (due[slot] - first[lane]) // every, general)
+                        due[slot] += every
                 if at[slot] >= last[lane]:
                     finish(given, result, w, lane, slot, at[slot] * h)
                     lane = -1
@@ -256,8 +261,6 @@ def advance(
                 shaken = at[slot] < shaken_steps
                 watch(given, result, w, lane, slot, shaken)
                 bound[slot] = min(shaken_steps, last[lane]) if shaken else last[lane]
-                if every > 0:
-                    bound[slot] = min(bound[slot], at[slot] + every - (at[slot] - first[lane]) % every)
                 break
             of[slot] = lane
             if lane < 0:
@@ -315,5 +318,11 @@ def advance(
                             settle = True
                         elif result[lane, r.R_MODE] != r.UP or w[r.LIMIT, slot] < 0.0:
                             watch(given, result, w, lane, slot, i + 1 < shaken_steps)
+            if every > 0:
+                for slot in range(r.W):
+                    if at[slot] == due[slot] and of[slot] >= 0:
+                        k = (due[slot] - first[of[slot]]) // every
+                        keep(given, result, w, trace, of[slot], slot, k, general)
+                        due[slot] += every
             if settle:
                 break

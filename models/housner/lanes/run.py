@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from models.housner.declaration import REST_VELOCITY
 from models.housner.lanes import rows as r
 from models.housner.lanes.advance import advance
 from models.housner.lanes.table import KNOTS
+from models.lanes.arrays import Record
 from models.lanes.record import recorded
 from models.lanes.tables import empty, filled, groups, logged, put
 from models.pitch import pitch
@@ -109,8 +111,7 @@ def run(block: Block, request: Request, refinement: int = 1) -> Run:
     for (per_sample, corner), lanes in groups(substeps(block, shaking.time_step) * refinement, pitched):
         whole = lanes.size == block.size
         part, asked = (block, request) if whole else (block.take(lanes), request.take(lanes))
-        psi = pitch(shaking.horizontal, shaking.time_step, corner) if corner > 0.0 else (None, None)
-        record = recorded(shaking, per_sample, request.tail, psi)
+        record = shaking.once((__name__, per_sample, request.tail, corner), partial(_record, asked, per_sample, corner))
         first, last = asked.steps(per_sample, record.end)
         tables = found if whole else empty(asked, r.N_RESULT, 3)
         general = None if part.plain else 1 if np.any(part.tabulated) else True
@@ -122,6 +123,13 @@ def run(block: Block, request: Request, refinement: int = 1) -> Run:
         if not whole:
             put(found, lanes, tables)
     return Run(outputs(block, found.result), found.trace, logged(found, EVENTS), steps)
+
+
+def _record(request: Request, per_sample: int, corner: float) -> Record:
+    """The shaking as the kernel reads it, with the pitch of a table that follows it up to ``corner`` Hz."""
+    shaking = request.shaking
+    psi = pitch(shaking.horizontal, shaking.time_step, corner) if corner > 0.0 else (None, None)
+    return recorded(shaking, per_sample, request.tail, psi)
 
 
 def outputs(block: Block, result: NDArray[np.float64]) -> dict[str, NDArray[Any]]:
