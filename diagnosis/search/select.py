@@ -15,7 +15,7 @@ from diagnosis.search.beside import POOL_SHARE, THOROUGH, extended, seconds, sta
 from diagnosis.search.budget import FURTHER
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.exchange import exchanged
-from diagnosis.search.found import MISSING, Search, adequate, adjusted, survives
+from diagnosis.search.found import GAP, MISSING, Search, adequate, adjusted, survives
 from diagnosis.search.hidden import take_hidden
 from diagnosis.search.null import null_distribution
 from diagnosis.search.outside import outside
@@ -39,6 +39,9 @@ SHARE_OF_FIRST = 0.05
 """Of the strongest statistic: what a first mechanism must reach to be refitted."""
 TIE = 0.5
 """Gain within which two explanations are one for the data: the earlier in the catalogue is named."""
+COMMONER = {"delay": "filter.corner_hz"}
+"""By parameter, what is named in the place of an effect that recordings cannot tell from it: every logger has a
+low-pass filter, and far below its corner that does nothing but delay; channels late for another reason are rare."""
 NEAR, NEAR_ADEQUATE = 0.2, 0.6
 """Share of the leader's gain from which a single is refitted from the leader's optimum too."""
 FIRST_POOL = 3
@@ -207,7 +210,7 @@ def _more(found: Search, progress: Progress) -> None:
 
 
 def settle_ties(found: Search) -> None:
-    """Name the earlier in the catalogue of explanations that the data cannot tell apart at all."""
+    """Name the commoner of explanations that cannot be told apart, and the earlier in the catalogue of equal ones."""
     if found.best is None:
         return
     place = {c: k for k, c in enumerate(found.candidates)}
@@ -215,3 +218,13 @@ def settle_ties(found: Search) -> None:
     near = [e for e in same if adjusted(e) - adjusted(found.best) < TIE]
     found.tried.append(found.best)
     found.best = min(near, key=lambda e: (sum(place[c] for c in e.candidates), adjusted(e)))
+    for rare, common in COMMONER.items():
+        kept = set(found.best.names) - {rare}
+        instead = [
+            e for e in same
+            if kept < set(e.names) and common in {c.unknowns[0].name for c in e.candidates}
+            and adjusted(e) - adjusted(found.best) < GAP
+        ]  # fmt: skip
+        if rare in found.best.names and instead:
+            found.tried.append(found.best)
+            found.best = min(instead, key=adjusted)

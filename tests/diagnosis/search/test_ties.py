@@ -1,0 +1,74 @@
+"""Which of explanations that recordings cannot tell apart is named."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from diagnosis.search.select import settle_ties
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """A mechanism with one parameter."""
+
+    name: str
+    parameter: str
+    held: tuple[()] = ()
+    price: float = 0.0
+
+    @property
+    def unknowns(self) -> tuple[Any, ...]:
+        return (SimpleNamespace(name=f"{self.name}.{self.parameter}"),)
+
+
+class Explained:
+    """A fit of known loss."""
+
+    def __init__(self, loss: float, *candidates: Candidate) -> None:
+        self.loss, self.candidates = loss, candidates
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(c.name for c in self.candidates)
+
+
+GAIN, DELAY = Candidate("gain", "gain"), Candidate("delay", "delay")
+FILTER, HIGH = Candidate("filter", "corner_hz"), Candidate("filter", "high_pass_hz")
+
+
+def named(best: Explained, *tried: Explained) -> tuple[tuple[str, ...], Any]:
+    found: Any = SimpleNamespace(best=best, tried=list(tried), candidates=(GAIN, DELAY, FILTER, HIGH))
+    settle_ties(found)
+    return found.best.names, found
+
+
+@pytest.mark.parametrize(
+    ("loss", "expected"), [(100.2, ("filter",)), (108.0, ("filter",)), (112.0, ("delay",))], ids=str
+)
+def test_a_delay_that_a_low_pass_explains_as_well_is_a_low_pass(loss: float, expected: tuple[str, ...]) -> None:
+    names, found = named(Explained(100.0, DELAY), Explained(loss, FILTER))
+    assert names == expected
+    assert "delay" in {name for e in found.tried for name in e.names} or expected == ("delay",)
+
+
+def test_a_low_pass_is_never_taken_for_a_delay() -> None:
+    assert named(Explained(100.0, FILTER), Explained(100.1, DELAY))[0] == ("filter",)
+    assert named(Explained(100.0, FILTER), Explained(101.0, DELAY))[0] == ("filter",)
+
+
+def test_a_high_pass_does_not_stand_in_for_a_delay() -> None:
+    assert named(Explained(100.0, DELAY), Explained(101.0, HIGH))[0] == ("delay",)
+
+
+def test_what_stands_beside_the_delay_has_to_stay() -> None:
+    pair = Explained(100.0, DELAY, GAIN)
+    assert named(pair, Explained(103.0, FILTER, DELAY), Explained(104.0, FILTER))[0] == ("delay", "gain")
+    assert set(named(pair, Explained(103.0, GAIN, FILTER))[0]) == {"filter", "gain"}
+
+
+def test_equal_explanations_are_named_in_the_catalogue_s_order() -> None:
+    assert named(Explained(100.0, FILTER), Explained(100.3, GAIN))[0] == ("gain",)
