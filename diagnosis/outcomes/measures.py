@@ -8,27 +8,23 @@ import numpy as np
 from scipy.optimize import minimize
 from scipy.stats import norm
 
+import grids.motions.measures
 from diagnosis.outcomes.ladder import ODD
 from grids.motions import Motion
-from grids.motions.intensity import intensity_measures
+from grids.motions.measures import MEASURES
 from models.base import FloatArray
 
-UNITS = {"PGA": "m s-2", "PGV": "m s-1", "PGD": "m", "Arias intensity": "m s-1", "duration": "s", "PGV/PGA": "s"}
+SHOWN = tuple(measure for measure in MEASURES if measure.stretch is not None)
+"""All but pseudo-accelerations: a rocking body has no period."""
+UNITS = {measure.symbol: measure.unit for measure in SHOWN}
 THRESHOLDS = ("PGA", "PGV")
 SHARPEST = 0.02
 
 
 def measures_of(motions: Sequence[Motion]) -> dict[str, FloatArray]:
-    """By name (`UNITS`), arrays (runs,); PGV and PGD by `grids.motions.intensity`."""
-    found = [intensity_measures(motion) for motion in motions]
-    return {
-        "PGA": np.array([one.pga for one in found]),
-        "PGV": np.array([one.pgv for one in found]),
-        "PGD": np.array([one.pgd for one in found]),
-        "Arias intensity": np.array([one.arias for one in found]),
-        "duration": np.array([one.significant_duration for one in found]),
-        "PGV/PGA": np.array([one.pgv / one.pga for one in found]),
-    }
+    """By symbol (`UNITS`), arrays (runs,), by `grids.motions.measures`."""
+    found = [grids.motions.measures.measures_of(motion) for motion in motions]
+    return {measure.symbol: np.array([one[measure.name] for one in found]) for measure in SHOWN}
 
 
 def threshold(measure: FloatArray, outcomes: FloatArray) -> tuple[float, float]:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import models
 from diagnosis.fit.unknowns import library
 from diagnosis.outcomes.answer import OutcomeDiagnosis, Wrong
+from diagnosis.outcomes.measures import SHOWN
 from diagnosis.report import words
 from diagnosis.report.page import environment
 from diagnosis.report.svg import Picture
@@ -18,13 +19,7 @@ HEADLINES = {
     "not_in_library": "Something is missing that is not in the library",
     "nothing_missing": "Nothing is missing that the outcomes could show",
 }
-MEANINGS = {
-    "PGA": "largest acceleration of the table",
-    "PGV": "largest velocity of the table",
-    "PGD": "largest displacement of the table",
-    "PGV/PGA": "length of the strongest pulse",
-    "duration": "time between 5 and 95 % of the Arias intensity",
-}
+MEANINGS = {measure.symbol: measure.meaning for measure in SHOWN}
 
 
 def headline(answer: OutcomeDiagnosis) -> str:
