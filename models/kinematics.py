@@ -10,6 +10,9 @@ Rates are differences of samples: velocity (d_k+1 - d_k-1)/(2 dt), acceleration 
 is exactly the mean of the true acceleration over one sample on either side, weighted by a triangle, so an impact's jump
 of velocity dv is a reading of dv/dt and the sum over time keeps it. Both are in error by O(dt^2) between impacts. The
 first and last sample repeat their neighbours' (`Place.order`).
+
+What a joint carries follows from the bodies above it: by Newton's law the force on them is the sum of m_k times the
+absolute accelerations of their mass centres, and their weight. No law of contact is needed for it.
 """
 
 from __future__ import annotations
@@ -27,14 +30,15 @@ GRAVITY = 9.80665
 """m s-2, in the readings of accelerometers."""
 UNITS = {
     "displacement": "m", "velocity": "m s-1", "acceleration": "m s-2", "rotation": "rad",
-    "angular_velocity": "rad s-1", "uplift": "m", "compression": "m",
+    "angular_velocity": "rad s-1", "uplift": "m", "compression": "m", "force": "N",
 }  # fmt: skip
 DIRECTIONS = ("x", "z", "across", "along")
 REFERENCES = ("base", "body_below", "absolute")
 
 Poses = Mapping[str, FloatArray]
 """``underside_k_x``, ``underside_k_z``: U of body k (m); ``underside_k_height``: of its underside over the base at rest
-(m); ``rotation_k`` (rad): arrays (..., samples)."""
+(m); ``rotation_k`` (rad); ``mass_k`` (kg) and ``centre_k_x``, ``centre_k_z``: its mass centre from the middle of its
+underside (m): arrays (..., samples)."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +49,8 @@ class Place:
     ``across`` and ``along`` are the body's own x and z. ``relative_to`` base, absolute, or body_below (in the axes of
     that body, from the point of it that lay there at rest). An accelerometer that turns (across, along) feels gravity,
     less its reading at rest: across (a_x cos - (a_z + g) sin), along (a_x sin + (a_z + g) cos - g), sin, cos of theta.
-    Uplift is the opening of the joint under the body at x, compression its opposite.
+    Uplift is the opening of the joint under the body at x, compression its opposite. A force is what load cells under
+    the body exert on it, in direction x or z, less its reading at rest.
     """
 
     quantity: str
@@ -62,7 +67,12 @@ class Place:
     @property
     def order(self) -> int:
         """How many times the pose is differentiated."""
-        return {"velocity": 1, "angular_velocity": 1, "acceleration": 2}.get(self.quantity, 0)
+        return {"velocity": 1, "angular_velocity": 1, "acceleration": 2, "force": 2}.get(self.quantity, 0)
+
+    @property
+    def absolute(self) -> bool:
+        """Whether the base's own acceleration is read though nothing moves on it."""
+        return self.quantity == "force" or (self.quantity == "acceleration" and self.relative_to == "absolute")
 
     @property
     def meaning(self) -> str:
@@ -72,6 +82,8 @@ class Place:
             return f"{of}, clockwise positive"
         if self.quantity in ("uplift", "compression"):
             return f"{self.quantity} of the joint under body {self.body} at x = {self.x:g} m"
+        if self.quantity == "force":
+            return f"force of the joint under body {self.body} on it, {self.direction}, less that at rest"
         relative = "" if self.relative_to == "absolute" else f", relative to the {self.relative_to.replace('_', ' ')}"
         return f"{of} at ({self.x:g}, {self.z:g}) m, {self.direction}{relative}"
 
@@ -85,6 +97,8 @@ class Place:
         if self.quantity in ("uplift", "compression"):
             opening = displaced(poses, self.body, self.x, 0.0, "body_below")[1]
             return opening if self.quantity == "uplift" else -opening
+        if self.quantity == "force":
+            return carried(poses, self.body, time_step, ground)[self.direction == "z"]
         moved = displaced(poses, self.body, self.x, self.z, self.relative_to)
         if self.order:
             differ = first_difference if self.order == 1 else second_difference
@@ -102,6 +116,20 @@ class Place:
         return np.asarray(moved[0] * sine + moved[1] * cosine - rest)
 
 
+def carried(
+    poses: Poses, body: int, time_step: float, ground: tuple[FloatArray, FloatArray]
+) -> tuple[FloatArray, FloatArray]:
+    """Force (N) to the right and up by which the joint under a body acts on it, less that at rest."""
+    across, up = np.zeros_like(poses[f"rotation_{body}"]), np.zeros_like(poses[f"rotation_{body}"])
+    while f"mass_{body}" in poses:
+        moved = _displaced(poses, body, poses[f"centre_{body}_x"], poses[f"centre_{body}_z"])
+        mass = poses[f"mass_{body}"]
+        across += mass * (second_difference(moved[0], time_step) + ground[0])
+        up += mass * (second_difference(moved[1], time_step) + ground[1])
+        body += 1
+    return across, up
+
+
 def displaced(poses: Poses, body: int, x: float, z: float, relative_to: str) -> tuple[FloatArray, FloatArray]:
     """Displacement (m) of a point of a body against the base, or in the axes of the body below against that."""
     here = _displaced(poses, body, x, z)
@@ -115,7 +143,7 @@ def displaced(poses: Poses, body: int, x: float, z: float, relative_to: str) -> 
     return np.asarray(dx * cosine - dz * sine), np.asarray(dx * sine + dz * cosine)
 
 
-def _displaced(poses: Poses, body: int, x: float, z: float | FloatArray) -> tuple[FloatArray, FloatArray]:
+def _displaced(poses: Poses, body: int, x: float | FloatArray, z: float | FloatArray) -> tuple[FloatArray, FloatArray]:
     theta = poses[f"rotation_{body}"]
     sine, less = np.sin(theta), 2.0 * np.sin(0.5 * theta) ** 2  # 1 - cos, without cancellation
     across = poses[f"underside_{body}_x"] + z * sine - x * less

@@ -26,7 +26,8 @@ class Placing:
         """Poses ``(n, samples)`` of states as integrators return them (`models.kinematics.Poses`), without rotations.
 
         For body k = 1, 2 the displacement of the middle of its underside against the base, ``underside_k_x`` and
-        ``underside_k_z`` (m), counted from rest, and its height over the base at rest, ``underside_k_height`` (m).
+        ``underside_k_z`` (m), counted from rest, and its height over the base at rest, ``underside_k_height`` (m); its
+        ``mass_k`` (kg) and, from that middle, its mass centre ``centre_k_x``, ``centre_k_z`` (m).
         """
         return {}
 

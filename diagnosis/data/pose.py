@@ -2,8 +2,8 @@
 
 Displacements, uplifts and compressions of points are functions of the bodies' rotations, which the model gives at the
 specimen's own geometry, everything else at rest. Sample by sample the rotations are those of least squares over these
-channels, each over its noise (Gauss-Newton). They lead and start windows and are not compared: what is compared are the
-channels that were recorded.
+channels, each over its noise (Gauss-Newton from either side of upright). They lead and start windows and are not
+compared: what is compared are the channels that were recorded.
 """
 
 from __future__ import annotations
@@ -104,11 +104,15 @@ def _estimated(
             f"{recording.name}: {', '.join(usable)} do not tell {' and '.join(lacking)} on both sides; record the "
             "rotation, a horizontal displacement at a height, or the uplift of both corners."
         )
-    theta = np.zeros((recording.time.size, len(lacking)))
-    for _ in range(ROUNDS):
-        step = np.einsum("nkc,nc->nk", np.linalg.pinv(slopes(theta, known)), measured - read(theta, known))
-        theta = np.clip(theta + step, -FARTHEST, FARTHEST)
-        if np.max(np.abs(step)) < PROBE:
-            break
+    theta, least = np.zeros((recording.time.size, len(lacking))), np.full(recording.time.size, np.inf)
+    for side in sides:  # a body that turns the other way is another minimum
+        trial = np.broadcast_to(side, theta.shape)
+        for _ in range(ROUNDS):
+            step = np.einsum("nkc,nc->nk", np.linalg.pinv(slopes(trial, known)), measured - read(trial, known))
+            trial = np.clip(trial + step, -FARTHEST, FARTHEST)
+            if np.max(np.abs(step)) < PROBE:
+                break
+        off = np.sum((measured - read(trial, known)) ** 2, axis=1)
+        theta, least = np.where((off < least)[:, None], trial, theta), np.minimum(off, least)
     channels = {**recording.channels, **{name: np.ascontiguousarray(theta[:, k]) for k, name in enumerate(lacking)}}
     return cut_before_fall(replace(recording, channels=channels, estimated=frozenset(lacking)))

@@ -23,7 +23,7 @@ SMALL = 1e-9
 def added_by_channels(fitted: Fitted) -> dict[str, dict[str, float]]:
     """By channel and parameter: the interval's width without the channel over that with it; empty for one channel.
 
-    inf where nothing else tells the parameter.
+    inf where nothing else tells the parameter, 1 where no channel does.
     """
     m = fitted.measured
     if len(m.channels) < 2 or m.stretches is not None or not fitted.u.size:
@@ -33,10 +33,13 @@ def added_by_channels(fitted: Fitted) -> dict[str, dict[str, float]]:
     precision, _ = plain.prior_normal(fitted.u)
     names = [x.name for x in plain.unknowns]
     whole = _deviation(linear, precision, m.compared.shape, None)
-    return {
-        channel: dict(zip(names, (_deviation(linear, precision, m.compared.shape, c) / whole).tolist(), strict=True))
-        for c, channel in enumerate(m.channels)
-    }
+    found = {}
+    for c, channel in enumerate(m.channels):
+        without = np.ones(whole.size)
+        told = np.isfinite(whole)
+        without[told] = _deviation(linear, precision, m.compared.shape, c)[told] / whole[told]
+        found[channel] = dict(zip(names, without.tolist(), strict=True))
+    return found
 
 
 def _deviation(linear: Linear, precision: FloatArray, shape: tuple[int, ...], without: int | None) -> FloatArray:

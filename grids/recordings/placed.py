@@ -1,7 +1,7 @@
 """Channels that say what they measure and where: a quantity of a body at a position and in a direction.
 
 [channels.lvdt_left]              # in a specimen, in the TOML beside a CSV; attributes of a variable in netCDF
-quantity = "displacement"         # or velocity, acceleration, rotation, angular_velocity, uplift, compression
+quantity = "displacement"         # or velocity, acceleration, rotation, angular_velocity, uplift, compression, force
 body = 1                          # the lower body, or the only one; default
 position_x = "-200 mm"            # from the middle of the body's underside, turning with it; default 0
 position_z = 0
@@ -62,17 +62,17 @@ def read_place(name: str, table: Mapping[str, Any]) -> Place:
         given = check(PlaceTable, {key: table[key] for key in table})
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
-    if given.quantity == "force":
-        raise InputError(
-            f"{where}: quantity = 'force' is not predicted yet: the models give motions; leave the channel out."
-        )
     _among(given.quantity, UNITS, f"{where}: quantity")
     if given.body not in range(1, MOST + 1):
         raise InputError(f"{where}: body = {given.body}; it is 1 (the lower, or the only one) or 2 (the upper one).")
     if given.quantity in POINTLESS and (given.direction or given.relative_to):
         raise InputError(f"{where}: {given.quantity} has no direction and no relative_to; leave them out.")
+    if given.quantity == "force" and (given.relative_to or _position(given) != (0.0, 0.0)):
+        raise InputError(
+            f"{where}: a force is that of the whole joint under the body; leave position and relative_to out."
+        )
     direction = given.direction or "x"
-    _among(direction, DIRECTIONS, f"{where}: direction")
+    _among(direction, DIRECTIONS[:2] if given.quantity == "force" else DIRECTIONS, f"{where}: direction")
     relative = given.relative_to or ("absolute" if given.quantity == "acceleration" else "base")
     _among(relative, REFERENCES, f"{where}: relative_to")
     if relative == "absolute" and given.quantity in ("displacement", "velocity"):
@@ -92,6 +92,8 @@ def read_place(name: str, table: Mapping[str, Any]) -> Place:
 def attributes(place: Place) -> dict[str, str | int | float]:
     """What a netCDF variable, or a table, says of a channel."""
     found: dict[str, str | int | float] = {"quantity": place.quantity, "body": place.body}
+    if place.quantity == "force":
+        return found | {"direction": place.direction}
     if place.quantity not in ("rotation", "angular_velocity"):
         found["position_x"] = place.x
     if place.quantity not in POINTLESS:

@@ -129,6 +129,9 @@ class Housner(Model[Block]):
         rho = coefficients.corner_radius[:, None]
         half = 0.5 * (coefficients.right + coefficients.left)[:, None] - rho
 
+        def lane(values: FloatArray) -> FloatArray:
+            return np.asarray(values[:, None] + np.zeros_like(rotation))
+
         def across() -> FloatArray:
             rolled = rho * (rotation - np.sin(rotation))
             return np.asarray(rolled + np.sign(rotation) * half * (1.0 - np.cos(rotation)) + shift)
@@ -138,6 +141,9 @@ class Housner(Model[Block]):
                 "underside_1_x": across,
                 "underside_1_z": lambda: half * np.abs(np.sin(rotation)) + rho * (1.0 - np.cos(rotation)),
                 "underside_1_height": lambda: np.zeros_like(rotation),
+                "mass_1": lambda: lane(coefficients.mass),
+                "centre_1_x": lambda: lane(0.5 * (coefficients.left - coefficients.right)),
+                "centre_1_z": lambda: lane(coefficients.height),
             }
         )
 

@@ -18,6 +18,10 @@ def poses(stack: Stack, trace: FloatArray) -> Observed:
     base = np.where(q1 >= 0.0, 1.0, -1.0) * stack.base_pivot[:, None]
     top = np.where(q2 >= 0.0, 1.0, -1.0) * stack.top_pivot[:, None]
     height, both = stack.height_1[:, None], q1 + q2
+
+    def lane(values: FloatArray) -> FloatArray:
+        return np.asarray(values[:, None] + np.zeros_like(q1))
+
     return Observed(
         {
             "underside_1_x": lambda: base * (1.0 - np.cos(q1)),
@@ -31,5 +35,11 @@ def poses(stack: Stack, trace: FloatArray) -> Observed:
                 base * np.sin(q1) - top * np.sin(q1) + height * (np.cos(q1) - 1.0) + top * np.sin(both)
             ),
             "underside_2_height": lambda: height + np.zeros_like(q1),
+            "mass_1": lambda: lane(stack.mass_1),
+            "centre_1_x": lambda: lane(stack.shift_1),
+            "centre_1_z": lambda: lane(stack.centre_1),
+            "mass_2": lambda: lane(stack.mass_2),
+            "centre_2_x": lambda: lane(stack.shift_2),
+            "centre_2_z": lambda: lane(stack.centre_2),
         }
     )

@@ -55,7 +55,8 @@ def test_a_specimen_with_channels_is_written_and_read_back() -> None:
     ("changed", "said"),
     (
         ({"quantity": "displacment"}, "displacement"),
-        ({"quantity": "force"}, "force"),
+        ({"quantity": "force", "position_x": "10 mm"}, "whole joint"),
+        ({"quantity": "force", "position_x": 0, "position_z": 0, "relative_to": "", "direction": "along"}, "along"),
         ({"body": 3}, "body = 3"),
         ({"direction": "up"}, "direction"),
         ({"relative_to": "absolute"}, "subtract"),

@@ -111,3 +111,64 @@ def test_a_wall_on_layers_is_where_its_mass_centres_and_its_compression_say(name
     rest = model.derive({**STACK, **layers})["static_compression_base"]
     closed = Place("compression", 1).read(seen, 0.005, STILL)
     np.testing.assert_allclose(closed, seen["compression_base"] - rest, atol=1e-12)
+
+
+def load(history: models.base.History, step: float, body: int = 1) -> tuple[np.ndarray, np.ndarray]:
+    """Forces of the joint under a body, right and up, less those at rest; nothing moves the base."""
+    across, up = (Place("force", body, direction=d).read(history.channels, step, STILL) for d in ("x", "z"))
+    return across, up
+
+
+def test_the_largest_share_of_friction_by_load_cells_is_that_of_the_kernel() -> None:
+    step = 2e-4
+    ran = models.get("housner").simulate(
+        BLOCK, Shaking.silence(0.4, step), initial={"rotation_1": 0.1, "rotation_rate_1": -0.3}, duration=0.4
+    )
+    across, up = load(ran, step)
+    weight = BLOCK["mass"] * GRAVITY
+    landed = np.flatnonzero(np.diff(np.sign(ran.channels["rotation_1"])))
+    clear = np.ones(across.size, bool)
+    clear[[*landed, *(landed + 1), *(landed + 2), 0, -1]] = False  # an impact is an impulse
+    demand = np.max((np.abs(across) / (up + weight))[clear])
+    assert demand == pytest.approx(ran.outputs["friction_demand"], rel=2e-3)
+
+
+def test_load_cells_keep_momentum_through_impacts(rocked: models.base.History) -> None:
+    across, _ = load(rocked, 0.005)
+    x = Place("displacement", 1, 0.0, 0.9).read(rocked.channels, 0.005, STILL)
+    gained = BLOCK["mass"] * ((x[-1] - x[-2]) - (x[1] - x[0])) / 0.005
+    assert 0.005 * np.sum(across[1:-1]) == pytest.approx(gained, rel=1e-9)
+    assert sum(event.kind == "impact" for event in rocked.events) == 2
+
+
+def test_a_joint_carries_what_stands_on_it() -> None:
+    start = {"rotation_1": 0.05, "rotation_2": -0.08}
+    ran = models.get("stacked").simulate(STACK, Shaking.silence(0.6, 0.005), initial=start, duration=0.6)
+    lower, upper = load(ran, 0.005), load(ran, 0.005, 2)
+    for of_lower, of_upper, direction in zip(lower, upper, "xz", strict=True):
+        wall = Place("acceleration", 1, 0.0, 0.9, direction, "base").read(ran.channels, 0.005, STILL)
+        np.testing.assert_allclose(of_lower - of_upper, STACK["wall_mass"] * wall, atol=1e-6 * np.max(np.abs(of_lower)))
+
+
+def test_a_layer_s_law_gives_the_force_that_load_cells_read() -> None:
+    model, step = models.get("interface"), 2e-4
+    wall = {
+        **STACK, "wall_thickness": 0.4, "layer_thickness": 0.01, "layer_modulus": 3e6, "damping_ratio": 0.0,
+    }  # fmt: skip
+    rest = model.derive(wall)
+    deep, top = (float(rest[f"static_compression_{joint}"].item()) for joint in ("base", "top"))
+    start = {"displacement_z_1": -1.2 * deep, "displacement_z_2": -top}  # it bounces and stays in full contact
+    ran = model.simulate(wall, Shaking.silence(0.2, step), initial=start, duration=0.2)
+    across, up = load(ran, step)
+    weight = (STACK["wall_mass"] + STACK["top_mass"]) * GRAVITY
+    law = weight * (ran.channels["compression_base"] / deep - 1.0)
+    np.testing.assert_allclose(up[1:-1], law[1:-1], atol=2e-3 * np.max(np.abs(law)))
+    assert np.max(np.abs(across)) < 1e-9 * weight
+
+
+def test_load_cells_feel_the_base(rocked: models.base.History) -> None:
+    ground = np.full(rocked.time.size, 2.0), np.full(rocked.time.size, 0.5)
+    for k, direction in enumerate("xz"):
+        place = Place("force", 1, direction=direction)
+        still, shaken = (place.read(rocked.channels, 0.005, base) for base in (STILL, ground))
+        np.testing.assert_allclose(shaken - still, BLOCK["mass"] * (2.0, 0.5)[k], rtol=1e-9)
