@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 
+import numpy as np
+
 from diagnosis.errors.model import estimate
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.progress import Progress
@@ -39,9 +41,10 @@ SHARE_OF_FIRST = 0.05
 """Of the strongest statistic: what a first mechanism must reach to be refitted."""
 TIE = 0.5
 """Gain within which two explanations are one for the data: the earlier in the catalogue is named."""
-COMMONER = {"delay": "filter.corner_hz"}
-"""By parameter, what is named in the place of an effect that recordings cannot tell from it: every logger has a
-low-pass filter, and far below its corner that does nothing but delay; channels late for another reason are rare."""
+LOGGER = 25.0
+"""Hz: loggers filter above it, and every logger filters."""
+LAG = np.sqrt(2.0) / (2.0 * np.pi * LOGGER)
+"""s that a second-order low-pass at that corner delays slow motions by."""
 NEAR, NEAR_ADEQUATE = 0.2, 0.6
 """Share of the leader's gain from which a single is refitted from the leader's optimum too."""
 FIRST_POOL = 3
@@ -210,7 +213,10 @@ def _more(found: Search, progress: Progress) -> None:
 
 
 def settle_ties(found: Search) -> None:
-    """Name the commoner of explanations that cannot be told apart, and the earlier in the catalogue of equal ones."""
+    """Name the earlier in the catalogue of equal explanations, and a low-pass where it explains a short lag as well.
+
+    A delay of that length is rarer than a filter, and recordings rarely tell them apart.
+    """
     if found.best is None:
         return
     place = {c: k for k, c in enumerate(found.candidates)}
@@ -218,13 +224,13 @@ def settle_ties(found: Search) -> None:
     near = [e for e in same if adjusted(e) - adjusted(found.best) < TIE]
     found.tried.append(found.best)
     found.best = min(near, key=lambda e: (sum(place[c] for c in e.candidates), adjusted(e)))
-    for rare, common in COMMONER.items():
-        kept = set(found.best.names) - {rare}
-        instead = [
-            e for e in same
-            if kept < set(e.names) and common in {c.unknowns[0].name for c in e.candidates}
-            and adjusted(e) - adjusted(found.best) < GAP
-        ]  # fmt: skip
-        if rare in found.best.names and instead:
-            found.tried.append(found.best)
-            found.best = min(instead, key=adjusted)
+    if not 0.0 < found.best.fitted.values.get("delay.delay", 0.0) < LAG:
+        return
+    kept = set(found.best.names) - {"delay"}
+    filtered = [
+        e for e in same
+        if kept < set(e.names) and "filter.corner_hz" in e.fitted.values and adjusted(e) - adjusted(found.best) < GAP
+    ]  # fmt: skip
+    if filtered:
+        found.tried.append(found.best)
+        found.best = min(filtered, key=adjusted)

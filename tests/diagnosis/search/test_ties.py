@@ -26,10 +26,11 @@ class Candidate:
 
 
 class Explained:
-    """A fit of known loss."""
+    """A fit of known loss, its delay of ``lag`` s."""
 
-    def __init__(self, loss: float, *candidates: Candidate) -> None:
+    def __init__(self, loss: float, *candidates: Candidate, lag: float = 0.004) -> None:
         self.loss, self.candidates = loss, candidates
+        self.fitted = SimpleNamespace(values={c.unknowns[0].name: lag for c in candidates})
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -58,6 +59,11 @@ def test_a_delay_that_a_low_pass_explains_as_well_is_a_low_pass(loss: float, exp
 def test_a_low_pass_is_never_taken_for_a_delay() -> None:
     assert named(Explained(100.0, FILTER), Explained(100.1, DELAY))[0] == ("filter",)
     assert named(Explained(100.0, FILTER), Explained(101.0, DELAY))[0] == ("filter",)
+
+
+@pytest.mark.parametrize("lag", (-0.004, 0.012))
+def test_a_lag_that_no_logger_s_filter_has_is_a_delay(lag: float) -> None:
+    assert named(Explained(100.0, DELAY, lag=lag), Explained(101.0, FILTER))[0] == ("delay",)
 
 
 def test_a_high_pass_does_not_stand_in_for_a_delay() -> None:
