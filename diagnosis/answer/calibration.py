@@ -14,10 +14,10 @@ from diagnosis.data.measured import Measured
 from diagnosis.errors.model import Errors, calibrated
 from diagnosis.fit.channels import added_by_channels
 from diagnosis.fit.intervals import Estimate, correlation, estimates, profile_rise, settled
+from diagnosis.fit.one_thread import one_thread
 from diagnosis.fit.setup import as_recorded, measure
 from diagnosis.fit.solver import Fitted
 from diagnosis.fit.unknowns import instruments_of
-from diagnosis.one_thread import one_thread
 from diagnosis.progress import Progress, silent
 from diagnosis.search.refit import Explanation
 from grids.instruments.staged import moved_in_stages

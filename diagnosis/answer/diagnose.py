@@ -27,10 +27,10 @@ from diagnosis.errors.model import calibrated
 from diagnosis.errors.summary import summary
 from diagnosis.fit.channels import added_by_channels
 from diagnosis.fit.intervals import Estimate, settled
+from diagnosis.fit.one_thread import one_thread
 from diagnosis.fit.setup import as_recorded, measure
 from diagnosis.forces.columns import Forces, forces
 from diagnosis.forces.constancy import Constancy, Tested, flags, tests
-from diagnosis.one_thread import one_thread
 from diagnosis.progress import Progress, Stages, silent
 from diagnosis.search import bootstrap as bootstrapping
 from diagnosis.search.beginnings import alone, beside

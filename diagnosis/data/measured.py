@@ -5,19 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.data.averaging import averaged, stride
-from diagnosis.data.noise import base_noise, response_noise, smooth
+from diagnosis.data.gathered import gather, memories, smoothed, start_of
+from diagnosis.data.noise import base_noise, response_noise
 from diagnosis.data.windows import ABOVE_NOISE, Window, cut, over_noise
-from grids.recordings.base import REQUIRED, SHARE, FloatArray, Recording
+from grids.recordings.base import SHARE, FloatArray, Recording
 from grids.recordings.levels import stem
 from models import MODELS, get
 from models.errors import InputError
-from models.identification import NARROWEST, Identification, Largest, State, Stretches, WindowLengths
+from models.identification import NARROWEST, Identification, Stretches, WindowLengths
 from models.kinematics import Place
 from models.model import Model
 from models.shaking import Shaking
@@ -38,8 +38,6 @@ class AsItWas:
 
 FIRST = 4.0
 """Over the least errors that are assumed: what residuals are weighed with at first."""
-RATE_WIDTH = 0.04
-"""s on either side of a window's start over which its rate is estimated."""
 
 
 @dataclass(frozen=True)
@@ -258,9 +256,9 @@ def arrange(
             f"{', '.join(r.name for r in recordings)}: nothing can be compared; shake harder, or reduce the noise."
         )
     with_vertical = vertical or all("base_acceleration_z" in r.channels for r in recordings)
-    start = np.stack([_start(recordings, windows, state) for state in declared.free], axis=1)
+    start = np.stack([start_of(recordings, windows, state) for state in declared.free], axis=1)
     if reference_peak is None:
-        reference_peak = float(np.max(np.abs(_smoothed(recordings[0], leads[0], lengths))))
+        reference_peak = float(np.max(np.abs(smoothed(recordings[0], leads[0], lengths))))
     return Measured(
         model=model,
         recordings=tuple(recordings),
@@ -271,7 +269,7 @@ def arrange(
         **gather(recordings, windows, channels),
         states=start,
         state_size=np.maximum(np.std(start, axis=0), 1e-12),
-        memory=_memory(recordings, windows, declared, lengths),
+        memory=memories(recordings, windows, declared, lengths),
         reference_peak=reference_peak,
         lengths=lengths,
     )
@@ -291,12 +289,12 @@ def for_model(measured: Measured, model: Model, alike: Mapping[str, str], bonded
     found = replace(measured, model=model, alike=alike, bonded=bonded, lengths=lengths, as_it_was=None)
     states = {state.name: state for state in declared.free}
     used = [states[alike.get(name, name)] for name in found.free]
-    start = np.stack([_start(measured.recordings, measured.windows, state) for state in used], axis=1)
+    start = np.stack([start_of(measured.recordings, measured.windows, state) for state in used], axis=1)
     return replace(
         found,
         states=start,
         state_size=np.maximum(np.std(start, axis=0), 1e-12),
-        memory=_memory(measured.recordings, measured.windows, declared, lengths) if lengths else {},
+        memory=memories(measured.recordings, measured.windows, declared, lengths) if lengths else {},
     )
 
 
@@ -318,76 +316,3 @@ def placed_in(model: Model, recordings: Sequence[Recording]) -> tuple[str, ...]:
                 )
             model.check_place(name, place)
     return tuple(found)
-
-
-def gather(recordings: Sequence[Recording], windows: Sequence[Window], channels: Sequence[str]) -> dict[str, Any]:
-    """Values, mask, noise and base motion of the windows, padded to the longest one."""
-    longest = max(w.samples for w in windows)
-    shape = (len(windows), len(channels), longest)
-    values, mask = np.zeros(shape), np.zeros(shape, bool)
-    sigma, base = np.ones(shape[:2]), np.zeros((shape[0], longest))
-    noise = {(k, c): response_noise(r, c) for k, r in enumerate(recordings) for c in channels}
-    for w, window in enumerate(windows):
-        recording = recordings[window.recording]
-        part = slice(window.first, window.first + window.samples)
-        for c, name in enumerate(channels):
-            values[w, c, : window.samples] = recording.channels[name][part]
-            mask[w, c, : window.samples] = True
-            if name in recording.places and recording.places[name].order:  # a difference over both neighbours
-                mask[w, c, 0] = False
-                mask[w, c, window.samples - 1] &= window.first + window.samples < recording.time.size
-            sigma[w, c] = noise[window.recording, name]
-        last = min(window.first + longest, recording.time.size)
-        base[w, : last - window.first] = recording.channels[REQUIRED][window.first : last]
-    return {"values": values, "mask": mask, "sigma": sigma, "base": base}
-
-
-def _start(recordings: Sequence[Recording], windows: Sequence[Window], state: State) -> FloatArray:
-    """A state at the windows' starts, from a parabola through the samples around them.
-
-    A rate is the slope of its coordinate in recordings that do not hold the rate itself.
-    """
-    found = np.empty(len(windows))
-    for w, window in enumerate(windows):
-        recording = recordings[window.recording]
-        slope = state.rate and state.name not in recording.channels
-        signal = recording.channels[state.channel if slope or not state.rate else state.name]
-        step = recording.time_step
-        reach = max(3, round(RATE_WIDTH / step))
-        low, high = max(0, window.first - reach), min(signal.size, window.first + reach + 1)
-        fit = np.polynomial.polynomial.polyfit((np.arange(low, high) - window.first) * step, signal[low:high], 2)
-        found[w] = fit[1] if slope else fit[0]
-    return found
-
-
-def _smoothed(recording: Recording, channel: str, lengths: WindowLengths) -> FloatArray:
-    return smooth(recording.channels[channel], recording.time_step, lengths.smoothing)
-
-
-def _memory(
-    recordings: Sequence[Recording],
-    windows: Sequence[Window],
-    declared: Identification,
-    lengths: WindowLengths,
-) -> dict[str, FloatArray]:
-    """The declared memories before each window (W,), from the smoothed measurement."""
-    memory = {}
-    for one in declared.memories:
-        so_far = []
-        for recording in recordings:
-            signal = _smoothed(recording, one.channel, lengths)
-            level = 2.0 * response_noise(recording, one.channel)
-            so_far.append(_largest(signal) if isinstance(one, Largest) else _sign_changes(signal, level))
-        memory[one.name] = np.array([so_far[w.recording][w.first] for w in windows], float)
-    return memory
-
-
-def _largest(signal: FloatArray) -> FloatArray:
-    return np.maximum.accumulate(np.abs(signal))
-
-
-def _sign_changes(signal: FloatArray, level: float) -> FloatArray:
-    """Number of changes of sign so far (n_times,), of values beyond ``level``."""
-    side = np.where(signal > level, 1, np.where(signal < -level, -1, 0))
-    held = side[np.maximum.accumulate(np.where(side != 0, np.arange(side.size), 0))]
-    return np.cumsum(np.concatenate([[0], (held[1:] != held[:-1]) & (held[:-1] != 0)])).astype(np.float64)

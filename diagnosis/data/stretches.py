@@ -12,7 +12,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.data.measured import Measured, gather, identification_of
+from diagnosis.data.gathered import gather
+from diagnosis.data.measured import Measured, identification_of
 from diagnosis.data.noise import base_noise, response_noise
 from diagnosis.data.windows import Window
 from grids.recordings.base import SHARE, FloatArray, Recording

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 import models
+from diagnosis.fit.one_thread import one_thread
 from diagnosis.fit.unknowns import of_specimen
-from diagnosis.one_thread import one_thread
 from diagnosis.outcomes.answer import OutcomeDiagnosis
 from diagnosis.outcomes.assembly import assemble
 from diagnosis.outcomes.bank import Drawn, Spread, filled
