@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
 
 T = TypeVar("T")
+KEPT = 8
+"""Results that a motion keeps (`Shaking.once`)."""
 
 
 @dataclass(frozen=True)
@@ -69,9 +71,11 @@ class Shaking:
         return {}
 
     def once(self, key: Hashable, make: Callable[[], T]) -> T:
-        """What ``make`` gives, made once for each ``key``: every run under this motion reads the same."""
+        """What ``make`` gives, made once for each of the last `KEPT` keys: many runs under a motion read the same."""
         if key not in self._kept:
             self._kept[key] = make()
+            while len(self._kept) > KEPT:
+                del self._kept[next(iter(self._kept))]
         return cast(T, self._kept[key])
 
     def scaled(self, factor: float) -> Shaking:

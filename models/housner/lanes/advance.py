@@ -192,9 +192,7 @@ def attend(
 
 
 @inlined
-def keep(
-    given: Table, result: Table, w: Table, trace: Any, lane: int, slot: int, k: int, general: Any
-) -> None:  # fmt: skip
+def keep(given: Table, result: Table, w: Table, trace: Any, lane: int, slot: int, k: int, general: Any) -> None:
     """Let the trace take the state of a lane as its sample ``k``, if it asks for so many."""
     if k < trace.shape[1]:
         trace[lane, k, 0] = w[r.TH, slot]

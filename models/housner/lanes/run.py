@@ -25,6 +25,8 @@ EVENTS = ("onset", "impact", "rest", "overturned")
 LARGEST_PHASE = 0.0075
 """Largest p h of a step (rad); the error of the rule falls with its fourth power."""
 JOINT_PHASE = 0.2
+LONGEST_KEPT = 50_000
+"""Steps of a record, 2 MB, up to which it is kept for the next call."""
 MODAL_PHASE = 0.15
 """Largest phase (rad) of a bending wall's mode in a step, at its frequency while the wall rocks."""
 
@@ -111,7 +113,9 @@ def run(block: Block, request: Request, refinement: int = 1) -> Run:
     for (per_sample, corner), lanes in groups(substeps(block, shaking.time_step) * refinement, pitched):
         whole = lanes.size == block.size
         part, asked = (block, request) if whole else (block.take(lanes), request.take(lanes))
-        record = shaking.once((__name__, per_sample, request.tail, corner), partial(_record, asked, per_sample, corner))
+        make = partial(_record, asked, per_sample, corner)
+        short = per_sample * shaking.horizontal.size < LONGEST_KEPT
+        record = shaking.once((__name__, per_sample, request.tail, corner), make) if short else make()
         first, last = asked.steps(per_sample, record.end)
         tables = found if whole else empty(asked, r.N_RESULT, 3)
         general = None if part.plain else 1 if np.any(part.tabulated) else True
