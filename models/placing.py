@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
+
+import numpy as np
 
 from models.base import FloatArray
 from models.errors import InputError
@@ -45,3 +48,16 @@ class Placing:
                 f"channel {name} is on body {place.body} and model {self.name} {has}: leave the channel out, or use "
                 "another model."
             )
+
+
+def masses(like: FloatArray, *bodies: tuple[FloatArray, FloatArray, FloatArray]) -> dict[str, Callable[[], FloatArray]]:
+    """Mass (kg) and mass centre (m; x, z) of each body, arrays (n,), as poses in the shape of ``like`` (n, samples)."""
+
+    def lane(values: FloatArray) -> FloatArray:
+        return np.broadcast_to(values[:, None], like.shape)
+
+    names = ("mass_{}", "centre_{}_x", "centre_{}_z")
+    return {
+        name.format(k): partial(lane, values)
+        for k, body in enumerate(bodies, start=1) for name, values in zip(names, body, strict=True)
+    }  # fmt: skip

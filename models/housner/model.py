@@ -15,6 +15,7 @@ from models.housner.block import Block, assemble
 from models.housner.identification import IDENTIFICATION
 from models.model import Model
 from models.observed import Observed
+from models.placing import masses
 from models.runs import Request, Run
 
 
@@ -128,9 +129,7 @@ class Housner(Model[Block]):
         rotation, _, shift = np.moveaxis(samples, -1, 0)
         rho = coefficients.corner_radius[:, None]
         half = 0.5 * (coefficients.right + coefficients.left)[:, None] - rho
-
-        def lane(values: FloatArray) -> FloatArray:
-            return np.asarray(values[:, None] + np.zeros_like(rotation))
+        beside = 0.5 * (coefficients.left - coefficients.right)
 
         def across() -> FloatArray:
             rolled = rho * (rotation - np.sin(rotation))
@@ -141,9 +140,7 @@ class Housner(Model[Block]):
                 "underside_1_x": across,
                 "underside_1_z": lambda: half * np.abs(np.sin(rotation)) + rho * (1.0 - np.cos(rotation)),
                 "underside_1_height": lambda: np.zeros_like(rotation),
-                "mass_1": lambda: lane(coefficients.mass),
-                "centre_1_x": lambda: lane(0.5 * (coefficients.left - coefficients.right)),
-                "centre_1_z": lambda: lane(coefficients.height),
+                **masses(rotation, (coefficients.mass, beside, coefficients.height)),
             }
         )
 

@@ -10,6 +10,7 @@ from models.base import FloatArray
 from models.interface.layered import LayeredWall
 from models.interface.modes import static_state
 from models.observed import Observed
+from models.placing import masses
 
 
 def poses(wall: LayeredWall, state: FloatArray) -> Observed:
@@ -51,23 +52,13 @@ def poses(wall: LayeredWall, state: FloatArray) -> Observed:
             "underside_2_x": block_x,
             "underside_2_z": block_z,
             "underside_2_height": lambda: lane(wall.height_1 + wall.top_thickness_in_height) + rest(3) + 0.0 * t1,
-            **masses(wall, t1),
+            **of_bodies(wall, t1),
         }
     )
 
 
-def masses(wall: LayeredWall, like: FloatArray) -> dict[str, Callable[[], FloatArray]]:
+def of_bodies(wall: LayeredWall, like: FloatArray) -> dict[str, Callable[[], FloatArray]]:
     """Masses and mass centres of both bodies for `Model.poses`, in the shape of ``like`` (n, m)."""
-
-    def lane(values: FloatArray) -> FloatArray:
-        return np.asarray(values[:, None] + np.zeros_like(like))
-
-    beside = np.zeros(wall.size) if wall.effects is None else wall.effects.top_offset
-    return {
-        "mass_1": lambda: lane(wall.mass_1),
-        "centre_1_x": lambda: np.zeros_like(like),
-        "centre_1_z": lambda: lane(wall.centre_1),
-        "mass_2": lambda: lane(wall.mass_2),
-        "centre_2_x": lambda: lane(beside),
-        "centre_2_z": lambda: lane(wall.centre_2),
-    }
+    middle = np.zeros(wall.size)
+    beside = middle if wall.effects is None else wall.effects.top_offset
+    return masses(like, (wall.mass_1, middle, wall.centre_1), (wall.mass_2, beside, wall.centre_2))

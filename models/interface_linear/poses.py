@@ -7,7 +7,7 @@ import numpy as np
 from models.base import FloatArray
 from models.interface.layered import LayeredWall
 from models.interface.modes import static_state
-from models.interface.poses import masses
+from models.interface.poses import of_bodies
 from models.interface_linear.equation import lever
 from models.observed import Observed
 
@@ -28,6 +28,6 @@ def poses(wall: LayeredWall, state: FloatArray) -> Observed:
             "underside_2_x": lambda: level * t1,
             "underside_2_z": lambda: z1 + z2 - rest(2) - rest(3),
             "underside_2_height": lambda: level + rest(3) + 0.0 * t1,
-            **masses(wall, t1),
+            **of_bodies(wall, t1),
         }
     )

@@ -6,6 +6,7 @@ import numpy as np
 
 from models.base import FloatArray
 from models.observed import Observed
+from models.placing import masses
 from models.stacked.stack import Stack
 
 
@@ -18,9 +19,6 @@ def poses(stack: Stack, trace: FloatArray) -> Observed:
     base = np.where(q1 >= 0.0, 1.0, -1.0) * stack.base_pivot[:, None]
     top = np.where(q2 >= 0.0, 1.0, -1.0) * stack.top_pivot[:, None]
     height, both = stack.height_1[:, None], q1 + q2
-
-    def lane(values: FloatArray) -> FloatArray:
-        return np.asarray(values[:, None] + np.zeros_like(q1))
 
     return Observed(
         {
@@ -35,11 +33,6 @@ def poses(stack: Stack, trace: FloatArray) -> Observed:
                 base * np.sin(q1) - top * np.sin(q1) + height * (np.cos(q1) - 1.0) + top * np.sin(both)
             ),
             "underside_2_height": lambda: height + np.zeros_like(q1),
-            "mass_1": lambda: lane(stack.mass_1),
-            "centre_1_x": lambda: lane(stack.shift_1),
-            "centre_1_z": lambda: lane(stack.centre_1),
-            "mass_2": lambda: lane(stack.mass_2),
-            "centre_2_x": lambda: lane(stack.shift_2),
-            "centre_2_z": lambda: lane(stack.centre_2),
+            **masses(q1, (stack.mass_1, stack.shift_1, stack.centre_1), (stack.mass_2, stack.shift_2, stack.centre_2)),
         }
     )

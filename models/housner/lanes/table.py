@@ -47,22 +47,13 @@ def of_given(given: Table, first: int, at: int, lane: int, x: float) -> float:
 
 @inlined
 def _acting(w: Table, first: int, slot: int, theta: float, omega: float, a: float, side: float) -> float:
-    # both sides are read and one chosen, the hats of rotation shared: one pass of vector code
-    x, y, z = side * theta * w[first, slot], abs(omega * w[first + 1, slot]), abs(a * w[first + 2, slot])
-    x, y, z = min(max(x, 0.0), LAST), min(y, LAST), min(z, LAST)
-    rotation, rate, damping, base = 0.0, 0.0, 0.0, 0.0
-    for k in range(KNOTS):
-        below, above = first + k, first + KNOTS + k
-        hat = max(0.0, 1.0 - abs(x - k))
-        low, high = w[ROTATION + below, slot], w[ROTATION + above, slot]
-        rotation += hat * (high if side > 0.0 else low)
-        low, high = w[DAMPING + below, slot], w[DAMPING + above, slot]
-        damping += hat * (high if side > 0.0 else low)
-        low, high = w[RATE + below, slot], w[RATE + above, slot]
-        rate += max(0.0, 1.0 - abs(y - k)) * (high if omega > 0.0 else low)
-        low, high = w[BASE + below, slot], w[BASE + above, slot]
-        base += max(0.0, 1.0 - abs(z - k)) * (high if a > 0.0 else low)
-    return rotation + rate + damping * omega + base
+    x = theta * w[first, slot]
+    return (
+        of_work(w, first, ROTATION, slot, x, side)
+        + of_work(w, first, RATE, slot, omega * w[first + 1, slot], 1.0 if omega > 0.0 else -1.0)
+        + of_work(w, first, DAMPING, slot, x, side) * omega
+        + of_work(w, first, BASE, slot, a * w[first + 2, slot], 1.0 if a > 0.0 else -1.0)
+    )
 
 
 def table_acceleration(

@@ -9,6 +9,7 @@ from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.misfit import Misfit, reduce
 from diagnosis.fit.prediction import Predictor
 from diagnosis.fit.setup import base_fit, measure
+from diagnosis.fit.solver import TOLERANCE, fit
 from diagnosis.fit.starts import start_of
 from diagnosis.fit.unknowns import fixed_values, of_specimen
 from diagnosis.fit.whitening import (
@@ -108,3 +109,16 @@ def test_whitening_is_the_inverse_root_of_the_covariance(problem) -> None:
     averages = n // int(measured.strides[w])
     root = whitening(unit)[:, w, :averages].T
     np.testing.assert_allclose(root @ cover @ root.T, np.eye(averages), atol=1e-8)
+
+
+def test_a_fit_with_nothing_ahead_ends_at_its_first_linearisation(problem, monkeypatch: pytest.MonkeyPatch) -> None:
+    _measured, fitted = problem
+    settled = fit(fitted.misfit, fitted.u, fitted.states)
+    linearise, points = Misfit.linearise, []
+    monkeypatch.setattr(Misfit, "linearise", lambda *given: points.append(given) or linearise(*given))
+    again = fit(settled.misfit, settled.u, settled.states)
+    assert len(points) == 1
+    assert again.loss == pytest.approx(settled.loss, abs=1e-9)
+    off = fit(settled.misfit, settled.u + 0.5, settled.states)
+    assert len(points) >= 3  # from elsewhere it goes back
+    assert off.loss < settled.loss + 5.0 * TOLERANCE
