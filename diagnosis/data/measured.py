@@ -146,11 +146,11 @@ class Measured:
         following = self.alike if self.bonded else ()
         return tuple(state.name for state in self.identification.free if state.name not in following)
 
-    @property
+    @cached_property
     def recording_of(self) -> NDArray[np.int64]:
         return np.array([w.recording for w in self.windows], np.int64)
 
-    @property
+    @cached_property
     def first(self) -> NDArray[np.int64]:
         return np.array([w.first for w in self.windows], np.int64)
 
@@ -199,7 +199,15 @@ class Measured:
         """The base motion of a recording with the pulses that make its events as they were."""
         if self.as_it_was is None:
             return shaking
+        if shaking is self.shakings[recording]:
+            return self._disturbed[recording]
         return replace(shaking, horizontal=shaking.horizontal + self.as_it_was.pulses[recording])
+
+    @cached_property
+    def _disturbed(self) -> tuple[Shaking, ...]:
+        """The measured base motions so: kept, and with them what kernels read of them."""
+        pulses = self.as_it_was.pulses if self.as_it_was is not None else ()
+        return tuple(replace(s, horizontal=s.horizontal + p) for s, p in zip(self.shakings, pulses, strict=True))
 
     def times(self, window: int) -> FloatArray:
         """Times (N,) of a window's samples, in s."""

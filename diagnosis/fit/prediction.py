@@ -192,7 +192,8 @@ class Predictor:
         )
         held = Observed({c: partial(_held, ran, c, (count, n, samples), shaking, m.first[windows]) for c in ran})
         found = m.sensed(held, shaking.time_step, ground_along(ground, m.first[windows], samples))
-        base = np.pad(m.base[windows][:, :compared], ((0, 0), (0, samples - compared)))
+        base = np.zeros((n, samples))
+        base[:, :compared] = m.base[windows, :compared]
         start = np.asarray(time_step * m.first[windows, None], float)
         around = Surroundings(time_step, base, m.reference_peak, start)
         for alike in _alike([instruments[p] for p in members]):
@@ -224,6 +225,8 @@ class Predictor:
 
     def _ways(self, recording: Recording) -> list[tuple[int, frozenset[str]]]:
         """From which sample of a recording (of its base, where means are compared) on which stages do not act."""
+        if not self.stages:
+            return [(0, frozenset())]
         m = self.measured
         steps = {one.name: shaking.time_step for one, shaking in zip(m.recordings, m.shakings, strict=True)}
         step = steps.get(recording.name, recording.time_step)

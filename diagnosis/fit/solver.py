@@ -2,13 +2,15 @@
 
 Each iteration runs all windows for all differences in one batch, then for some dampings and state
 steps in another. Given the parameters the windows are independent, so every window keeps the state
-step that suits it best: one stuck window does not hold up the others. The level of the errors that
+step that suits it best: one stuck window does not hold up the others. Near the minimum the whole step
+is taken at once, with the differences about where it leads. The level of the errors that
 windows share moves with the parameters; it is linear and costs no runs.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from scipy.stats import qmc
@@ -27,6 +29,8 @@ TOLERANCE = 0.02
 BADLY, SCATTERED = 1.5, 256
 """Squared misfit per sample of a stuck window (over that of most windows), and the states tried for it."""
 SCATTERINGS = 3
+NEAR, GOOD = 0.1, 0.75
+"""Where all ahead is such a share of the loss the whole step alone is tried, and taken if it gains as much of it."""
 
 
 @dataclass(frozen=True)
@@ -99,54 +103,122 @@ def scatter(found: Fitted, seed: int) -> FloatArray | None:
     return np.where(better[:, None], trials[pick, np.arange(pick.size)], found.states)
 
 
+@dataclass(frozen=True)
+class _Place:
+    """Where a fit stands, and what is ahead if all were linear there."""
+
+    misfit: Misfit
+    u: FloatArray
+    states: FloatArray
+    linear: Linear
+    window: FloatArray
+    loss: float
+
+    @classmethod
+    def at(cls, misfit: Misfit, u: FloatArray, states: FloatArray) -> _Place:
+        linear = misfit.linearise(u, states)
+        window = misfit.losses(linear.residual)
+        return cls(misfit, u, states, linear, window, float(window.sum()) + misfit.prior(u))
+
+    @cached_property
+    def reduced(self) -> Reduced:
+        return reduce(self.linear)
+
+    @cached_property
+    def normals(self) -> tuple[FloatArray, FloatArray]:
+        return normal(self.misfit, self.reduced, self.misfit.weights(self.linear.residual), self.u)
+
+    @cached_property
+    def gain(self) -> float:
+        """What the whole step, and the best states, would gain: where that is nothing the fit has ended."""
+        hessian, gradient = self.normals
+        change = self.change(0.0)
+        inside = np.concatenate([self.moved(change) - self.u, change[self.u.size :]])
+        along = np.einsum("wms,wm->ws", self.reduced.basis, self.linear.residual)
+        states = self.misfit.weights(self.linear.residual) @ np.sum(along**2, axis=1)
+        return float(states - inside @ (2.0 * gradient + hessian @ inside))
+
+    def change(self, damping: float) -> FloatArray:
+        """Of the unknowns and the level of the shared errors, coordinates that push against a bound held."""
+        hessian, gradient = self.normals
+        return _step(self.misfit, hessian, gradient, self.u, damping)
+
+    def moved(self, change: FloatArray) -> FloatArray:
+        return clip(self.misfit.unknowns, self.u + change[: self.u.size])
+
+    def level(self, change: FloatArray) -> FloatArray:
+        return self.misfit.level + change[self.u.size :]
+
+    def shift(self, change: FloatArray) -> FloatArray:
+        """Of the states (W, S) that suits a change of the unknowns, within what the linear problem can tell."""
+        step = np.concatenate([self.moved(change) - self.u, change[self.u.size :]])
+        ahead = self.linear.residual + self.linear.by_unknown @ step
+        largest = np.maximum(np.abs(self.states), self.misfit.measured.state_size)
+        best = -np.einsum("wsm,wm->ws", self.reduced.solve_states, ahead)
+        return np.asarray(np.clip(best, -largest, largest))
+
+
 def fit(misfit: Misfit, u: FloatArray, states: FloatArray, iterations: int = ITERATIONS) -> Fitted:
     """The minimum of the loss next to (u, states)."""
     u = clip(misfit.unknowns, np.asarray(u, float))
-    window = misfit.losses(misfit.residuals([misfit.point(u, states)]))[0]
-    loss = float(window.sum()) + misfit.prior(u)
-    damping = 1.0
-    small = 0
-    shares = STATE_STEPS if states.shape[1] else STATE_STEPS[:1]
+    if not iterations:
+        window = misfit.losses(misfit.residuals([misfit.point(u, states)]))[0]
+        return Fitted(misfit, u, states, window, float(window.sum()) + misfit.prior(u))
+    place = _Place.at(misfit, u, states)
+    damping, small, bold = 1.0, 0, True
     for _ in range(iterations):
-        linear = misfit.linearise(u, states)
-        reduced = reduce(linear)
-        weights = misfit.weights(linear.residual)
-        hessian, gradient = normal(misfit, reduced, weights, u)
-        changes = [_step(misfit, hessian, gradient, u, damping * d) for d in DAMPINGS]
-        if _ahead(misfit, linear, reduced, (hessian, gradient), u, changes[0]) < TOLERANCE:
+        if place.gain < TOLERANCE:
             break
-        steps = [clip(misfit.unknowns, u + change[: u.size]) for change in changes]
-        levels = [misfit.level + change[u.size :] for change in changes]
-        points, moved = [], []
-        for candidate, change in zip(steps, changes, strict=True):
-            ahead = linear.residual + linear.by_unknown @ np.concatenate([candidate - u, change[u.size :]])
-            shift = -np.einsum("wsm,wm->ws", reduced.solve_states, ahead)
-            largest = np.maximum(np.abs(states), misfit.measured.state_size)
-            shift = np.clip(shift, -largest, largest)
-            moved.append([states + share * shift for share in shares])
-            points += [misfit.point(candidate, x) for x in moved[-1]]
-        residuals = misfit.residuals(points).reshape(len(steps), len(shares), *linear.residual.shape)
-        if misfit.level.size:
-            residuals += np.stack([linear.by_unknown[..., u.size :] @ c[u.size :] for c in changes])[:, None]
-        losses = misfit.losses(residuals)
-        pick = np.argmin(losses, axis=1)
-        each = np.take_along_axis(losses, pick[:, None, :], axis=1)[:, 0]
-        totals = each.sum(axis=1) + [misfit.at_level(z).prior(c) for c, z in zip(steps, levels, strict=True)]
-        best = int(np.argmin(totals))
-        gain = loss - float(totals[best])
-        if gain <= 0.0:
+        best, further = 0, _whole(place) if bold and place.gain < NEAR * place.loss else None
+        if further is None:
+            best, further = _search(place, damping)
+        bold = best == 0 and further is not None
+        if further is None:
             damping *= 10.0
             small += 1
             if small >= 2:
                 break
             continue
-        u, loss, window, misfit = steps[best], float(totals[best]), each[best], misfit.at_level(levels[best])
-        states = np.stack(moved[best])[pick[best], np.arange(states.shape[0])]
+        gain, place = place.loss - further.loss, further
         damping = max(damping * (0.3 if best == 0 else 1.0 if best == 1 else 3.0), 1e-6)
         small = small + 1 if gain < TOLERANCE else 0
         if small >= 2:
             break
-    return Fitted(misfit, u, states, window, loss)
+    return Fitted(place.misfit, place.u, place.states, place.window, place.loss)
+
+
+def _whole(place: _Place) -> _Place | None:
+    """The undamped step, if it gains what it should."""
+    change = place.change(0.0)
+    misfit, states = place.misfit.at_level(place.level(change)), place.states + place.shift(change)
+    further = _Place.at(misfit, place.moved(change), states)
+    return further if place.loss - further.loss > GOOD * place.gain else None
+
+
+def _search(place: _Place, damping: float) -> tuple[int, _Place | None]:
+    """The best of some dampings, with the best step of the states in each window; None where nothing is gained."""
+    misfit, states, residual = place.misfit, place.states, place.linear.residual
+    changes = [place.change(damping * d) for d in DAMPINGS]
+    shares = STATE_STEPS if states.shape[1] else STATE_STEPS[:1]
+    steps, moved = [place.moved(change) for change in changes], []
+    for change in changes:
+        shift = place.shift(change)
+        moved.append([states + share * shift for share in shares])
+    points = [misfit.point(u, x) for u, each in zip(steps, moved, strict=True) for x in each]
+    residuals = misfit.residuals(points).reshape(len(steps), len(shares), *residual.shape)
+    if misfit.level.size:
+        own = place.u.size
+        residuals += np.stack([place.linear.by_unknown[..., own:] @ change[own:] for change in changes])[:, None]
+    losses = misfit.losses(residuals)
+    pick = np.argmin(losses, axis=1)
+    window = np.take_along_axis(losses, pick[:, None, :], axis=1)[:, 0].sum(axis=1)
+    levels = [misfit.at_level(place.level(change)) for change in changes]
+    totals = window + [at.prior(u) for u, at in zip(steps, levels, strict=True)]
+    best = int(np.argmin(totals))
+    if totals[best] >= place.loss:
+        return best, None
+    chosen = np.stack(moved[best])[pick[best], np.arange(states.shape[0])]
+    return best, _Place.at(levels[best], steps[best], chosen)
 
 
 def normal(misfit: Misfit, reduced: Reduced, weights: FloatArray, u: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -157,18 +229,6 @@ def normal(misfit: Misfit, reduced: Reduced, weights: FloatArray, u: FloatArray)
     hessian, gradient = weighted.T @ j, reduced.residual.ravel() @ weighted
     precision, slope = misfit.prior_normal(u)
     return hessian + precision, gradient + slope
-
-
-def _ahead(
-    misfit: Misfit, linear: Linear, reduced: Reduced, normals: tuple[FloatArray, FloatArray], u: FloatArray,
-    change: FloatArray,
-) -> float:  # fmt: skip
-    """What a step, and the best states, would gain if all were linear: where that is nothing the fit has ended."""
-    hessian, gradient = normals
-    inside = np.concatenate([clip(misfit.unknowns, u + change[: u.size]) - u, change[u.size :]])
-    along = np.einsum("wms,wm->ws", reduced.basis, linear.residual)
-    states = misfit.weights(linear.residual) @ np.sum(along**2, axis=1)
-    return float(states - inside @ (2.0 * gradient + hessian @ inside))
 
 
 def _step(misfit: Misfit, hessian: FloatArray, gradient: FloatArray, u: FloatArray, damping: float) -> FloatArray:

@@ -21,6 +21,8 @@ def moved_in_stages(
 ) -> Shaking:  # fmt: skip
     """The motion that the base makes; ``how`` for one set of instruments. Raises InputError for a changing clock."""
     each = [how(shaking, instruments) for _, instruments in sets]
+    if len(each) == 1:
+        return each[0]
     if any(one.time_step != each[0].time_step for one in each):
         raise InputError("the clock of a recording cannot change within it; give 'clock' stages of whole recordings.")
     horizontal = each[0].horizontal.copy()

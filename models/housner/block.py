@@ -125,6 +125,8 @@ class Block:
 
     def clashes(self) -> list[str]:
         """Sentences about mechanisms that do not act together on some block."""
+        if self.plain:
+            return []
         slides, bounces = np.isfinite(self.friction), self.contact_restitution > 0.0
         bends = np.isfinite(self.first_frequency)
         found = []
@@ -152,20 +154,12 @@ class Block:
     @cached_property
     def plain(self) -> bool:
         """Whether no mechanism adds a couple, a rolling corner, pitch, sliding, flight or flexure."""
-        nulls = (
-            (self.corner_radius, 0.0),
-            (self.crushing_rate, 0.0),
-            (self.joint_angle, 0.0),
-            (self.stiffness, 0.0),
-            (self.viscous, 0.0),
-            (self.coulomb, 0.0),
-            (self.quadratic, 0.0),
-            (self.pitch_per_acceleration, 0.0),
-            (self.contact_restitution, 0.0),
-            (self.friction, np.inf),
-            (self.first_frequency, np.inf),
-        )
-        return all(bool(np.all(values == null)) for values, null in nulls) and not np.any(self.tabulated)
+        zero = (
+            self.corner_radius, self.crushing_rate, self.joint_angle, self.stiffness, self.viscous, self.coulomb,
+            self.quadratic, self.pitch_per_acceleration, self.contact_restitution,
+        )  # fmt: skip
+        rigid = np.isinf(np.stack((self.friction, self.first_frequency))).all()
+        return bool(rigid and not np.stack(zero).any() and not np.any(self.tabulated))
 
 
 def assemble(values: Values, vertical: bool, size: int | None = None) -> Block:

@@ -23,6 +23,9 @@ def filled(size: int, columns: int, values: Mapping[int, Any] | Iterable[tuple[i
 
 def groups(*keys: NDArray[Any]) -> Iterator[tuple[tuple[Any, ...], NDArray[np.intp]]]:
     """The lanes that share all ``keys``, arrays ``(n,)``: the values shared, and the lanes, in order."""
+    if keys[0].size and all(np.all(key == key[0]) for key in keys):
+        yield tuple(key[0].item() for key in keys), np.arange(keys[0].size)
+        return
     for shared in sorted(set(zip(*(key.tolist() for key in keys), strict=True))):
         yield shared, np.flatnonzero(np.all([key == value for key, value in zip(keys, shared, strict=True)], axis=0))
 
