@@ -281,8 +281,10 @@ def _held(
     """A channel in the shape (P, n, samples) with the last value held beyond the end of the recording."""
     channel = ran[name].reshape(shape)
     left = shaking.horizontal.size - 1 - first
-    if np.all(left >= channel.shape[2] - 1):
-        return channel
-    last = np.clip(left, 0, channel.shape[2] - 1)
-    index = np.minimum(np.arange(channel.shape[2])[None, :], last[:, None])
-    return np.take_along_axis(channel, np.broadcast_to(index, channel.shape), axis=2)
+    short = np.flatnonzero(left < channel.shape[2] - 1)
+    if short.size:
+        channel = channel.copy()
+    for w in short:
+        last = max(int(left[w]), 0)
+        channel[:, w, last:] = channel[:, w, last, None]
+    return channel

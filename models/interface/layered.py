@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
-from typing import Any
+from functools import cached_property
+from typing import Any, TypeVar, cast
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from models.rubber import LAWS
 from models.rubber.base import Numbers, RubberLaw
 from models.rubber.layer import Layer
 
+T = TypeVar("T")
 FREE = {
     "both": np.eye(4),
     "base": np.array([[1.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.0, 0.0]]),
@@ -97,6 +99,16 @@ class LayeredWall:
     def one(self, lane: int = 0) -> Any:
         """One wall with plain floats in its fields, for code that runs a wall at a time."""
         return self._map(lambda values: float(values[lane]))
+
+    def once(self, make: Callable[[LayeredWall], T]) -> T:
+        """What ``make`` finds for the wall, found once: it never changes."""
+        if make not in self._kept:
+            self._kept[make] = make(self)
+        return cast(T, self._kept[make])
+
+    @cached_property
+    def _kept(self) -> dict[Callable[[LayeredWall], Any], Any]:
+        return {}
 
     @property
     def coordinates(self) -> int:

@@ -98,9 +98,13 @@ class Modes:
             return np.sqrt(self.squares) / (2.0 * np.pi)
 
 
-def at_rest(wall: LayeredWall, rest: FloatArray | None = None) -> Modes:
-    """Undamped modes in full contact, gravity included, with l as at ``rest`` (the static state, if it is known)."""
-    rest = static_state(wall) if rest is None else rest
+def at_rest(wall: LayeredWall) -> Modes:
+    """Undamped modes in full contact, gravity included, with l as in the static state."""
+    return wall.once(_at_rest)
+
+
+def _at_rest(wall: LayeredWall) -> Modes:
+    rest = static_state(wall)
     return modes(wall, mass_matrix(wall, _lever(wall, rest)), _stiffness(wall, rest))
 
 

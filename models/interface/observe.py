@@ -32,16 +32,23 @@ def observe(wall: LayeredWall, state: FloatArray) -> Observed:
     def foot() -> FloatArray:
         return np.asarray(x1 + toe * np.sign(t1) * lane(wall.base_half_width) * (1.0 - np.cos(t1)))
 
+    def leaning() -> tuple[FloatArray, FloatArray]:
+        """sin of the lower and of the upper half."""
+        lower = np.sin(t1)
+        return lower, lower if tm is t1 else np.sin(tm)
+
     def wall_centre() -> FloatArray:
         # of both halves
-        return np.asarray(foot() + 0.75 * half * np.sin(t1) + (0.25 * half + 0.5 * zm) * np.sin(tm))
+        lower, upper = leaning()
+        return np.asarray(foot() + 0.75 * half * lower + (0.25 * half + 0.5 * zm) * upper)
 
     def block_centre() -> FloatArray:
         turn = t2 - tm
         along = x2 + toe * np.sign(turn) * lane(wall.top_half_width) * (1.0 - np.cos(turn))
-        upper = half + lane(wall.top_thickness_in_height) + zm + z2
-        joint = foot() + half * np.sin(t1) + along * np.cos(tm) + upper * np.sin(tm)
-        return np.asarray(joint + lane(wall.centre_2) * np.sin(t2) + beside * np.cos(t2))
+        above = half + lane(wall.top_thickness_in_height) + zm + z2
+        lower, upper = leaning()
+        centre = foot() + half * lower + along * np.cos(tm) + above * upper + lane(wall.centre_2) * np.sin(t2)
+        return np.asarray(centre + beside * np.cos(t2) if np.any(beside) else centre)
 
     def contact_1() -> FloatArray:
         if wall.joints == "top":

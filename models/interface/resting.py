@@ -25,6 +25,15 @@ CLOSE = 1e-9
 
 def upright(wall: LayeredWall) -> FloatArray:
     """q ``(n, 4)`` at rest of walls that nothing makes lean; nan where a law cannot carry the load, 0 if bonded."""
+    return wall.once(_upright)
+
+
+def at_rest(wall: LayeredWall) -> FloatArray:
+    """q ``(n, 8)`` (`models.interface.chain`) at rest under gravity, relaxed; nan where there is no such place."""
+    return wall.once(_at_rest)
+
+
+def _upright(wall: LayeredWall) -> FloatArray:
     state = np.zeros((wall.size, 4))
     for joint, column, mass, half, stiffness, thickness in (
         ("base", 2, wall.mass, wall.base_half_width, wall.base_stiffness, wall.base_thickness),
@@ -46,8 +55,7 @@ def leans(wall: LayeredWall) -> NDArray[np.bool_]:
     return np.asarray(found)
 
 
-def at_rest(wall: LayeredWall) -> FloatArray:
-    """q ``(n, 8)`` (`models.interface.chain`) at rest under gravity, relaxed; nan where there is no such place."""
+def _at_rest(wall: LayeredWall) -> FloatArray:
     found = np.concatenate([upright(wall), np.zeros((wall.size, SIZE - 4))], axis=1)
     lanes = np.flatnonzero(leans(wall) & ~np.any(np.isnan(found), axis=1))
     if lanes.size:

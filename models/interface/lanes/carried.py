@@ -40,7 +40,7 @@ def carry(
     rest = at_rest[:, :4]
     begun = {**initial, **{name: x[:, 0] for name, x in motion.items()}}
     given = given_table(wall, np.ones(wall.size), begun, rest)
-    steps = substeps(wall, modes.at_rest(wall, rest).squares, shaking.time_step)
+    steps = substeps(wall, modes.at_rest(wall).squares, shaking.time_step)
     given[:, r.Q_STEPS] = steps
     laws = given_laws(wall, at_rest, shaking.time_step / steps, initial)
     held = np.array([k for k, name in enumerate(STATES) if name in motion], np.int64)
@@ -49,7 +49,7 @@ def carry(
     others = np.zeros((wall.size, marks.size, N_ENDED))
     history = np.zeros((wall.size, marks.size, *(() if laws is None else laws.hidden.shape[1:])))
     for (_, corner), lanes in groups(steps, low_passes(wall)):
-        part = wall.take(lanes)
+        part = wall if lanes.size == wall.size else wall.take(lanes)
         moved, past, more_moved = (np.zeros((lanes.size, *whole.shape[1:])) for whole in (states, history, others))
         more = None if effects is None else given_effects(part, part.effects, _of(begun, lanes), at_rest[lanes])
         advance(

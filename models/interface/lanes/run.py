@@ -94,6 +94,8 @@ def _tables(wall: LayeredWall, request: Request, refinement: int) -> tuple[Table
     columns = 8 if wall.effects is None else 16
     found, steps = empty(request, r.N_RESULT, columns), 0
     for (corner,), lanes in groups(low_passes(wall)):
+        if lanes.size == wall.size:
+            return found, _advanced(wall, request, refinement, corner, found)
         part, asked = wall.take(lanes), request.take(lanes)
         tables = empty(asked, r.N_RESULT, columns)
         steps += _advanced(part, asked, refinement, corner, tables)
@@ -120,7 +122,7 @@ def _advanced(wall: LayeredWall, request: Request, refinement: int, low_pass: fl
     record = recorded(shaking, 1, request.tail, pitching(wall, shaking, low_pass))
     at_rest = resting.at_rest(wall)
     rest = at_rest[:, :4]
-    squares = modes.at_rest(wall, rest).squares
+    squares = modes.at_rest(wall).squares
     given = given_table(wall, request.scale, request.initial, rest)
     given[:, r.Q_PERIOD] = 2.0 * np.pi / np.sqrt(np.abs(squares[:, 0]))
     given[:, r.Q_STEPS] = substeps(wall, squares, shaking.time_step) * refinement
