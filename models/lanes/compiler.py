@@ -17,6 +17,7 @@ import numba
 from numba.extending import overload, register_jitable
 
 from models.lanes import elementary
+from models.lanes.pieces import PieceCompiler
 from models.lanes.sealed_cache import compile_once, seal_cache
 
 F = TypeVar("F", bound=Callable[..., object])
@@ -113,12 +114,14 @@ def compiled(function: F) -> F:
 
 def inlined(function: F) -> F:
     """Compile a piece that is always inlined into the kernel that calls it."""
-    return cast(F, numba.njit(**{**_SETTINGS, "cache": False}, forceinline=True)(function))
+    return cast(
+        F, numba.njit(**{**_SETTINGS, "cache": False}, forceinline=True, pipeline_class=PieceCompiler)(function)
+    )
 
 
 def called(function: F) -> F:
     """Compile a piece that is called on rare events."""
-    return cast(F, numba.njit(**{**_SETTINGS, "cache": False})(function))
+    return cast(F, numba.njit(**{**_SETTINGS, "cache": False}, pipeline_class=PieceCompiler)(function))
 
 
 def in_kernels(function: F, choose: Callable[..., object]) -> F:
