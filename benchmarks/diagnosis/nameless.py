@@ -64,10 +64,13 @@ def agreement(declared: Identification, kind: str, true: set[str], said: set[str
 
 
 def _truth(base: Fitted, effect: Mapping[str, Any], key: Mapping[str, Any]) -> tuple[str, set[str]]:
-    """Kind of action (force, error of the channels, of the base) and phase words of the hidden effect along the motion fitted at the hidden values."""
+    """Kind of action (force, error of the channels, of the base) and phase words of the hidden effect.
+
+    Along the motion fitted at the hidden values.
+    """
     predictor = Predictor(base.measured.undisturbed, base.misfit.predictor.options)
-    hidden = {f"{effect['name']}.{name}": _over(predictor.measured, name, value, key) for name, value in
-              effect["parameters"].items()}  # fmt: skip
+    given = effect["parameters"].items()
+    hidden = {f"{effect['name']}.{name}": _over(predictor.measured, name, value, key) for name, value in given}
     values = {**base.point.values, **key["true_parameters"], **hidden}
     misfit = replace(base.misfit, predictor=predictor, unknowns=(), fixed=values, smooth=None)
     fitted = fit(misfit, np.zeros(0), base.states)

@@ -12,11 +12,14 @@ turn into A_t = (A_z, -A_x) when differentiated by their angle, so Lagrange's eq
 q = (theta_1, r), are
 
     M11 = I1 + m1 A.A + I2 + m2 D.D      M12 = I2 + m2 D.C      M22 = I2 + m2 C.C
-    F1 = m2 X (theta_2'^2 - theta_1'^2) + G (m1 A_x + m2 D_x) - a (m1 A_z + m2 D_z) - c theta_1'
-    F2 = -m2 X theta_1'^2 + m2 (G C_x - a C_z),          X = B_z C_x - B_x C_z
+    F1 = m2 X (theta_2'^2 - theta_1'^2) + G (m1 A_x + m2 D_x) - a (m1 A_z + m2 D_z) - c theta_1' - K1 psi''
+    F2 = -m2 X theta_1'^2 + m2 (G C_x - a C_z) - K2 psi'',          X = B_z C_x - B_x C_z
 
 (Psycharis, Earthquake Engng Struct. Dyn. 19, 1990; Spanos, Roussis, Politis, Soil Dyn. Earthquake
 Engng 21, 2001, have them for each configuration.) A closed joint takes its row and column out.
+
+A base that pitches by psi pushes with a - G psi in the place of a and, as its frame turns, with the couples K psi''
+of both bodies upright, K1 = I1 + m1 h1^2 + I2 + m2 (2 h1 + h2)^2, K2 = I2 + m2 (2 h1 + h2) h2 (`models.pitch`).
 
 Linear formulation: M at theta_1 = theta_2 = 0, A_x = -u + h1 theta_1, A_z = h1 and so on in F, and no
 squares of velocities.
@@ -38,6 +41,8 @@ Real = Any
 """A float, or an array that broadcasts to the stack's lanes."""
 Rotations = tuple[Real, Real]
 """theta_1 and r, or their rates."""
+Ground = tuple[Real, Real, Real]
+"""a - G psi, G (m s-2) and psi'' (rad s-2)."""
 
 
 @dataclass(frozen=True)
@@ -106,10 +111,11 @@ def products(stack: Stack, after: Vectors, before: Vectors) -> tuple[Real, Real,
     )
 
 
-def motion(stack: Stack, s1: Real, s2: Real, q: Rotations, rate: Rotations, ground: Rotations, linear: bool) -> System:
-    """M q'' = F about the pivots ``s1``, ``s2`` (1 or -1); ``ground`` is (a, G) in m s-2."""
+def motion(stack: Stack, s1: Real, s2: Real, q: Rotations, rate: Rotations, ground: Ground, linear: bool) -> System:
+    """M q'' = F about the pivots ``s1``, ``s2`` (1 or -1)."""
     v = vectors(stack, s1, s2, q, linear)
-    a, gravity = ground
+    a, gravity, turning = ground
+    frame_1, frame_2 = stack.frame_inertia
     m1, m2 = stack.mass_1, stack.mass_2
     f1 = gravity * (m1 * v.ax + m2 * v.dx) - a * (m1 * v.az + m2 * v.dz)
     f2 = m2 * (gravity * v.cx - a * v.cz)
@@ -118,7 +124,8 @@ def motion(stack: Stack, s1: Real, s2: Real, q: Rotations, rate: Rotations, grou
         w1, w2 = rate[0] * rate[0], (rate[0] + rate[1]) * (rate[0] + rate[1])
         cross = m2 * (v.dz * v.cx - v.dx * v.cz)
         f1, f2 = f1 + cross * (w2 - w1), f2 - cross * w1
-    f1 = f1 - stack.viscous * stack.corner_inertia(s1) * rate[0]
+    f1 = f1 - stack.viscous * stack.corner_inertia(s1) * rate[0] - frame_1 * turning
+    f2 = f2 - frame_2 * turning
     m11, m12, _, m22 = products(stack, still, still)
     return System(m11, m12, m22, f1, f2)
 
@@ -139,15 +146,15 @@ def held(system: System, s1: int, s2: int) -> tuple[Real, Real]:
 
 
 def reactions(
-    stack: Stack, v: Vectors, rate: Rotations, second: Rotations, ground: Rotations
+    stack: Stack, v: Vectors, rate: Rotations, second: Rotations, ground: Ground
 ) -> tuple[Real, Real, Real, Real]:
     """H and N (N) at the base, then at the top joint: what the lower part does to the upper."""
-    a, gravity = ground
+    a, gravity, turning = ground
     bx, bz = v.dx - v.cx, v.dz - v.cz
     w1, w2 = rate[0] * rate[0], (rate[0] + rate[1]) * (rate[0] + rate[1])
     q1, q2 = second[0], second[0] + second[1]
-    top_h = stack.mass_2 * (a + q1 * bz + q2 * v.cz - w1 * bx - w2 * v.cx)
+    top_h = stack.mass_2 * (a + stack.height_2 * turning + q1 * bz + q2 * v.cz - w1 * bx - w2 * v.cx)
     top_n = stack.mass_2 * (gravity - q1 * bx - q2 * v.cx - w1 * bz - w2 * v.cz)
-    base_h = top_h + stack.mass_1 * (a + q1 * v.az - w1 * v.ax)
+    base_h = top_h + stack.mass_1 * (a + stack.centre_1 * turning + q1 * v.az - w1 * v.ax)
     base_n = top_n + stack.mass_1 * (gravity - q1 * v.ax - w1 * v.az)
     return base_h, base_n, top_h, top_n

@@ -26,6 +26,7 @@ class Stack:
     ``base_restitution``, ``top_restitution``: given ratio of the relative angular velocities at a
     joint (nan: by projection), times ``base_factor``, ``top_factor``; see `models.stacked.reference.impact`.
     ``viscous``: couple on block 1 over the inertia of both about the corner and over theta_1', s-1.
+    ``pitch_per_acceleration`` (rad s2 m-1), ``pitch_low_pass`` (Hz): of the base, see `models.pitch`.
     """
 
     mass_1: FloatArray
@@ -49,6 +50,8 @@ class Stack:
     base_factor: FloatArray
     top_factor: FloatArray
     viscous: FloatArray
+    pitch_per_acceleration: FloatArray
+    pitch_low_pass: FloatArray
 
     @property
     def size(self) -> int:
@@ -102,6 +105,17 @@ class Stack:
     def slenderness_2(self) -> FloatArray:
         """alpha in rad of block 2 on a base of its own."""
         return np.arctan2(self.half_width_2, self.centre_2)
+
+    @property
+    def height_2(self) -> FloatArray:
+        """Height in m of block 2's mass centre over the base."""
+        return self.height_1 + self.centre_2
+
+    @property
+    def frame_inertia(self) -> tuple[FloatArray, FloatArray]:
+        """Couples (kg m2) over -psi'' on theta_1 and on r: both bodies about the middle of the base, upright."""
+        whole = self.inertia_1 + self.mass_1 * self.centre_1**2 + self.inertia_2 + self.mass_2 * self.height_2**2
+        return whole, self.inertia_2 + self.mass_2 * self.height_2 * self.centre_2
 
     def corner_inertia(self, side: Any) -> FloatArray:
         """I_O in kg m2 of both as one body about the base pivot on ``side`` (1 or -1)."""
@@ -169,6 +183,8 @@ def assemble(values: Values, vertical: bool, size: int | None = None) -> Stack:
         base_factor=one,
         top_factor=one,
         viscous=zero,
+        pitch_per_acceleration=zero,
+        pitch_low_pass=np.full(shape, 10.0),
     )
 
 

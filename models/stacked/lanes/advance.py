@@ -21,7 +21,7 @@ from models.stacked.lanes.locate import next_onset
 
 
 @inlined
-def step_all(w: Table, h: float, linear: Any) -> int:
+def step_all(w: Table, h: float, linear: Any, pitched: Any) -> int:
     """One step of all W lanes without events; returns how many need attention."""
     flagged = 0
     for lane in range(r.W):
@@ -30,8 +30,15 @@ def step_all(w: Table, h: float, linear: Any) -> int:
         a1 = w[r.SCALE, lane] * w[r.RA, lane] + w[r.OFFSET, lane]
         g1 = w[r.GRAVITY, lane] + w[r.VSCALE, lane] * w[r.RV, lane]
         x1s, x2s = w[r.X1, lane], w[r.X2, lane]
-        p1, p2, u1, u2, work = rk4(w, lane, q1, q2, v1, v2, x1s, x2s, h, a0, a1, g0, g1, linear)
-        x1, x2, m1, m2, d1, d2 = contact(w, lane, p1, p2, u1, u2, a1, g1, linear)
+        pitch, turning1, pushed = None, None, a1
+        if pitched is not None:
+            psi0, turning0 = w[r.PSI0, lane], w[r.TURNING0, lane]
+            psi1, turning1 = w[r.PITCH, lane] * w[r.RP, lane], w[r.PITCH, lane] * w[r.RPP, lane]
+            pushed = a1 - g1 * psi1
+            w[r.PSI0, lane], w[r.TURNING0, lane] = psi1, turning1
+            pitch = psi0, psi1, turning0, turning1
+        p1, p2, u1, u2, work = rk4(w, lane, q1, q2, v1, v2, x1s, x2s, h, a0, a1, g0, g1, pitch, linear)
+        x1, x2, m1, m2, d1, d2 = contact(w, lane, p1, p2, u1, u2, pushed, g1, turning1, linear)
         w[r.Q1S, lane], w[r.Q2S, lane] = q1, q2
         w[r.V1S, lane], w[r.V2S, lane] = v1, v2
         w[r.X1S, lane], w[r.X2S, lane] = x1s, x2s
@@ -66,10 +73,12 @@ def vacate(w: Table, slot: int) -> None:
 @compiled
 def advance(
     record: Record, first: Counts, last: Counts, given: Table, tables: Tables, every: int, fall: bool, linear: Any,
+    pitched: Any,
 ) -> int:  # fmt: skip
     """Run every lane from step ``first`` to ``last`` (n,); returns the number of lane-steps computed.
 
-    Channels of ``record``: a, a_z (m s-2), the flag of shaking. ``given`` (n, N_GIVEN): constants.
+    Channels of ``record``: a, a_z (m s-2), psi (rad), psi'' (rad s-2) per unit of pitch, the flag of shaking.
+    ``given`` (n, N_GIVEN): constants.
     ``tables.trace`` (n, m, 4) takes theta_1, r (rad) and their rates (rad s-1) every ``every`` steps (0: never).
     ``fall``: go on to pi/2 after overturning is certain (histories), instead of ending the lane.
     """
@@ -108,14 +117,14 @@ def advance(
                         trace[lane, k, 0], trace[lane, k, 1] = w[r.Q1, slot], w[r.Q2, slot]
                         trace[lane, k, 2], trace[lane, k, 3] = w[r.V1, slot], w[r.V2, slot]
                 if result[lane, r.R_CLOSED] != 0.0:
-                    at[slot] = next_onset(given, w, lane, slot, samples, at[slot], last[lane], chunk)
+                    at[slot] = next_onset(given, w, lane, slot, samples, at[slot], last[lane], chunk, pitched)
                     jumped = True
                 if at[slot] >= last[lane]:
                     finish(given, result, kept, w, lane, slot, at[slot] * h)
                     lane = -1
                     continue
                 shaken = at[slot] < shaken_steps
-                load(w, slot, samples, at[slot], linear)
+                load(w, slot, samples, at[slot], linear, pitched)
                 watch(given, w, lane, slot, shaken)
                 if jumped or at[slot] == shaken_steps:
                     # the ground may jump here: the closed joints must answer
@@ -144,8 +153,11 @@ def advance(
                 i = np.uint64(at[slot] + 1)
                 w[r.RA, slot] = samples[0, i]
                 w[r.RV, slot] = samples[1, i]
+                if pitched is not None:
+                    w[r.RP, slot] = samples[2, i]
+                    w[r.RPP, slot] = samples[3, i]
                 at[slot] += 1
-            flagged = step_all(w, h, linear)
+            flagged = step_all(w, h, linear, pitched)
             steps += active
             if flagged > 0:
                 for slot in range(r.W):
@@ -154,8 +166,9 @@ def advance(
                         i = at[slot] - 1
                         shaken = i + 1 < shaken_steps
                         over = attend(
-                            given, result, kept, w, system, lane, slot, samples, i, h, shaken, fall, log, count, linear
-                        )
+                            given, result, kept, w, system, lane, slot, samples, i, h, shaken, fall, log, count,
+                            linear, pitched,
+                        )  # fmt: skip
                         if not math.isnan(over):
                             finish(given, result, kept, w, lane, slot, over)
                             of[slot] = -1

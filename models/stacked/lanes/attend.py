@@ -13,7 +13,7 @@ from models.stacked.lanes import rows as r
 from models.stacked.lanes.bookkeeping import add_time, mark_configuration, raise_peaks, stand
 from models.stacked.lanes.equation import acceleration
 from models.stacked.lanes.events import one_step
-from models.stacked.lanes.locate import inputs
+from models.stacked.lanes.locate import base
 from models.stacked.lanes.overturning import overturned
 
 HALF_TURN = 0.5 * math.pi
@@ -33,6 +33,12 @@ def start(given: Table, result: Table, w: Table, lane: int, slot: int, time: flo
     w[r.OFFSET, slot] = given[lane, r.P_OFFSET]
     w[r.GRAVITY, slot] = given[lane, r.P_GRAVITY]
     w[r.VSCALE, slot] = given[lane, r.P_VSCALE]
+    m1, m2 = given[lane, r.P_M1], given[lane, r.P_M2]
+    high = given[lane, r.P_TALL] + given[lane, r.P_H2]
+    w[r.PITCH, slot] = given[lane, r.P_PITCH]
+    w[r.FRAME_1, slot], w[r.FRAME_2, slot] = given[lane, r.P_FRAME_1] / (m1 + m2), given[lane, r.P_FRAME_2] / (m1 + m2)
+    w[r.LEVER_1, slot] = (m1 * given[lane, r.P_H1] + m2 * high) / (m1 + m2)
+    w[r.LEVER_2, slot] = m2 * high / (m1 + m2)
     w[r.DEMAND_1, slot], w[r.DEMAND_2, slot] = 0.0, 0.0
     w[r.WORK, slot], w[r.WORK_STEP, slot] = 0.0, 0.0
     q1, q2, v1, v2 = given[lane, r.P_Q1], given[lane, r.P_Q2], given[lane, r.P_V1], given[lane, r.P_V2]
@@ -50,12 +56,15 @@ def start(given: Table, result: Table, w: Table, lane: int, slot: int, time: flo
 
 
 @inlined
-def load(w: Table, slot: int, record: Table, i: int, linear: Any) -> None:
+def load(w: Table, slot: int, record: Table, i: int, linear: Any, pitched: Any) -> None:
     """Inputs and accelerations at the start of step i."""
-    a, g = inputs(w, slot, record, i, 0.0)
+    a, g, psi, turning = base(w, slot, record, i, 0.0, pitched)
     w[r.A0, slot], w[r.G0, slot] = a, g
+    if pitched is not None:
+        w[r.PSI0, slot], w[r.TURNING0, slot] = psi, turning
+        a -= g * psi
     w[r.X1, slot], w[r.X2, slot] = acceleration(
-        w, slot, w[r.Q1, slot], w[r.Q2, slot], w[r.V1, slot], w[r.V2, slot], a, g, linear
+        w, slot, w[r.Q1, slot], w[r.Q2, slot], w[r.V1, slot], w[r.V2, slot], a, g, turning, linear
     )
 
 
@@ -91,7 +100,7 @@ def fraction(q_start: float, q_end: float) -> float:
 @called
 def attend(
     given: Table, result: Table, kept: Table, w: Table, system: Table, lane: int, slot: int, record: Table, i: int,
-    h: float, shaken: bool, fall: bool, log: Table, count: Counts, linear: Any,
+    h: float, shaken: bool, fall: bool, log: Table, count: Counts, linear: Any, pitched: Any,
 ) -> float:  # fmt: skip
     """What a flagged lane needs after step i; the time at which it ends, nan when it goes on."""
     started = (w[r.Q1S, slot], w[r.Q2S, slot], w[r.V1S, slot], w[r.V2S, slot])
@@ -99,7 +108,7 @@ def attend(
     eventful = not (w[r.MARGIN_1, slot] >= 0.0 and w[r.MARGIN_2, slot] >= 0.0)
     if eventful or w[r.LIMIT_1, slot] < 0.0:
         w[r.WORK, slot] -= w[r.WORK_STEP, slot]
-        one_step(given, result, w, system, lane, slot, record, i, h, log, count, linear)
+        one_step(given, result, w, system, lane, slot, record, i, h, log, count, linear, pitched)
     else:
         raise_peaks(result, lane, started, ended, h)
     q1, q2, v1, v2 = w[r.Q1, slot], w[r.Q2, slot], w[r.V1, slot], w[r.V2, slot]

@@ -18,7 +18,7 @@ from models.stacked.lanes.impact import imposed, land
 @called
 def close(
     given: Table, result: Table, w: Table, system: Table, lane: int, slot: int, joint: int, q1: float, q2: float,
-    v1: float, v2: float, a: float, g: float, time: float, log: Table, count: Counts, linear: Any,
+    v1: float, v2: float, a: float, g: float, turning: Any, time: float, log: Table, count: Counts, linear: Any,
 ) -> tuple[float, float]:  # fmt: skip
     """The impact of ``joint`` at ``time``; sets the configuration, returns the rates after it.
 
@@ -35,7 +35,7 @@ def close(
     after = landing
     rests = False
     if calm_1 and calm_2 and q1 == 0.0 and q2 == 0.0:
-        motion(system, given, lane, 0.0, 0.0, 0.0, 0.0, a, g, linear)
+        motion(system, given, lane, 0.0, 0.0, 0.0, 0.0, a, g, turning, linear)
         n1, n2 = choose(system, 0.0, 0.0, False)
         rests = n1 == 0.0 and n2 == 0.0
         if rests:
@@ -43,13 +43,13 @@ def close(
     if not rests and calm and up != 0.0:
         impulses(system, given, lane, c1, c2, q1, q2, v1, v2, linear)
         trial = imposed(system, joint, 0.0, s2 if joint == 0 else s1, energy)
-        motion(system, given, lane, q1, q2, trial[2], trial[3], a, g, linear)
+        motion(system, given, lane, q1, q2, trial[2], trial[3], a, g, turning, linear)
         n1, n2 = choose(system, trial[0], trial[1], False)
         if (n1 if joint == 0 else n2) == 0.0:
             after = trial
     n1, n2 = after[0], after[1]
     if n1 == 0.0 or n2 == 0.0:
-        motion(system, given, lane, q1, q2, after[2], after[3], a, g, linear)
+        motion(system, given, lane, q1, q2, after[2], after[3], a, g, turning, linear)
         n1, n2 = choose(system, n1, n2, False)
     k1 = n1 if n1 != 0.0 else 1.0
     k2 = n2 if n2 != 0.0 else 1.0

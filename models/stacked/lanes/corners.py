@@ -79,7 +79,7 @@ UPRIGHT = (0.0, 1.0, 0.0, 1.0)
 @called
 def motion(
     system: Table, given: Table, lane: int, q1: float, q2: float, v1: float, v2: float, a: float, g: float,
-    linear: Any,
+    turning: Any, linear: Any,
 ) -> None:  # fmt: skip
     """M and F for each pair of pivots."""
     sc = turns(q1, q2, linear)
@@ -92,6 +92,9 @@ def motion(
             v = vectors(given, lane, s1, s2, sc, lift)
             f1 = g * (m1 * v[0] + m2 * v[4]) - a * (m1 * v[1] + m2 * v[5]) - drag
             f2 = m2 * (g * v[2] - a * v[3])
+            if turning is not None:
+                f1 -= given[lane, r.P_FRAME_1] * turning
+                f2 -= given[lane, r.P_FRAME_2] * turning
             still = v
             if linear is None:
                 cross = m2 * (v[5] * v[2] - v[4] * v[3])

@@ -41,13 +41,16 @@ def turned(w: Table, lane: int, q1: float, q2: float, linear: Any) -> tuple[floa
 
 @inlined
 def forces(
-    w: Table, lane: int, v1: float, v2: float, a: float, g: float, place: tuple[float, ...], linear: Any
+    w: Table, lane: int, v1: float, v2: float, a: float, g: float, turning: Any, place: tuple[float, ...], linear: Any
 ) -> tuple[float, float, float, float, float]:
     """M11, M12, M22 and F1, F2, over the total mass."""
     kx, kz, bx, bz, cx, cz, _, _ = place
     j2 = w[r.J2, lane]
     f2 = g * cx - a * cz
     f1 = g * kx - a * kz + f2 - w[r.DRAG, lane] * v1
+    if turning is not None:
+        f1 -= w[r.FRAME_1, lane] * turning
+        f2 -= w[r.FRAME_2, lane] * turning
     if linear is not None:
         dot = w[r.BX, lane] * w[r.CX, lane] + w[r.BZ, lane] * w[r.CZ, lane]
     else:
@@ -70,16 +73,16 @@ def solve(w: Table, lane: int, m11: float, m12: float, m22: float, f1: float, f2
 
 @inlined
 def acceleration(
-    w: Table, lane: int, q1: float, q2: float, v1: float, v2: float, a: float, g: float, linear: Any
+    w: Table, lane: int, q1: float, q2: float, v1: float, v2: float, a: float, g: float, turning: Any, linear: Any
 ) -> tuple[float, float]:
     place = turned(w, lane, q1, q2, linear)
-    m11, m12, m22, f1, f2 = forces(w, lane, v1, v2, a, g, place, linear)
+    m11, m12, m22, f1, f2 = forces(w, lane, v1, v2, a, g, turning, place, linear)
     return solve(w, lane, m11, m12, m22, f1, f2)
 
 
 @inlined
 def contact(
-    w: Table, lane: int, q1: float, q2: float, v1: float, v2: float, a: float, g: float, linear: Any
+    w: Table, lane: int, q1: float, q2: float, v1: float, v2: float, a: float, g: float, turning: Any, linear: Any
 ) -> tuple[float, float, float, float, float, float]:
     """q'' (2), margins (2) and friction demands (2) of the joints in a state.
 
@@ -89,13 +92,16 @@ def contact(
     """
     place = turned(w, lane, q1, q2, linear)
     kx, kz, bx, bz, cx, cz, sine, cosine = place
-    m11, m12, m22, f1, f2 = forces(w, lane, v1, v2, a, g, place, linear)
+    m11, m12, m22, f1, f2 = forces(w, lane, v1, v2, a, g, turning, place, linear)
     x1, x2 = solve(w, lane, m11, m12, m22, f1, f2)
     share = w[r.SHARE, lane]
     w1, w2, t2 = v1 * v1, (v1 + v2) * (v1 + v2), x1 + x2
     top_h = share * (a + x1 * bz - w1 * bx) + t2 * cz - w2 * cx
     top_n = share * (g - x1 * bx - w1 * bz) - t2 * cx - w2 * cz
     base_h = a + x1 * kz - w1 * kx + t2 * cz - w2 * cx
+    if turning is not None:
+        top_h += w[r.LEVER_2, lane] * turning
+        base_h += w[r.LEVER_1, lane] * turning
     base_n = g - x1 * kx - w1 * kz - t2 * cx - w2 * cz
     # a closed joint leaves a moment about its right corner, and from it the one about its left corner
     r1 = f1 - m11 * x1 - m12 * x2
@@ -126,20 +132,27 @@ def contact(
 @inlined
 def rk4(
     w: Table, lane: int, q1: float, q2: float, v1: float, v2: float, x1: float, x2: float, step: float,
-    a0: float, a1: float, g0: float, g1: float, linear: Any,
+    a0: float, a1: float, g0: float, g1: float, pitch: Any, linear: Any,
 ) -> tuple[float, float, float, float, float]:  # fmt: skip
     """theta_1, r and their rates after ``step``, and the work of the couple over M.
 
-    ``x1``, ``x2`` is q'' at the start; a and G are linear over the step.
+    ``x1``, ``x2`` is q'' at the start; the base's own acceleration a, G and ``pitch`` (psi at both ends, psi'' at
+    both; None of a base that does not) are linear over the step.
     """
     half = 0.5 * step
     am, gm = 0.5 * (a0 + a1), 0.5 * (g0 + g1)
+    turning, turning1 = None, None
+    if pitch is not None:
+        psi0, psi1, turning0, turning1 = pitch
+        turning = 0.5 * (turning0 + turning1)
+        am -= gm * (0.5 * (psi0 + psi1))
+        a1 -= g1 * psi1
     p2, r2 = v1 + half * x1, v2 + half * x2
-    y1, y2 = acceleration(w, lane, q1 + half * v1, q2 + half * v2, p2, r2, am, gm, linear)
+    y1, y2 = acceleration(w, lane, q1 + half * v1, q2 + half * v2, p2, r2, am, gm, turning, linear)
     p3, r3 = v1 + half * y1, v2 + half * y2
-    z1, z2 = acceleration(w, lane, q1 + half * p2, q2 + half * r2, p3, r3, am, gm, linear)
+    z1, z2 = acceleration(w, lane, q1 + half * p2, q2 + half * r2, p3, r3, am, gm, turning, linear)
     p4, r4 = v1 + step * z1, v2 + step * z2
-    u1, u2 = acceleration(w, lane, q1 + step * p3, q2 + step * r3, p4, r4, a1, g1, linear)
+    u1, u2 = acceleration(w, lane, q1 + step * p3, q2 + step * r3, p4, r4, a1, g1, turning1, linear)
     sixth = step / 6.0
     work = sixth * w[r.DRAG, lane] * (v1 * v1 + 2.0 * (p2 * p2 + p3 * p3) + p4 * p4)
     return (

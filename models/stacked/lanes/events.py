@@ -17,7 +17,7 @@ from models.stacked.lanes.bookkeeping import configure, raise_peaks
 from models.stacked.lanes.choice import choose, held
 from models.stacked.lanes.closing import close
 from models.stacked.lanes.corners import line, motion
-from models.stacked.lanes.locate import closing, inputs, look, onset, opening, part
+from models.stacked.lanes.locate import base, closing, inputs, look, onset, opening, part
 
 AHEAD = 1e-6
 """Fraction of a step by which the choice at a threshold looks ahead."""
@@ -33,13 +33,13 @@ def demand(w: Table, slot: int, demands: tuple[float, float]) -> None:
 @inlined
 def settle(
     given: Table, result: Table, w: Table, system: Table, lane: int, slot: int, record: Table, i: int, f: float,
-    q1: float, q2: float, v1: float, v2: float, time: float, moving: bool, linear: Any,
+    q1: float, q2: float, v1: float, v2: float, time: float, moving: bool, linear: Any, pitched: Any,
 ) -> None:  # fmt: skip
     """What the closed joints do under the forces of fraction ``f``; sets the configuration."""
     s1, s2 = result[lane, r.R_SIDE_1], result[lane, r.R_SIDE_2]
     if s1 == 0.0 or s2 == 0.0:
-        a, g = inputs(w, slot, record, i, f)
-        motion(system, given, lane, q1, q2, v1, v2, a, g, linear)
+        a, g, turning = inputs(w, slot, record, i, f, pitched)
+        motion(system, given, lane, q1, q2, v1, v2, a, g, turning, linear)
         n1, n2 = choose(system, s1, s2, moving)
         configure(given, result, w, lane, slot, n1, n2, time)
 
@@ -47,11 +47,11 @@ def settle(
 @inlined
 def opened(
     given: Table, result: Table, w: Table, system: Table, lane: int, slot: int, joint: int, record: Table, i: int,
-    f: float, state: tuple[float, float, float, float], time: float, linear: Any,
+    f: float, state: tuple[float, float, float, float], time: float, linear: Any, pitched: Any,
 ) -> None:  # fmt: skip
     """A closed joint opens without impact, about the corner that its residual moment shows."""
-    a, g = inputs(w, slot, record, i, f)
-    motion(system, given, lane, state[0], state[1], state[2], state[3], a, g, linear)
+    a, g, turning = inputs(w, slot, record, i, f, pitched)
+    motion(system, given, lane, state[0], state[1], state[2], state[3], a, g, turning, linear)
     s1, s2 = result[lane, r.R_SIDE_1], result[lane, r.R_SIDE_2]
     x1, x2 = held(system, s1, s2)
     k = line(s1, s2)
@@ -66,7 +66,7 @@ def opened(
 @called
 def one_step(
     given: Table, result: Table, w: Table, system: Table, lane: int, slot: int, record: Table, i: int, h: float,
-    log: Table, count: Counts, linear: Any,
+    log: Table, count: Counts, linear: Any, pitched: Any,
 ) -> None:  # fmt: skip
     """Advance a lane over step i from its state at the start of the step, whatever happens in it."""
     q1, q2 = w[r.Q1S, slot], w[r.Q2S, slot]
@@ -76,7 +76,7 @@ def one_step(
     known = w[r.LIMIT_1, slot] > 0.0
     if not known and result[lane, r.R_CLOSED] == 0.0:
         # the ground has jumped: the closed joints answer before the step
-        settle(given, result, w, system, lane, slot, record, i, 0.0, q1, q2, v1, v2, i * h, False, linear)
+        settle(given, result, w, system, lane, slot, record, i, 0.0, q1, q2, v1, v2, i * h, False, linear, pitched)
     while f < 1.0:
         rounds += 1
         if rounds > MOST_EVENTS_PER_STEP:
@@ -85,13 +85,13 @@ def one_step(
             q1, q2, v1, v2 = 0.0, 0.0, 0.0, 0.0
             break
         if result[lane, r.R_CLOSED] != 0.0:
-            at = onset(given, w, lane, slot, record, i, f)
+            at = onset(given, w, lane, slot, record, i, f, pitched)
             if at >= 1.0:
                 break
             f = at
             settle(
                 given, result, w, system, lane, slot, record, i, min(1.0, f + AHEAD), 0.0, 0.0, 0.0, 0.0,
-                (i + f) * h, True, linear,
+                (i + f) * h, True, linear, pitched,
             )  # fmt: skip
             note(log, count, lane, (i + f) * h, r.LOG_ONSET, 1.0 if result[lane, r.R_SIDE_1] != 0.0 else 2.0)
         share = 1.0 - f
@@ -102,22 +102,22 @@ def one_step(
             x, margins = (w[r.X1, slot], w[r.X2, slot]), (w[r.MARGIN_1, slot], w[r.MARGIN_2, slot])
             demands, work = (0.0, 0.0), w[r.WORK_STEP, slot]
         else:
-            second, started, demands = look(w, slot, state, record, i, f, linear)
+            second, started, demands = look(w, slot, state, record, i, f, linear, pitched)
             demand(w, slot, demands)
-            end, x, margins, demands, work = part(w, slot, state, second, record, i, f, share, h, linear)
+            end, x, margins, demands, work = part(w, slot, state, second, record, i, f, share, h, linear, pitched)
         joint = -1
         for k in range(2):
             if margins[k] < 0.0:
                 joint = k
                 if (w[r.FREE_1, slot] if k == 0 else w[r.FREE_2, slot]) > 0.0:
                     share, end, x, margins, demands, work = closing(
-                        w, slot, k, state, second, end, x, record, i, f, share, h, linear
+                        w, slot, k, state, second, end, x, record, i, f, share, h, linear, pitched
                     )
                 else:
                     if known and rounds == 1:
-                        _, started, _ = look(w, slot, state, record, i, f, linear)
+                        _, started, _ = look(w, slot, state, record, i, f, linear, pitched)
                     share, end, x, margins, demands, work = opening(
-                        w, slot, k, state, second, started[k], margins[k], record, i, f, share, h, linear
+                        w, slot, k, state, second, started[k], margins[k], record, i, f, share, h, linear, pitched
                     )
         raise_peaks(result, lane, state, end, share * h)
         demand(w, slot, demands)
@@ -129,19 +129,21 @@ def one_step(
         time = (i + f) * h
         side = result[lane, r.R_SIDE_1] if joint == 0 else result[lane, r.R_SIDE_2]
         if side == 0.0:
-            opened(given, result, w, system, lane, slot, joint, record, i, f, end, time, linear)
+            opened(given, result, w, system, lane, slot, joint, record, i, f, end, time, linear, pitched)
             note(log, count, lane, time, r.LOG_CHANGE, joint + 1.0)
             continue
         if joint == 0:
             q1 = 0.0
         else:
             q2 = 0.0
-        a, g = inputs(w, slot, record, i, f)
+        a, g, turning = inputs(w, slot, record, i, f, pitched)
         v1, v2 = close(
-            given, result, w, system, lane, slot, joint, q1, q2, v1, v2, a, g, time, log, count, linear
+            given, result, w, system, lane, slot, joint, q1, q2, v1, v2, a, g, turning, time, log, count, linear
         )  # fmt: skip
     w[r.Q1, slot], w[r.Q2, slot], w[r.V1, slot], w[r.V2, slot] = q1, q2, v1, v2
-    w[r.A0, slot], w[r.G0, slot] = inputs(w, slot, record, i, 1.0)
+    w[r.A0, slot], w[r.G0, slot], psi, turning = base(w, slot, record, i, 1.0, pitched)
+    if pitched is not None:
+        w[r.PSI0, slot], w[r.TURNING0, slot] = psi, turning
     if joint >= 0:
-        x, _, _ = look(w, slot, (q1, q2, v1, v2), record, i, 1.0, linear)
+        x, _, _ = look(w, slot, (q1, q2, v1, v2), record, i, 1.0, linear, pitched)
     w[r.X1, slot], w[r.X2, slot] = x

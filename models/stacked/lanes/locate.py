@@ -19,78 +19,121 @@ LATE = 1e-6
 
 
 @inlined
-def inputs(w: Table, slot: int, record: Table, i: int, f: float) -> tuple[float, float]:
-    """a and G at the fraction f of step i."""
+def base(w: Table, slot: int, record: Table, i: int, f: float, pitched: Any) -> tuple[float, float, Any, Any]:
+    """The base's own acceleration, G, psi and psi'' at the fraction f of step i; None of a base that does not pitch."""
     # the record may jump to zero at its end: no part of its last sample acts in the step after it
-    live = record[2, i]
+    live = record[4, i]
     first, second = live * (1.0 - f), live * f
     a = first * record[0, i] + second * record[0, i + 1]
     v = first * record[1, i] + second * record[1, i + 1]
-    return w[r.SCALE, slot] * a + w[r.OFFSET, slot], w[r.GRAVITY, slot] + w[r.VSCALE, slot] * v
+    a, g = w[r.SCALE, slot] * a + w[r.OFFSET, slot], w[r.GRAVITY, slot] + w[r.VSCALE, slot] * v
+    if pitched is None:
+        return a, g, None, None
+    pitch = w[r.PITCH, slot]
+    psi, turning = first * record[2, i] + second * record[2, i + 1], first * record[3, i] + second * record[3, i + 1]
+    return a, g, pitch * psi, pitch * turning
+
+
+@inlined
+def inputs(w: Table, slot: int, record: Table, i: int, f: float, pitched: Any) -> tuple[float, float, Any]:
+    """a, G and psi'' at the fraction f of step i."""
+    a, g, psi, turning = base(w, slot, record, i, f, pitched)
+    if pitched is not None:
+        a -= g * psi
+    return a, g, turning
 
 
 @called
-def onset(given: Table, w: Table, lane: int, slot: int, record: Table, i: int, f: float) -> float:
+def onset(given: Table, w: Table, lane: int, slot: int, record: Table, i: int, f: float, pitched: Any) -> float:
     """First fraction >= f of step i at which the stack leaves rest, NONE if it stays.
 
-    It leaves where -a > G k to the right or a > G k to the left, k the least slenderness (tangent)
-    of both as one body and of the upper block on that side.
+    A joint opens where -p > G k to the right or p > G k to the left, p = a + (couple over -psi'') psi''/(M h) and k the
+    slenderness (tangent) on that side, of both as one body or of the upper block.
     """
-    a0, g0 = inputs(w, slot, record, i, f)
-    a1, g1 = inputs(w, slot, record, i, 1.0)
+    a0, g0, turning0 = inputs(w, slot, record, i, f, pitched)
+    a1, g1, turning1 = inputs(w, slot, record, i, 1.0, pitched)
     first = NONE
-    for side in (1.0, -1.0):
-        k = given[lane, r.P_RIGHT] if side > 0.0 else given[lane, r.P_LEFT]
-        m0 = -side * a0 - g0 * k
-        m1 = -side * a1 - g1 * k
-        if m0 > 0.0:
-            first = f
-        elif m1 > 0.0:
-            first = min(first, f + (1.0 - f) * (-m0) / (m1 - m0))
+    for joint in range(2):
+        p0, p1 = a0, a1
+        if pitched is not None:
+            lever = frame(given, lane, joint)
+            p0, p1 = a0 + lever * turning0, a1 + lever * turning1
+        for side in (1.0, -1.0):
+            k = given[lane, (r.P_RIGHT_1 if side > 0.0 else r.P_LEFT_1) + 2 * joint]
+            m0 = -side * p0 - g0 * k
+            m1 = -side * p1 - g1 * k
+            if m0 > 0.0:
+                first = f
+            elif m1 > 0.0:
+                first = min(first, f + (1.0 - f) * (-m0) / (m1 - m0))
     return first
 
 
+@inlined
+def frame(given: Table, lane: int, joint: int) -> float:
+    """Couple over -psi'' on what turns about a joint, over its mass and the height of its centre."""
+    m2, h2 = given[lane, r.P_M2], given[lane, r.P_H2]
+    if joint == 1:
+        return float(given[lane, r.P_FRAME_2] / (m2 * h2))
+    moment = given[lane, r.P_M1] * given[lane, r.P_H1] + m2 * (given[lane, r.P_TALL] + h2)
+    return float(given[lane, r.P_FRAME_1] / moment)
+
+
 @called
-def next_onset(given: Table, w: Table, lane: int, slot: int, record: Table, i: int, last: int, chunk: Table) -> int:
+def next_onset(
+    given: Table, w: Table, lane: int, slot: int, record: Table, i: int, last: int, chunk: Table, pitched: Any
+) -> int:
     """First step from i on in which the resting stack is lifted, ``last`` if there is none.
 
-    ``chunk`` (2, n) holds the extremes of the record over `CHUNK` steps: |a|, |a_z|.
+    ``chunk`` (4, n) holds the extremes of the record over `CHUNK` steps: |a|, |a_z|, |psi|, |psi''|.
     """
-    k = min(given[lane, r.P_RIGHT], given[lane, r.P_LEFT])
-    scale, lift = abs(w[r.SCALE, slot]), abs(w[r.VSCALE, slot])
+    k = min(
+        min(given[lane, r.P_RIGHT_1], given[lane, r.P_LEFT_1]), min(given[lane, r.P_RIGHT_2], given[lane, r.P_LEFT_2])
+    )
+    scale, lift, pitch = abs(w[r.SCALE, slot]), abs(w[r.VSCALE, slot]), abs(w[r.PITCH, slot])
+    lever = max(frame(given, lane, 0), frame(given, lane, 1))
     while i < last:
         if i % CHUNK == 0 and i + CHUNK <= last:
             c = i // CHUNK
+            up = lift * chunk[1, c]
             push = scale * chunk[0, c] + abs(w[r.OFFSET, slot])
-            if push < (w[r.GRAVITY, slot] - lift * chunk[1, c]) * k:
+            push += pitch * ((w[r.GRAVITY, slot] + up) * chunk[2, c] + lever * chunk[3, c])
+            if push < (w[r.GRAVITY, slot] - up) * k:
                 i += CHUNK
                 continue
-        if onset(given, w, lane, slot, record, i, 0.0) < NONE:
+        if onset(given, w, lane, slot, record, i, 0.0, pitched) < NONE:
             return i
         i += 1
     return last
 
 
 @called
-def look(w: Table, slot: int, state: State, record: Table, i: int, f: float, linear: Any) -> tuple[Pair, Pair, Pair]:
+def look(
+    w: Table, slot: int, state: State, record: Table, i: int, f: float, linear: Any, pitched: Any
+) -> tuple[Pair, Pair, Pair]:
     """`contact` of a state at fraction f of step i: q'', margins and friction demands of both joints."""
-    a, g = inputs(w, slot, record, i, f)
-    x1, x2, m1, m2, d1, d2 = contact(w, slot, state[0], state[1], state[2], state[3], a, g, linear)
+    a, g, turning = inputs(w, slot, record, i, f, pitched)
+    x1, x2, m1, m2, d1, d2 = contact(w, slot, state[0], state[1], state[2], state[3], a, g, turning, linear)
     return (x1, x2), (m1, m2), (d1, d2)
 
 
 @called
 def part(
     w: Table, slot: int, state: State, second: Pair, record: Table, i: int, f: float, share: float, h: float,
-    linear: Any,
+    linear: Any, pitched: Any,
 ) -> tuple[State, Pair, Pair, Pair, float]:  # fmt: skip
     """State, q'', margins, demands and work after ``share`` of step i from its fraction f."""
-    a0, g0 = inputs(w, slot, record, i, f)
-    a1, g1 = inputs(w, slot, record, i, f + share)
+    a0, g0, psi0, turning0 = base(w, slot, record, i, f, pitched)
+    a1, g1, psi1, turning1 = base(w, slot, record, i, f + share, pitched)
+    pitch = None
+    if pitched is not None:
+        pitch = psi0, psi1, turning0, turning1
     q1, q2, v1, v2, work = rk4(
-        w, slot, state[0], state[1], state[2], state[3], second[0], second[1], share * h, a0, a1, g0, g1, linear
+        w, slot, state[0], state[1], state[2], state[3], second[0], second[1], share * h, a0, a1, g0, g1, pitch, linear
     )
-    x1, x2, m1, m2, d1, d2 = contact(w, slot, q1, q2, v1, v2, a1, g1, linear)
+    if pitched is not None:
+        a1 -= g1 * psi1
+    x1, x2, m1, m2, d1, d2 = contact(w, slot, q1, q2, v1, v2, a1, g1, turning1, linear)
     return (q1, q2, v1, v2), (x1, x2), (m1, m2), (d1, d2), work
 
 
@@ -115,7 +158,7 @@ def hermite_root(q: float, v: float, x: float, q_end: float, v_end: float, x_end
 @called
 def closing(
     w: Table, slot: int, joint: int, state: State, second: Pair, end: State, second_end: Pair, record: Table, i: int,
-    f: float, rest: float, h: float, linear: Any,
+    f: float, rest: float, h: float, linear: Any, pitched: Any,
 ) -> tuple[float, State, Pair, Pair, Pair, float]:  # fmt: skip
     """Share of the step until ``joint`` closes; state, q'', margins, demands and work there.
 
@@ -130,7 +173,7 @@ def closing(
     if not low < share < high:
         share = 0.5 * rest
     while True:
-        found, x, margins, demands, work = part(w, slot, state, second, record, i, f, share, h, linear)
+        found, x, margins, demands, work = part(w, slot, state, second, record, i, f, share, h, linear, pitched)
         opening, v = margins[joint], side * found[joint + 2]
         if opening < 0.0:
             high = share
@@ -152,7 +195,7 @@ def closing(
 @called
 def opening(
     w: Table, slot: int, joint: int, state: State, second: Pair, first: float, last: float, record: Table, i: int,
-    f: float, rest: float, h: float, linear: Any,
+    f: float, rest: float, h: float, linear: Any, pitched: Any,
 ) -> tuple[float, State, Pair, Pair, Pair, float]:  # fmt: skip
     """Share of the step until the closed ``joint`` opens; state, q'', margins, demands and work there.
 
@@ -166,7 +209,7 @@ def opening(
     while True:
         trial = low + (high - low) * m_low / (m_low - m_high)
         share = trial if low < trial < high else 0.5 * (low + high)
-        found, x, margins, demands, work = part(w, slot, state, second, record, i, f, share, h, linear)
+        found, x, margins, demands, work = part(w, slot, state, second, record, i, f, share, h, linear, pitched)
         past = margins[joint] + late
         if abs(past) <= 0.1 * late or high - low <= 1e-14:
             return share, found, x, margins, demands, work

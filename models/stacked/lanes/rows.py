@@ -6,10 +6,11 @@ lanes; ``result`` starts with the columns of `models.stacked.account`.
 Masses and moments of a lane are over its total mass M.
 
 Arguments of all pieces of the kernel: ``lane``, a row of ``given`` and ``result``; ``slot``, the column of ``work`` in
-which it is under way; ``record`` (3, steps + 2), the channels a, a_z (m s-2), shaken; ``i``, a step of ``h`` s, and
-``f``, a fraction of it; ``log``, ``count`` as in `models.lanes.arrays.Tables`; ``linear``, None or True, for the
-compiled variant; ``system`` (4, 5), the two equations of motion about each pair of pivots. Angles theta_1 (q1), r (q2)
-in rad, rates in rad s-1, accelerations a, G in m s-2, times in s; s1, s2: sides of `models.stacked.configuration`.
+which it is under way; ``record`` (5, steps + 2), the channels a, a_z (m s-2), psi, psi'' (per unit of pitch), shaken;
+``i``, a step of ``h`` s, and ``f``, a fraction of it; ``log``, ``count`` as in `models.lanes.arrays.Tables`;
+``linear``, None or True, for the compiled variant; ``system`` (4, 5), the two equations of motion about each pair of
+pivots. Angles theta_1 (q1), r (q2) in rad, rates in rad s-1, accelerations a (less G psi), G in m s-2, ``turning``
+psi'' in rad s-2, times in s; s1, s2: sides of `models.stacked.configuration`.
 """
 
 from __future__ import annotations
@@ -41,15 +42,19 @@ DEMAND_1, DEMAND_2 = 36, 37  # largest |H|/N
 WORK, WORK_STEP = 38, 39  # work lost in the couple over M: in all, in this step
 MARGIN_1, MARGIN_2 = 40, 41  # negative: the joint has opened or closed in the step
 FLAG = 42
-N_WORK = 45
+PITCH, RP, RPP = 45, 46, 47  # rad s2 m-1 times scale; psi and psi'' of the record at the end of the step
+PSI0, TURNING0 = 48, 49  # psi and psi'' at the present time
+FRAME_1, FRAME_2 = 50, 51  # couples over -psi'', over M
+LEVER_1, LEVER_2 = 52, 53  # (m1 z1 + m2 z2)/M, m2 z2/M of the mass centres' heights
+N_WORK = 54
 
 # --- given: constants of a lane
 (
     P_SCALE, P_OFFSET, P_GRAVITY, P_VSCALE, P_M1, P_I1, P_H1, P_TALL, P_M2, P_I2, P_H2, P_B1, P_B2, P_D1, P_D2,
     P_GIVEN_1, P_GIVEN_2, P_FACTOR_1, P_FACTOR_2, P_VISCOUS, P_CALM_1, P_CALM_2, P_STAND_1, P_STAND_2,
-    P_RIGHT, P_LEFT, P_Q1, P_Q2, P_V1, P_V2,
-) = range(30)  # fmt: skip
-N_GIVEN = 30
+    P_RIGHT_1, P_LEFT_1, P_RIGHT_2, P_LEFT_2, P_FRAME_1, P_FRAME_2, P_PITCH, P_Q1, P_Q2, P_V1, P_V2,
+) = range(35)  # fmt: skip
+N_GIVEN = 35
 
 # --- result: the account, then what a lane must remember: its configuration, since when, whether closed
 R_SIDE_1, R_SIDE_2, R_SINCE, R_CLOSED = range(N_ACCOUNT, N_ACCOUNT + 4)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from models.base import FloatArray
 from models.lanes.record import recorded
 from models.lanes.tables import empty, filled, groups, logged, put
+from models.pitch import pitch
 from models.runs import Request, Run
 from models.stacked.account import N_ACCOUNT, outputs
 from models.stacked.declaration import REST_VELOCITY
@@ -51,9 +52,7 @@ def given_table(stack: Stack, scale: FloatArray, initial: Mapping[str, FloatArra
     """The constants of the lanes, a line a lane with the columns of `rows`."""
     lean = np.abs(np.arctan2(stack.offset, stack.gravity))
     own_1 = np.arctan2(stack.base_pivot - np.abs(stack.shift_1), stack.centre_1) - lean
-    whole = stack.centre
-    right = np.minimum((stack.base_pivot - stack.shift) / whole, (stack.top_pivot - stack.shift_2) / stack.centre_2)
-    left = np.minimum((stack.base_pivot + stack.shift) / whole, (stack.top_pivot + stack.shift_2) / stack.centre_2)
+    frame_1, frame_2 = stack.frame_inertia
     constants = (
         (r.P_SCALE, scale),
         (r.P_OFFSET, stack.offset),
@@ -79,8 +78,13 @@ def given_table(stack: Stack, scale: FloatArray, initial: Mapping[str, FloatArra
         (r.P_CALM_2, REST_VELOCITY * stack.frequency_parameter_2 * stack.slenderness_2),
         (r.P_STAND_1, np.clip(own_1, 1e-9, None)),
         (r.P_STAND_2, np.clip(stack.slenderness_2 - lean, 1e-9, None)),
-        (r.P_RIGHT, right),
-        (r.P_LEFT, left),
+        (r.P_RIGHT_1, (stack.base_pivot - stack.shift) / stack.centre),
+        (r.P_LEFT_1, (stack.base_pivot + stack.shift) / stack.centre),
+        (r.P_RIGHT_2, (stack.top_pivot - stack.shift_2) / stack.centre_2),
+        (r.P_LEFT_2, (stack.top_pivot + stack.shift_2) / stack.centre_2),
+        (r.P_FRAME_1, frame_1),
+        (r.P_FRAME_2, frame_2),
+        (r.P_PITCH, stack.pitch_per_acceleration * scale),
         (r.P_Q1, initial.get("q1", 0.0)),
         (r.P_Q2, initial.get("q2", 0.0)),
         (r.P_V1, initial.get("w1", 0.0)),
@@ -95,14 +99,18 @@ def run(stack: Stack, request: Request, refinement: int = 1) -> Run:
     Samples: theta_1, r (rad) and their rates (rad s-1).
     """
     found, steps = empty(request, r.N_RESULT, 4), 0
-    for (per_sample,), lanes in groups(substeps(stack, request.shaking.time_step) * refinement):
+    shaking = request.shaking
+    pitched = np.where(stack.pitch_per_acceleration != 0.0, stack.pitch_low_pass, 0.0)
+    for (per_sample, corner), lanes in groups(substeps(stack, shaking.time_step) * refinement, pitched):
         part, asked = stack.take(lanes), request.take(lanes)
-        record = recorded(request.shaking, per_sample, request.tail)
+        psi = pitch(shaking.horizontal, shaking.time_step, corner) if corner > 0.0 else (None, None)
+        record = recorded(shaking, per_sample, request.tail, psi)
         first, last = asked.steps(per_sample, record.end)
         tables = empty(asked, r.N_RESULT, 4)
         steps += advance(
             record, first, last, given_table(part, asked.scale, initial_state(asked.initial, part.size)), tables,
             per_sample if asked.history else 0, asked.history, True if request.linear else None,
+            True if corner > 0.0 else None,
         )  # fmt: skip
         put(found, lanes, tables)
     account = found.result[:, :N_ACCOUNT]

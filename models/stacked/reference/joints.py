@@ -8,7 +8,7 @@ from models.base import Event
 from models.stacked import account as acc
 from models.stacked.configuration import BASE, JOINTS, State
 from models.stacked.declaration import REST_VELOCITY
-from models.stacked.equation import System, held, motion
+from models.stacked.equation import Ground, System, held, motion
 from models.stacked.reference.choice import choose
 from models.stacked.reference.impact import closed, impact, kinetic_energy
 from models.stacked.reference.ledger import Ledger
@@ -30,17 +30,17 @@ class Joints:
         self.stack, self.linear, self.ledger = stack.one(), linear, ledger
         self.state = REST
 
-    def system(self, corners: tuple[int, int], q: Pair, rate: Pair, ground: Pair) -> System:
+    def system(self, corners: tuple[int, int], q: Pair, rate: Pair, ground: Ground) -> System:
         return motion(self.stack, *corners, q, rate, ground, self.linear)
 
-    def pull(self, joint: int, corner: int, state: State, ground: Pair) -> float:
+    def pull(self, joint: int, corner: int, state: State, ground: Ground) -> float:
         """Moment (N m) by which a closed joint would open about ``corner``; <= 0: it stays closed."""
         corners = (corner, state.corners[1]) if joint == BASE else (state.corners[0], corner)
         m = self.system(corners, state.q, state.rate, ground)
         x1, x2 = held(m, *state.sides)
         return corner * float(m.r1 - m.m12 * x2 if joint == BASE else m.r2 - m.m12 * x1)
 
-    def _settled(self, state: State, ground: Pair, moving: bool = False) -> State:
+    def _settled(self, state: State, ground: Ground, moving: bool = False) -> State:
         """What the closed joints of ``state`` do under these forces."""
         if all(state.sides):
             return state
@@ -55,7 +55,7 @@ class Joints:
             if state.sides[joint] and not before.sides[joint] and math.isnan(self.ledger.account[column]):
                 self.ledger.account[column] = time
 
-    def settle(self, ground: Pair, time: float, moving: bool = False) -> None:
+    def settle(self, ground: Ground, time: float, moving: bool = False) -> None:
         """The closed joints answer to ``ground``; ``moving``: at a threshold, rest is left out."""
         self._go(self._settled(self.state, ground, moving), time)
 
@@ -65,7 +65,7 @@ class Joints:
         self._go(self.state._replace(sides=(side, s2) if joint == BASE else (s1, side)), time)
         self.ledger.events.append(Event(time, "change_of_pattern", joint + 1))
 
-    def land(self, joint: int, ground: Pair, time: float) -> None:
+    def land(self, joint: int, ground: Ground, time: float) -> None:
         """``joint`` closes: the impact, and what stays closed after it."""
         q1, q2 = self.state.q
         before = self.state._replace(q=(0.0, q2) if joint == BASE else (q1, 0.0))
@@ -78,7 +78,7 @@ class Joints:
         if not any(after.sides):
             self.ledger.events.append(Event(time, "rest"))
 
-    def _after(self, joint: int, before: State, ground: Pair) -> State:
+    def _after(self, joint: int, before: State, ground: Ground) -> State:
         """Rates so small that the swing ahead does not matter end, if the forces keep the joint closed."""
         landing = impact(self.stack, joint, before, self.linear)
         calm = [abs(landing.rate[j]) < self.calm[j] for j in JOINTS]

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from models.base import Event, FloatArray
-from models.ground import Piece
+from models.ground import PitchedPiece
 from models.stacked import account as acc
 from models.stacked.configuration import State, index
 from models.stacked.equation import reactions, vectors
@@ -38,7 +38,7 @@ class Ledger:
             self.account[acc.PEAK_2] = max(self.account[acc.PEAK_2], abs(y[0] + y[1]))
 
     def demand(
-        self, stack: Stack, state: State, solution: Any, derivative: Callable[..., list[float]], piece: Piece,
+        self, stack: Stack, state: State, solution: Any, derivative: Callable[..., list[float]], piece: PitchedPiece,
         linear: bool,
     ) -> None:  # fmt: skip
         """Largest friction demand over eight points of every step of a stretch."""
@@ -47,9 +47,9 @@ class Ledger:
         fine = np.interp(places, np.arange(nodes.size), nodes)
         y = solution.sol(fine)
         second = np.array([derivative(t, y[:, k])[2:4] for k, t in enumerate(fine.tolist())]).T
-        a, gravity = np.array([piece.at(t) for t in fine.tolist()]).T
+        a, gravity, turning = np.array([piece.at(t) for t in fine.tolist()]).T
         v = vectors(stack, *state.corners, (y[0], y[1]), linear)
-        base_h, base_n, top_h, top_n = reactions(stack, v, (y[2], y[3]), (second[0], second[1]), (a, gravity))
+        base_h, base_n, top_h, top_n = reactions(stack, v, (y[2], y[3]), (second[0], second[1]), (a, gravity, turning))
         for column, h, n in ((acc.FRICTION_BASE, base_h, base_n), (acc.FRICTION_TOP, top_h, top_n)):
             ratio = np.where(n > 0.0, np.abs(h) / np.where(n > 0.0, n, 1.0), acc.BOUNDLESS)
             self.account[column] = max(self.account[column], float(np.max(ratio)))

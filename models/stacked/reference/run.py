@@ -14,12 +14,12 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from models.base import Event, FloatArray
-from models.ground import Piece, pieces
+from models.ground import PitchedPiece, pitched_pieces
 from models.runs import Request, Run
 from models.stacked import account as acc
 from models.stacked.configuration import BASE, JOINTS, TOP, State
 from models.stacked.declaration import MOST_EVENTS_PER_STEP
-from models.stacked.equation import held
+from models.stacked.equation import Ground, held
 from models.stacked.observe import initial_state, settled_history
 from models.stacked.reference.joints import Joints
 from models.stacked.reference.ledger import Ledger
@@ -42,12 +42,14 @@ def run(stack: Stack, request: Request, rtol: float = 1e-10) -> Run:
         raise ValueError(f"the reference runs one wall at a time, {stack.size} were given")
     wall = _Run(stack, request.linear, request.times, rtol, request.history)
     start = {name: float(values[0]) for name, values in initial_state(request.initial, 1).items()}
-    before: tuple[float, float] | None = None
-    for piece in pieces(stack, request.shaking, float(request.scale[0]), request.until):
+    before: Ground | None = None
+    pitching = float(stack.pitch_per_acceleration[0]), float(stack.pitch_low_pass[0])
+    for piece in pitched_pieces(stack, request.shaking, float(request.scale[0]), request.until, *pitching):
+        now = piece.at(piece.start)
         if before is None:
-            wall.begin(start, piece)
-        elif before != piece.first and any(wall.joints.state.sides):
-            wall.joints.settle(piece.first, piece.start)
+            wall.begin(start, now)
+        elif before != now and any(wall.joints.state.sides):
+            wall.joints.settle(now, piece.start)
         wall.advance(piece, shaken=piece.start < request.shaking.duration)
         before = piece.at(piece.end)
         if wall.finished:
@@ -72,16 +74,16 @@ class _Run:
         self.time = 0.0
         self.finished = False
 
-    def begin(self, initial: Mapping[str, float], piece: Piece) -> None:
+    def begin(self, initial: Mapping[str, float], ground: Ground) -> None:
         q1, q2, w1, w2 = (float(initial.get(name, 0.0)) for name in ("q1", "q2", "w1", "w2"))
         q, rate = (q1, q2), (w1, w2)
         self.joints.state = State((_sign(q1 or w1), _sign(q2 or w2)), q, rate)
         self.ledger.peaks([(*q, *rate)])
         self.ledger.mark_configuration(self.joints.state.sides)
         if any(self.joints.state.sides):
-            self.joints.settle(piece.first, 0.0)
+            self.joints.settle(ground, 0.0)
 
-    def advance(self, piece: Piece, shaken: bool) -> None:
+    def advance(self, piece: PitchedPiece, shaken: bool) -> None:
         self.time = piece.start
         for _ in range(MOST_EVENTS_PER_STEP * 10):
             if self.time >= piece.end or self.finished:
@@ -93,8 +95,8 @@ class _Run:
         self.ledger.account[acc.FAILED] = 1.0
         self.finished = True
 
-    def _wait(self, piece: Piece, shaken: bool) -> None:
-        """At rest the moments that open the joints are linear in time."""
+    def _wait(self, piece: PitchedPiece, shaken: bool) -> None:
+        """At rest the moments that open the joints are linear in time, but for a pitch beside a vertical motion."""
         first, still = math.inf, self.joints.state
         for joint in JOINTS:
             for side in (1, -1):
@@ -114,7 +116,7 @@ class _Run:
         self.joints.settle(piece.at(end + 1e-9 * (piece.end - piece.start)), end, moving=True)
         self.ledger.events.append(Event(end, "onset", 1 if self.joints.state.sides[BASE] else 2))
 
-    def _move(self, piece: Piece, shaken: bool) -> None:
+    def _move(self, piece: PitchedPiece, shaken: bool) -> None:
         state, joints = self.joints.state, self.joints
         drag = float(self.stack.viscous) * float(self.stack.corner_inertia(state.corners[0]))
 
@@ -124,7 +126,7 @@ class _Run:
             return [v1, v2, *held(system, *state.sides), drag * v1 * v1]
 
         falls = not shaken and self.ledger.frozen is None
-        if falls and max(margins(self.stack, state, piece.at(self.time))) > 0.0:
+        if falls and max(margins(self.stack, state, piece.at(self.time)[:2])) > 0.0:
             self._overturn(piece)
             return
         watched = self._watched(piece, state, falls)
@@ -158,7 +160,7 @@ class _Run:
             kinds = zip(watched, solution.t_events, strict=True)
             self._happen(next(kind for (kind, _, _, ends), t in kinds if ends and t.size), piece)
 
-    def _watched(self, piece: Piece, state: State, falls: bool) -> list[Watch]:
+    def _watched(self, piece: PitchedPiece, state: State, falls: bool) -> list[Watch]:
         """What may end this stretch, and the turning points."""
 
         def at(y: FloatArray) -> State:
@@ -183,10 +185,10 @@ class _Run:
             else:
                 found += [(f"open {name} {c}", pull(joint, c), 1, True) for c in (1, -1)]
         if falls:
-            found.append(("fall", lambda time, y: max(margins(self.stack, at(y), piece.at(time))), 1, True))
+            found.append(("fall", lambda time, y: max(margins(self.stack, at(y), piece.at(time)[:2])), 1, True))
         return found
 
-    def _happen(self, kind: str, piece: Piece) -> None:
+    def _happen(self, kind: str, piece: PitchedPiece) -> None:
         what, *where = kind.split()
         if what == "fall":
             if self.ledger.frozen is None:
@@ -200,10 +202,10 @@ class _Run:
         else:
             self.joints.open(joint, int(where[1]), self.time)
 
-    def _overturn(self, piece: Piece) -> None:
+    def _overturn(self, piece: PitchedPiece) -> None:
         state = self.joints.state
         flat = [abs(theta) >= HALF_TURN - 1e-9 for theta in state.theta]
-        beyond = [margin > -1e-9 for margin in margins(self.stack, state, piece.at(self.time))]
+        beyond = [margin > -1e-9 for margin in margins(self.stack, state, piece.at(self.time)[:2])]
         body = 1 if (flat if any(flat) else beyond)[0] else 2
         self.ledger.overturn(body, self.time, state)
         self.finished = any(flat) or not self.follow

@@ -35,7 +35,7 @@ def test_energy_is_kept_between_events(sides: tuple[int, int]) -> None:
 
     def derivative(_: float, y: np.ndarray) -> list[float]:
         state = State(sides, (y[0], y[1]), (y[2], y[3]))
-        return [y[2], y[3], *held(motion(stack, *state.corners, state.q, state.rate, ground, False), *sides)]
+        return [y[2], y[3], *held(motion(stack, *state.corners, state.q, state.rate, (*ground, 0.0), False), *sides)]
 
     start = np.array([0.05 * sides[0], 0.1 * sides[1], -0.3 * abs(sides[0]), 0.9 * abs(sides[1])])
     run = solve_ivp(derivative, (0.0, 0.5), start, "DOP853", rtol=1e-12, atol=1e-13)

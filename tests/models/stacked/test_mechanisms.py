@@ -3,12 +3,15 @@
 import numpy as np
 import pytest
 
+import models
 from models.shaking import Shaking
 from models.stacked.model import MODEL
 from tests.models.stacked.walls import LANES, A, B, G
 from tests.models.strategies import random_motion
 
-ACTING = {"pivot_inset", "tilt", "eccentricity", "restitution", "viscous_damping", "vertical_acceleration"}
+ACTING = {
+    "pivot_inset", "tilt", "eccentricity", "restitution", "viscous_damping", "vertical_acceleration", "table_pitch",
+}  # fmt: skip
 
 
 def test_the_mechanisms_that_act() -> None:
@@ -99,3 +102,43 @@ def test_viscous_couple_takes_the_energy_it_should(integrator: str) -> None:
     assert run.outputs["impacts_base"] == 0
     lost = 0.3 * corner * np.trapezoid(rate**2, run.time)
     assert run.outputs["dissipated_energy"] == pytest.approx(lost, rel=1e-5)
+
+
+PITCHED = {"table_pitch.pitch_per_acceleration": 0.002, "table_pitch.low_pass_hz": 8.0}
+
+
+@pytest.mark.parametrize("integrator", LANES)
+def test_a_light_block_on_a_pitching_table_leaves_the_wall_as_one_block(integrator: str) -> None:
+    """With next to nothing on top the wall is Housner's block on the same table."""
+    shaking = random_motion(np.random.default_rng(4), duration=4.0)
+    wall = {**A, "wall_length": 0.6, "top_mass": 1e-6, "top_length": 0.5, "top_height": 0.2, **PITCHED}
+    stack = MODEL.simulate(wall, shaking, scale=3.0, integrator=integrator)
+    block = {"height": 3.0, "width": 0.6, "mass": 1000.0, "gravity": G, **PITCHED}
+    one = models.get("housner").simulate(block, shaking, scale=3.0, integrator=integrator)
+    assert one.outputs["impacts"] > 2 and stack.outputs["onset_time_base"] == pytest.approx(one.outputs["onset_time"])
+    np.testing.assert_allclose(stack.channels["rotation_1"], one.channels["rotation_1"], atol=2e-7)
+    plain = MODEL.simulate({k: v for k, v in wall.items() if "." not in k}, shaking, scale=3.0)
+    assert np.max(np.abs(plain.channels["rotation_1"] - stack.channels["rotation_1"])) > 1e-3
+
+
+def test_the_frame_of_a_pitching_table_turns_both_bodies_about_the_middle_of_the_base() -> None:
+    """The couples over -psi'' are the kinetic products of the joints' motions with the turning of the whole frame."""
+    stack = MODEL.build(B).one()
+    whole, upper = stack.frame_inertia
+    z1, z2, h2 = stack.centre_1, stack.height_1 + stack.centre_2, stack.centre_2
+    assert whole == pytest.approx(stack.inertia_1 + stack.mass_1 * z1**2 + stack.inertia_2 + stack.mass_2 * z2**2)
+    assert upper == pytest.approx(stack.inertia_2 + stack.mass_2 * z2 * h2)
+
+
+@pytest.mark.parametrize("vertical", [False, True])
+def test_lanes_agree_with_the_reference_on_a_pitching_table(vertical: bool) -> None:
+    motion = random_motion(np.random.default_rng(6), duration=3.0)
+    shaking = Shaking(motion.time_step, motion.horizontal, motion.vertical if vertical else None)
+    lanes, reference = (MODEL.simulate({**B, **PITCHED}, shaking, scale=1.8, tail=1.0, integrator=how) for how in LANES)
+    assert lanes.outputs["impacts_top"] > 2 and lanes.outputs["impacts_base"] == reference.outputs["impacts_base"]
+    assert lanes.outputs["onset_time"] == pytest.approx(reference.outputs["onset_time"], abs=1e-7)
+    for name in ("rotation_1", "rotation_2"):
+        np.testing.assert_allclose(lanes.channels[name], reference.channels[name], atol=3e-6)
+    for joint in ("base", "top"):
+        demand = f"friction_demand_{joint}"
+        assert lanes.outputs[demand] == pytest.approx(reference.outputs[demand], rel=0.02)

@@ -33,7 +33,7 @@ def random_stacks(rng: np.random.Generator, size: int) -> Stack:
         half_length_1=b1, half_joint=b2, base_pivot=b1, top_pivot=b2, shift_1=zero, shift_2=zero,
         gravity=np.full(size, G), offset=zero, vertical_factor=zero,
         base_restitution=np.full(size, np.nan), top_restitution=np.full(size, np.nan),
-        base_factor=one, top_factor=one, viscous=zero,
+        base_factor=one, top_factor=one, viscous=zero, pitch_per_acceleration=zero, pitch_low_pass=10.0 * one,
     )  # fmt: skip
 
 
@@ -53,4 +53,4 @@ def random_wall(rng: np.random.Generator) -> dict[str, float]:
 
 def at_rest(stack: Stack, a: float | FloatArray, gravity: float | FloatArray = G) -> Corners:
     """Forces on the resting stack under base acceleration ``a``."""
-    return lambda c1, c2: motion(stack, c1, c2, (0.0, 0.0), (0.0, 0.0), (a, gravity), False)
+    return lambda c1, c2: motion(stack, c1, c2, (0.0, 0.0), (0.0, 0.0), (a, gravity, 0.0), False)
