@@ -12,10 +12,10 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.diagnosis", description=__doc__)
     parser.add_argument(
         "what", nargs="?", default="diagnosis",
-        choices=("diagnosis", "laboratory", "beginnings", "walls", "bases", "nameless", "methods", "same"),
+        choices=("diagnosis", "laboratory", "beginnings", "walls", "bases", "nameless", "power", "methods", "same"),
         help="cases with white noise (default), with a laboratory's errors, with effects that begin, of walls on "
-        "rubber or of wrong base models, where single effects are found without a name, what other methods say of the "
-        "first, or whether two runs over them agree",
+        "rubber or of wrong base models, where single effects are found without a name, what estimating the errors "
+        "costs in power, what other methods say of the first, or whether two runs over them agree",
     )  # fmt: skip
     parser.add_argument("--out", type=Path, default=Path("results/bench"), help="folder of the results")
     parser.add_argument("--jobs", type=int, default=2, help="processes")
@@ -30,10 +30,12 @@ def main() -> None:
         from benchmarks.diagnosis.methods import compare
 
         compare(given.out, seed=given.seed, cases=given.cases, **common)
-    elif given.what == "nameless":
+    elif given.what in ("nameless", "power"):
         from benchmarks.diagnosis.nameless import nameless
+        from benchmarks.diagnosis.power import power
 
-        nameless(given.out, seed=given.seed, cases=given.cases, jobs=given.jobs, say=say)
+        measured = {"nameless": nameless, "power": power}[given.what]
+        measured(given.out, seed=given.seed, cases=given.cases, jobs=given.jobs, say=say)
     elif given.what == "same":
         from benchmarks.diagnosis.same import same
 
