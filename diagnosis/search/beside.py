@@ -11,6 +11,7 @@ from diagnosis.search.found import MISSING, Search, adjusted, explains_all
 from diagnosis.search.refit import QUICK, Explanation, again, best_of, extend, joined
 from diagnosis.search.screen import Score, score
 from models.base import FloatArray
+from models.errors import InputError
 
 WORTH = 4.0
 """Linearisation statistic under which a refit is not tried (the strongest FEWEST are tried all the same)."""
@@ -61,8 +62,12 @@ def extended(
             tried = [extend(explanation, entry.candidate, at, QUICK) for at in starts_of(entry, scores)]
             fits.append(best_of(tried))
     for single in _strong_alone(found, explanation) if widely else ():
-        if found.affordable(*single.names):
+        if not found.affordable(*single.names):
+            continue
+        try:
             fits.append(joined(explanation, single))
+        except InputError as refusal:  # it does not act together with an effect of the explanation
+            found.not_tried.setdefault(single.names[0], str(refusal))
     fits.sort(key=adjusted)
     return [again(e) if k < THOROUGH else e for k, e in enumerate(fits)]
 

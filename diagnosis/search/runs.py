@@ -41,6 +41,8 @@ class InRuns:
     def starts(self, run: int) -> list[FloatArray]:
         """Coordinates (d,) worth a refit in one run."""
         found = list(self.score.starts[:1])
+        if not found and self.score.trial is not None:
+            found.append(self.score.trial)
         if self.score.slope:
             start = self.score.candidate.null
             start[0] += self.amplitude[run]

@@ -32,8 +32,9 @@ class Score:
     """``statistic``: the larger of score and grid gain; ``starts``: coordinates (d,) worth a refit, best first.
 
     ``column`` (W, M): the direction in which the effect moves the residuals, off the states: the derivative at the null
-    if it is a ``slope``, else the change by the first start; ``side``: the sign that an amplitude along it may have, 0
-    for either; ``work``: lane-steps of one trial.
+    if it is a ``slope``, else the change by ``trial`` (d,), the best of the grid: it may be worth a refit in a part of
+    the recordings though it is not in all; ``side``: the sign that an amplitude along it may have, 0 for either;
+    ``work``: lane-steps of one trial.
     """
 
     candidate: Candidate
@@ -43,6 +44,7 @@ class Score:
     slope: bool = True
     side: int = 0
     work: float = 0.0
+    trial: FloatArray | None = None
 
 
 def score(
@@ -89,7 +91,8 @@ def _score_one(screen: Linearisation, base: Point, candidate: Candidate) -> Scor
     if information > 1e-12 or not order.size:
         side = 0 if not candidate.one_sided else 1 if null[0] < high else -1
         return Score(candidate, statistic, tuple(starts[:2]), derivative, True, side, work)
-    return Score(candidate, statistic, tuple(starts[:2]), off[int(order[0])] - screen.residual, False, 1, work)
+    first = int(order[0])
+    return Score(candidate, statistic, tuple(starts[:2]), off[first] - screen.residual, False, 1, work, trials[first])
 
 
 def _gain(screen: Linearisation, off: FloatArray) -> float:

@@ -19,6 +19,7 @@ from diagnosis.search.candidates import candidates
 from diagnosis.search.found import Search
 from diagnosis.search.null import null_distribution
 from diagnosis.search.refit import Explanation
+from diagnosis.search.runs import InRuns
 from diagnosis.search.screen import score
 from diagnosis.search.spells import Spell
 from grids.recordings.base import Recording
@@ -100,3 +101,15 @@ def test_what_may_change_again_is_told_from_what_stays_or_is_gone() -> None:
     assert may_change_again(Spell(0, 2.0, 0, None), 2)
     assert not may_change_again(Spell(0, 2.0, 1, None), 2)
     assert not may_change_again(Spell(0, None, 1, 3.0), 2)
+
+
+def test_a_mechanism_without_a_slope_starts_in_a_run_from_what_was_tried() -> None:
+    """It may explain nothing of all recordings and much of one: the search ended in an error there."""
+    recordings = [made("first", 1, [(0.0, {})]), made("second", 2, [(0.0, {})])]
+    measured = measure(SPECIMEN, recordings)
+    known = [c for c in candidates(measured, SPECIMEN) if c.name == "sliding"]
+    fitted, _ = calibrated(SPECIMEN, measured)
+    (one,) = score(linearise_about(fitted), known)
+    assert not one.slope and one.trial is not None
+    without = InRuns(replace(one, starts=()), np.ones(1), np.zeros(1))
+    assert [start.tolist() for start in without.starts(0)] == [one.trial.tolist()]
