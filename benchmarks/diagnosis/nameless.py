@@ -44,8 +44,8 @@ def place_of(folder: Path, key: Mapping[str, Any]) -> dict[str, Any]:
     """Phase and side that are said without a name, those of the hidden effect, and whether they agree."""
     specimen = read_specimen(folder / "specimen.toml")
     measured = measure(specimen, [read_recording(folder / f"train_{k}.nc") for k in (1, 2)])
-    base, _ = calibrated(specimen, measured)
-    said = {word for place in located(Explanation((), base), None)[0] for word in place.where}
+    base, errors = calibrated(specimen, measured)
+    said = {word for place in located(Explanation((), base), None, errors)[0] for word in place.where}
     effect = key["effects"][0]
     kind, true = _truth(base, effect, key)
     declared = measured.identification

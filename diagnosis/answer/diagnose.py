@@ -177,7 +177,7 @@ def _assemble(
         if climbed is not None:  # another base model acts everywhere
             return (), ()
         progress("where it acts", 0.97)
-        return located(found.base, chosen if explained else None, seed) if missing else ((), ())
+        return located(found.base, chosen if explained else None, found.errors, seed) if missing else ((), ())
 
     experiment, force = None, None
     if finished and verdict == "cannot_tell_apart":

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from diagnosis.answer.acts import acts, visited, within_stages
 from diagnosis.answer.phases import EVERYWHERE
 from diagnosis.answer.result import Located, Visited
+from diagnosis.errors.model import Errors
 from diagnosis.fit.solver import Fitted
 from diagnosis.forces.action import action
 from diagnosis.forces.columns import forces
@@ -15,11 +18,12 @@ from diagnosis.search.refit import Explanation
 
 
 def located(
-    base: Explanation, explained: Explanation | None, seed: int = 0
+    base: Explanation, explained: Explanation | None, errors: Errors, seed: int = 0
 ) -> tuple[tuple[Located, ...], tuple[Visited, ...]]:
     """Intervals by effect, recording and channel, the largest share first, and the laws found over what was visited.
 
-    ``explained``: an adequate model; without one there are no laws.
+    ``explained``: an adequate model; without one there are no laws. Then the scatter of events among the ``errors``
+    about the base model may be what a wrong law of them leaves, and the scan takes events to repeat.
     """
     if base.measured.stretches is not None:  # no run can be cut at a sample to see what acts there
         return (), ()
@@ -35,8 +39,9 @@ def located(
         return places, tuple(visited(fitted.measured, one) for one in actions)
     if not base.measured.identification.forces:
         return (), ()
-    found = missing(forces(base.fitted), seed)
-    return (() if found is None else _without_a_name(base.fitted, found)), ()
+    fitted = replace(base.fitted, misfit=errors.repeating(base.fitted.misfit))
+    found = missing(forces(fitted), seed)
+    return (() if found is None else _without_a_name(fitted, found)), ()
 
 
 def _without_a_name(fitted: Fitted, found: Missing) -> tuple[Located, ...]:
