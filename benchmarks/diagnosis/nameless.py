@@ -18,9 +18,8 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.diagnosis import cases as blocks
 from benchmarks.diagnosis import laboratory, suite
-from benchmarks.diagnosis.files import write_case
+from benchmarks.diagnosis.runner import made
 from diagnosis.answer.acts import acts
 from diagnosis.answer.located import located
 from diagnosis.data.measured import Measured
@@ -86,9 +85,7 @@ def _over(measured: Measured, name: str, value: float, key: Mapping[str, Any]) -
 
 def _row(design: suite.CaseDesign, seed: int, here: Path) -> dict[str, Any] | None:
     """The row of a case, made if it is not there; None of one too weak to count."""
-    folder, key = here / "cases" / design.label, here / "cases" / "keys" / f"{design.label}.json"
-    if not key.is_file():
-        write_case(blocks.make(design, seed), folder, key)
+    folder, key = made(design, seed, here / "cases")
     known = read_json(key)
     return None if known["weak"] else place_of(folder, known)
 

@@ -18,11 +18,17 @@ from diagnosis.prove.scores import Scored
 
 def run_case(design: CaseDesign, seed: int, cases: Path, answers: Path, answering: Answering = diagnosed) -> str:
     """Make the case unless it is there, answer it unless that is done; the answer's verdict."""
+    folder, _ = made(design, seed, cases)
+    return str(answer(folder, answers / f"{design.label}.json", answering)["verdict"])
+
+
+def made(design: CaseDesign, seed: int, cases: Path) -> tuple[Path, Path]:
+    """Folder and key of a case, made unless it is there."""
     folder, key = cases / design.label, cases / "keys" / f"{design.label}.json"
     if not key.is_file():
         makers = {walls.WallDesign: walls.make, bases.BaseDesign: bases.make}
         write_case(makers.get(type(design), blocks.make)(design, seed), folder, key)
-    return str(answer(folder, answers / f"{design.label}.json", answering)["verdict"])
+    return folder, key
 
 
 def run_all(
