@@ -1,8 +1,8 @@
 """Digits between processors: the fingerprint's cells compiled for other targets; ``make processors``.
 
 The compiler's target stands for the processor: vectors of 512, 256 and 128 bits, with and without fused
-multiply-add, as far as this machine can execute them. The largest difference of any output of any cell from the
-answer of this machine's own target is written to ``results/bench/processors.json``.
+multiply-add; null for one that this machine cannot execute. The digits in which the worst output of the worst cell
+agrees with the answer of this machine's own target are written to ``results/bench/processors.json``.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -28,11 +29,15 @@ ASK = "import json, sys; from study.verify.fingerprint import answers; print(jso
 OUT = Path("results/bench/processors.json")
 
 
-def answers(model: str, target: dict[str, str]) -> dict[str, list[float]]:
-    """The outputs of a model's cells, by a process that compiles for the target."""
+def answers(model: str, target: dict[str, str]) -> dict[str, list[float]] | None:
+    """The outputs of a model's cells, by a process that compiles for the target; None: not on this machine."""
     done = subprocess.run(
-        [sys.executable, "-c", ASK, model], env={**os.environ, **target}, capture_output=True, text=True, check=True
+        [sys.executable, "-c", ASK, model], env={**os.environ, **target}, capture_output=True, text=True
     )
+    if done.returncode == -signal.SIGILL:
+        return None
+    if done.returncode:
+        raise RuntimeError(f"{model}: {done.stderr}")
     found: dict[str, list[float]] = json.loads(done.stdout)
     return found
 
@@ -45,14 +50,19 @@ def main() -> None:
     table = json.loads(OUT.read_text("utf-8")) if OUT.exists() else {}
     OUT.parent.mkdir(parents=True, exist_ok=True)
     for model in given.model or CELLS:
-        own = answers(model, {})
+        own = answers(model, {}) or {}
         table[model] = {}
         for name, target in TARGETS.items():
             found = answers(model, target)
-            pairs = [(a, b) for output in own for a, b in zip(found[output], own[output], strict=True)]
-            table[model][name] = round(min((agreeing_digits(a, b) for a, b in pairs), default=MOST_DIGITS), 1)
+            table[model][name] = None if found is None else digits(own, found)
         OUT.write_text(json.dumps(table, indent=1) + "\n")
-        print(f"{model:<18}" + ", ".join(f"{name} {digits}" for name, digits in table[model].items()), flush=True)
+        print(f"{model:<18}" + ", ".join(f"{name} {least}" for name, least in table[model].items()), flush=True)
+
+
+def digits(own: dict[str, list[float]], found: dict[str, list[float]]) -> float:
+    """Digits that agree in the worst output of the worst cell."""
+    pairs = [(a, b) for output in own for a, b in zip(found[output], own[output], strict=True)]
+    return round(min((agreeing_digits(a, b) for a, b in pairs), default=MOST_DIGITS), 1)
 
 
 if __name__ == "__main__":

@@ -51,7 +51,7 @@ def keys_of(path: Path) -> list[str]:
     try:
         with zipfile.ZipFile(path) as archive:
             return [name.removesuffix(".npy") for name in archive.namelist()]
-    except (zipfile.BadZipFile, OSError):
+    except Exception:  # zipfile does not bound what a damaged directory raises
         raise InputError(f"{path.name}: is no .npz archive: it is cut short or damaged") from None
 
 
