@@ -11,7 +11,7 @@ with the effect it must still rock.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -46,6 +46,8 @@ MOST_JUMPS = 3
 WEAKEST = 3.0
 WEAKEST_OF_PEAK = 0.03
 """Size at the end of the range, and the same over the peak, under which the draw is given up."""
+SEEN = 0.5
+"""Of nominal size, what an effect that begins or ends must have in the recording in which it does."""
 TAIL = 1.0
 VERTICAL_SHARE = 0.2
 """Of the cases in which the base also shakes vertically, and the specimen says so."""
@@ -85,11 +87,11 @@ def _alone(row: Hidden, value: float, shapes: Mapping[str, float], when: beginni
     return Effects({f"{row.name}.{k}": v for k, v in numbers.items()}, {}, when=when)
 
 
-def _cycle(rotation: FloatArray, step: float, instant: float) -> float:
-    """Two swings at an instant, in s: twice the longest time between impacts around it."""
+def _cycle(rotation: FloatArray, step: float, instants: Sequence[float]) -> float:
+    """Two swings at an instant, in s: twice the longest time between impacts around it, of several the longest."""
     times = step * np.flatnonzero(rotation[1:] * rotation[:-1] < 0.0)
-    around = int(np.searchsorted(times, instant))
-    return 2.0 * float(np.max(np.diff(times)[max(0, around - 2) : around + 1], initial=0.0))
+    around = [int(np.searchsorted(times, instant)) for instant in instants]
+    return 2.0 * max((float(np.max(np.diff(times)[max(0, k - 2) : k + 1], initial=0.0)) for k in around), default=0.0)
 
 
 class _Draft:
@@ -159,8 +161,11 @@ class _Draft:
                 notes[name]["active_interval"] = effects.active[k]
             if effects.when is not None:
                 notes[name] |= {"duration": track.shaking.duration, "active": effects.when[k]}
-                step = track.shaking.time_step / shakings.FINE
-                notes[name]["cycles"] = [_cycle(rotation, step, begins) for begins, _ in effects.when[k]]
+                step, end = track.shaking.time_step / shakings.FINE, track.shaking.duration
+                instants = [[one for one in span if 0.0 < one < end] for span in effects.when[k]]
+                notes[name]["cycles"] = [_cycle(rotation, step, some) for some in instants]
+                if k < 2 and not weak and not self._seen(k, motions[k], sum(instants, []), notes[name]):
+                    raise Unsuitable
         exact = max(notes[name]["strength"] for name in RECORDINGS[:2])
         if described and len(described) == 1 and not weak and self.design.relative_size == 1.0:
             if not abs(exact / size.NOMINAL - 1.0) < EXACT_WITHIN:
@@ -176,6 +181,20 @@ class _Draft:
         if errors is not None:
             key |= {"imperfections": errors.described(), "named_rightly": errors.named_rightly}
         return Case(self._specimen(), self.sampling_hz, channels, key)
+
+    def _seen(
+        self, k: int, motion: tuple[FloatArray, FloatArray, int], instants: Sequence[float], note: Mapping[str, Any]
+    ) -> bool:
+        """Whether the recordings can tell the instants (s) of recording ``k``.
+
+        The effect has to show in that recording, and the block to rock before and after each of them.
+        """
+        step = self.scene.tracks[k].shaking.time_step / shakings.FINE
+        found = size.windows(*motion[:2], step, note["noise_std"]["rotation_1"])
+        begins, ends = step * found.first, step * (found.first + found.samples)
+        if instants and note["strength"] < SEEN * size.NOMINAL:
+            return False
+        return all(bool(np.any(ends < one)) and bool(np.any(begins > one)) for one in instants)
 
     def _specimen(self) -> str:
         lines = [f'title = "{self.design.label}"', 'model = "housner"', "", "[parameters]"]

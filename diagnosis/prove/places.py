@@ -68,14 +68,13 @@ def overlap(case: Scored) -> float | None:
 def instants_right(case: Scored) -> bool | None:
     """Whether every instant at which the effect begins or ends is found within one rocking cycle.
 
-    The stages of the effect of the right name are compared; without such an effect none is found. The cycle is the
+    The stages of the effects of the right class are compared; without such an effect none is found. The cycle is the
     key's (``cycles``), else `CYCLE`. None: nothing begins or ends within a recording.
     """
     true = true_spans(case)
     if true is None:
         return None
-    hidden = {effect["name"] for effect in case.key["effects"]}
-    stages = [s for effect in case.effects if effect["name"] in hidden for s in effect.get("stages", ())]
+    stages = [s for effect in case.effects if effect["class"] in case.truth for s in effect.get("stages", ())]
     flags = []
     for name, spans in true.items():
         note = case.key["recordings"][name]

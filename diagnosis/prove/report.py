@@ -36,8 +36,9 @@ def summary(cases: Sequence[Scored], *, weak_too: bool = False) -> dict[str, Any
     numbers = {name: value(figures[name]) for name in (*FIGURES, *MORE)}
     shares = {name: figure for name, figure in figures.items() if isinstance(figure, Mapping) and "of" in figure}
     intervals = {name: {**share, "value": value(share)} for name, share in shares.items()}
-    begun = [right for case in cases if case.kind == "single" and (right := instants_right(case)) is not None]
-    overlaps = [size for case in cases if case.kind == "single" and (size := overlap(case)) is not None]
+    singles = [case for case in cases if case.kind == "single" and (weak_too or not case.weak)]
+    begun = [right for case in singles if (right := instants_right(case)) is not None]
+    overlaps = [size for case in singles if (size := overlap(case)) is not None]
     if begun:
         share = asdict(Share.of_flags(begun))
         intervals["instants_right"] = {**share, "value": value(share)}
