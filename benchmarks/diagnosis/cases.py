@@ -13,6 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -164,7 +165,7 @@ class _Draft:
                 step, end = track.shaking.time_step / shakings.FINE, track.shaking.duration
                 instants = [[one for one in span if 0.0 < one < end] for span in effects.when[k]]
                 notes[name]["cycles"] = [_cycle(rotation, step, some) for some in instants]
-                if k < 2 and not weak and not self._seen(k, motions[k], sum(instants, []), notes[name]):
+                if k < 2 and not weak and not self._seen(k, motions[k], [*chain(*instants)], notes[name]):
                     raise Unsuitable
         exact = max(notes[name]["strength"] for name in RECORDINGS[:2])
         if described and len(described) == 1 and not weak and self.design.relative_size == 1.0:
