@@ -19,9 +19,8 @@ from typing import Any
 import netCDF4
 import numpy as np
 
-SECONDS = 5
-"""Of computing time that one file may take."""
-
+SECONDS, MEGABYTES_A_SECOND = 1, 10
+"""Of computing time that one file may take, and one more for so many megabytes of it."""
 
 COMPRESSED = 1000
 """Largest ratio of compression that zlib reaches."""
@@ -30,7 +29,7 @@ COMPRESSED = 1000
 def try_file(path: Path) -> None:
     """Read all variables and keep nothing; within the memory and the time that a file of its size can need."""
     size = path.stat().st_size
-    _limit(COMPRESSED * size + 100_000_000, SECONDS + size // 1_000_000)
+    _limit(COMPRESSED * size + 100_000_000, 5 * _seconds(size))
     with netCDF4.Dataset(path) as data:
         for variable in data.variables.values():
             variable[...]
@@ -42,9 +41,9 @@ def main() -> None:
     answers.flush()
     for line in sys.stdin:
         request = json.loads(line)
-        _limit(int(request["bytes"]))
         arrays: list[np.ndarray] = []
         try:
+            _limit(int(request["bytes"]), _seconds(Path(request["path"]).stat().st_size))
             answer = _read(Path(request["path"]), int(request["bytes"]), arrays)
         except MemoryError:
             answer = {"error": "it wants more memory than a file of its size can hold"}
@@ -58,7 +57,12 @@ def main() -> None:
         answers.flush()
 
 
-def _limit(more_bytes: int, seconds: int = SECONDS) -> None:
+def _seconds(size: int) -> int:
+    """Of computing time for a file of so many bytes."""
+    return SECONDS + size // (1_000_000 * MEGABYTES_A_SECOND)
+
+
+def _limit(more_bytes: int, seconds: int) -> None:
     """Let this process take so much more memory and computing time."""
     now = 1024 * int(Path("/proc/self/status").read_text().split("VmSize:")[1].split()[0])
     resource.setrlimit(resource.RLIMIT_AS, (now + more_bytes, resource.RLIM_INFINITY))

@@ -69,7 +69,7 @@ def factor_to_si(unit: str, si_unit: str, where: str) -> float:
     """
     try:
         factor = _factor(unit, si_unit)
-    except ValueError:
+    except (ValueError, OverflowError):  # the latter from a number of hundreds of digits inside the unit
         raise InputError(f"{where}: unit '{unit}' is not known; write for example '{_example(si_unit)}'.") from None
     if factor is None:
         wanted = "a pure number is needed" if si_unit in _ONE else f"'{si_unit}' is needed"
