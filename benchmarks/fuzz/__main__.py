@@ -47,7 +47,9 @@ def fuzz(reader: Reader, inputs: int, seed: int, corpus: Path) -> Row:
             if row["inputs"] < inputs:
                 row["hangs" if hung else "tracebacks"] += 1
                 row["notes"].append("hung where no signal reaches" if hung else "the process ended")
-                _keep(corpus, reader, (Path(folder) / reader.file).read_bytes())
+                read = Path(folder) / reader.file
+                if read.is_file():  # not where it ended before the first input
+                    _keep(corpus, reader, read.read_bytes())
         attempts += 1
     return row
 

@@ -27,6 +27,8 @@ from models.errors import InputError
 LONGEST = 5.0
 """s"""
 MOST_KEPT = 400
+SAYS_EVERY = 5.0
+"""s between two lines on how far it is: a silent process is taken for hung."""
 
 
 class Hang(BaseException):
@@ -83,7 +85,7 @@ def main() -> None:
     corpus, seen = list(reader.seeds), set[str]()
     for data in reader.seeds:
         attempt(reader, folder, data)
-    begun = time.perf_counter()
+    begun = said = time.perf_counter()
     for k in range(int(inputs)):
         source = draw.choice(corpus[-20:] if draw.random() < 0.3 else corpus)
         data = mutate(source, corpus, draw, reader.binary)
@@ -96,8 +98,9 @@ def main() -> None:
                 print(json.dumps({"wrong": wrong, "where": where[-1500:], "input": data.hex()}), flush=True)
         elif wrong:
             print(json.dumps({"wrong": wrong}), flush=True)
-        if k % 100 == 99:
-            print(json.dumps({"inputs": k + 1, "ends": len(seen), "seconds": time.perf_counter() - begun}), flush=True)
+        if time.perf_counter() - said > SAYS_EVERY:
+            said = time.perf_counter()
+            print(json.dumps({"inputs": k + 1, "ends": len(seen), "seconds": said - begun}), flush=True)
     print(json.dumps({"inputs": int(inputs), "ends": len(seen), "seconds": time.perf_counter() - begun}), flush=True)
 
 

@@ -13,7 +13,7 @@ from diagnosis.search.law import Law, Table
 from diagnosis.search.refit import Explanation
 from grids.instruments import INSTRUMENTS
 from models.base import FloatArray
-from models.mechanisms.table_force import KNOTS, REACHES, TERMS
+from models.mechanisms.table_force import FACTORS, KNOTS, REACHES, TERMS
 
 
 def missing_force(found: Search, law: Law) -> Mapping[str, Any]:
@@ -43,8 +43,8 @@ def _action(explanation: Explanation) -> Action:
 def _curve(explanation: Explanation, acting: Action, table: Table) -> list[float | None]:
     """What the effect does on average at each row of a table, in the table's own unit; None where it was not.
 
-    Forces over one factor (a rate) are fitted as that factor times the row; what acts at events is the relative
-    change of the rate.
+    Forces over a factor (the rate, its sign) are fitted as that factor times the row; what acts at events is the
+    relative change of the rate.
     """
     m = explanation.measured
     step = np.array([m.recordings[w.recording].time_step for w in m.windows])[:, None]
@@ -53,6 +53,7 @@ def _curve(explanation: Explanation, acting: Action, table: Table) -> list[float
     inside[:, -1] = False
     motion, impulse = acting.motion, acting.amount.sum(axis=1)
     variable, _, unit = TERMS[table.term]
+    factors = {"rate": motion.rate, "direction": np.sign(motion.rate)}
     x = {"rotation": motion.coordinate, "rate": motion.rate, "base": motion.base}[variable]
     if unit == "1":
         after = np.roll(motion.rate, -1, axis=1)
@@ -60,7 +61,7 @@ def _curve(explanation: Explanation, acting: Action, table: Table) -> list[float
         value, weight = impulse / np.where(inside, after - impulse, 1.0), np.ones_like(x)
     else:
         inside &= ~acting.event
-        factor = motion.rate if unit == "s-1" else np.ones_like(x)
+        factor = factors.get(FACTORS.get(table.term, ""), np.ones_like(x))
         value, weight = impulse / step * factor, factor**2
     found = _averages(x[inside], value[inside], weight[inside], table.at)
     return [None if np.isnan(v) else float(v) for v in found]

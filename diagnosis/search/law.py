@@ -1,10 +1,10 @@
 """The missing force as a model: a law in a table, estimated inside the simulator.
 
 Where no mechanism explains the recordings, the values c of tables over the leading coordinate, its rate and the
-base acceleration (`models.mechanisms.table_force`) become unknowns of the windowed fit, beside base parameters,
-effects and states. Which tables, and how smooth, is decided on the problem linearised in the simulator: with the
-states and other unknowns projected out, H = J'WJ, g = J'Wr, and a prior c ~ N(0, (lambda P)^-1) on second
-differences, the evidence
+base acceleration, some of them times the rate or its sign (`models.mechanisms.table_force`), become unknowns of the
+windowed fit, beside base parameters, effects and states. Which tables, and how smooth, is decided on the problem
+linearised in the simulator: with the states and other unknowns projected out, H = J'WJ, g = J'Wr, and a prior
+c ~ N(0, (lambda P)^-1) on second differences, the evidence
 
     g'(H + lambda P)^-1 g - log det(H + lambda P) + log det(lambda P)
 

@@ -13,10 +13,19 @@ TERMS = {
     "rotation": ("rotation", "couple over the inertia that depends on the rotation", "rad s-2"),
     "rate": ("rate", "couple over the inertia that depends on the angular velocity", "rad s-2"),
     "damping": ("rotation", "couple over the inertia and the angular velocity that depends on the rotation", "s-1"),
+    "friction": (
+        "rotation", "couple over the inertia, times the sign of the angular velocity, that depends on the rotation",
+        "rad s-2",
+    ),
     "base": ("base", "couple over the inertia that depends on the acceleration of the base", "rad s-2"),
+    "base_damping": (
+        "base", "couple over the inertia and the angular velocity that depends on the acceleration of the base", "s-1",
+    ),
     "impact": ("rate", "change of the factor on the restitution, by the angular velocity before", "1"),
-}
+}  # fmt: skip
 """By term: the variable of its table, what it is, the unit of its values."""
+FACTORS = {"damping": "rate", "base_damping": "rate", "friction": "direction"}
+"""By term, what its table is times of: the angular velocity, or its sign; of no other term anything."""
 REACHES = {
     "rotation": ("reach_rotation", "rad", "rotation of the last rows"),
     "rate": ("reach_rate", "rad s-1", "angular velocity of the last rows"),
@@ -56,8 +65,8 @@ MECHANISM = Mechanism(
             for name, unit, what in REACHES.values()
         ),
     ),
-    equation="couple I_O [f_1(theta) + f_2(theta') + f_3(theta) theta' + f_4(a)], e times 1 + f_5(theta'); f linear "
-    "between rows, constant beyond the last",
+    equation="couple I_O [f_1(theta) + f_2(theta') + f_3(theta) theta' + f_4(theta) sign theta' + f_5(a) "
+    "+ f_6(a) theta'], e times 1 + f_7(theta'); f linear between rows, constant beyond the last",
     signature="wherever it was found",
     sentence="a law in a table acts",
     acts={"housner": on_housner},

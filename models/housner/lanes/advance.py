@@ -93,7 +93,9 @@ def start(given: Table, result: Table, w: Table, lane: int, slot: int, time: flo
     theta, omega = given[lane, r.Q_THETA], given[lane, r.Q_OMEGA]
     w[r.TH, slot], w[r.OM, slot] = theta, omega
     w[r.PEAK, slot] = max(given[lane, r.Q_PEAK], abs(theta))
-    every_swing = given[lane, r.Q_EXPONENT] != 0.0 or given[lane, r.Q_COULOMB] > 0.0
+    stops = given[lane, r.Q_COULOMB] > 0.0 or given.shape[1] > r.N_GIVEN
+    w[r.STOPS, slot] = 1.0 if stops else 0.0
+    every_swing = given[lane, r.Q_EXPONENT] != 0.0 or stops
     w[r.TURN, slot] = -1.0 if every_swing else w[r.PEAK, slot]
     side = 1.0 if theta > 0.0 or (theta == 0.0 and omega >= 0.0) else -1.0
     stand_on(given, w, lane, slot, side, linear)
@@ -110,7 +112,7 @@ def start(given: Table, result: Table, w: Table, lane: int, slot: int, time: flo
         result[lane, r.R_MODE] = r.RINGING if given[lane, r.Q_FREQUENCY] < math.inf else r.DOWN
     else:
         result[lane, r.R_UP_SINCE] = time
-        holds = given[lane, r.Q_COULOMB] > 0.0 and not given[lane, r.Q_FREQUENCY] < math.inf
+        holds = stops and not given[lane, r.Q_FREQUENCY] < math.inf
         result[lane, r.R_MODE] = r.HELD if omega == 0.0 and holds else r.UP
 
 
@@ -161,7 +163,7 @@ def attend(
     # a limit of -1: the step of the vector loop does not count
     stepped = w[r.LIMIT, slot] > 0.0 and result[lane, r.R_MODE] == r.UP
     turned_only = stepped and w[r.SIDE, slot] * th1 >= 0.0 and abs(th1) < HALF_TURN
-    if turned_only and (omega * om1 >= 0.0 or w[r.COULOMB, slot] == 0.0):
+    if turned_only and (omega * om1 >= 0.0 or w[r.STOPS, slot] == 0.0):
         if omega * om1 < 0.0:
             raise_peak(result, w, lane, slot, turning_point(theta, omega, th1, om1, (1.0 - begun) * h))
     elif not abs(th1) < HALF_TURN and stepped and abs(theta) > 1.0:
@@ -272,7 +274,8 @@ def advance(
                     0.0,
                 )
                 w[r.START, slot], w[r.TURN, slot] = 0.0, 0.0
-                w[r.COULOMB, slot], w[r.PITCH, slot], w[r.IM, slot] = 0.0, 0.0, 1.0
+                w[r.STOPS, slot], w[r.COULOMB, slot] = 0.0, 0.0
+                w[r.PITCH, slot], w[r.IM, slot] = 0.0, 1.0
                 at[slot] = 0
             else:
                 active += 1

@@ -59,7 +59,7 @@ def acceleration(
         damping = (
             corner * (w[r.VISCOUS, lane] * omega + w[r.QUADRATIC, lane] * omega * abs(omega))
             + w[r.COULOMB, lane] * w[r.DIRECTION, lane]
-            - corner * table_acceleration(w, r.TABLE, lane, theta, omega, a, s, general)
+            - corner * table_acceleration(w, r.TABLE, lane, theta, omega, a, s, w[r.DIRECTION, lane], general)
         )
         # rounding must not tell the general equation at its nulls from the plain one by more than an ulp or two
         moment = (a - g * psi) * x + g * share * z + rho * z * omega * omega

@@ -131,7 +131,7 @@ def one_step(
             w[r.ROUNDS, slot] += 1.0
             continue
         if omega * om1 < 0.0:
-            if w[r.COULOMB, slot] > 0.0:
+            if w[r.STOPS, slot] > 0.0:
                 rest, th1, work = turning(w, slot, theta, omega, record, i, f, rest, h, general, linear)
                 om1 = 0.0
                 w[r.DIRECTION, slot] = -w[r.DIRECTION, slot]

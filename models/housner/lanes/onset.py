@@ -8,7 +8,7 @@ from typing import Any
 from models.housner.lanes import rows as r
 from models.housner.lanes.impact import pivot
 from models.housner.lanes.step import inputs
-from models.housner.lanes.table import BASE, RATE, ROTATION, of_given
+from models.housner.lanes.table import BASE, FRICTION, RATE, ROTATION, of_given
 from models.lanes.arrays import Table
 from models.lanes.chunks import CHUNK
 from models.lanes.compiler import called, inlined
@@ -30,6 +30,7 @@ def excess(
     if given.shape[1] > r.N_GIVEN:
         law = of_given(given, r.N_GIVEN, ROTATION, lane, side * 1e-300)
         law += of_given(given, r.N_GIVEN, RATE, lane, side * 1e-300)
+        law += of_given(given, r.N_GIVEN, FRICTION, lane, side * 1e-300) * side
         law += of_given(given, r.N_GIVEN, BASE, lane, a * given[lane, r.N_GIVEN + 2])
         push += side * law * (inertia + h * h + b * b)
     if w[r.JOINT, slot] >= 0.0:

@@ -45,7 +45,8 @@ Z, Z1 = 41, 42  # in flight: z and z' of the mass centre
 START, START0 = 43, 44  # fraction of the coming step that is over already; of the step just taken
 ROUNDS = 45  # impacts so far within this step of the record
 TURN = 46  # a turning point matters when |theta| exceeds this: the peak so far, or always (-1)
-TABLE = 47  # a law in a table, as in `models.housner.lanes.table`
+STOPS = 47  # whether a law may hold the lane at a turning point
+TABLE = 48  # a law in a table, as in `models.housner.lanes.table`
 N_WORK = TABLE + N_TABLE
 
 # --- given: constants of a lane
@@ -65,7 +66,7 @@ N_GIVEN = 38
 ) = range(13)  # fmt: skip
 N_RESULT = 13
 
-# R_MODE: rocking, at rest, held at a turning point by a Coulomb couple, sliding flat on the base, in free
+# R_MODE: rocking, at rest, held at a turning point by friction, sliding flat on the base, in free
 # flight, ringing with the base in full contact; only a rocking lane moves in the vector loop
 UP, DOWN, HELD, SLIDING, FLIGHT, RINGING = 0.0, 1.0, 2.0, 3.0, 4.0, 5.0
 

@@ -138,7 +138,7 @@ def turning(
 
 @called
 def released(w: Table, slot: int, theta: float, record: Table, i: int, f: float, general: Any, linear: Any) -> bool:
-    """Whether the other moments overcome the Coulomb couple that holds the block; sets its direction."""
+    """Whether the other moments overcome the friction that holds the block; sets its direction."""
     a, g, p, q = inputs(w, slot, record, i, f)
     for direction in (1.0, -1.0):
         w[r.DIRECTION, slot] = direction

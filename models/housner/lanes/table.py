@@ -18,8 +18,9 @@ KNOTS = 6
 SPACINGS = 3
 LAST = float(KNOTS - 1)
 LENGTH = 2 * KNOTS
-ROTATION, RATE, DAMPING, BASE, IMPACT = range(SPACINGS, SPACINGS + 5 * LENGTH, LENGTH)
-N_TABLE = SPACINGS + 5 * LENGTH
+TERMS = 7
+ROTATION, RATE, DAMPING, FRICTION, BASE, BASE_DAMPING, IMPACT = range(SPACINGS, SPACINGS + TERMS * LENGTH, LENGTH)
+N_TABLE = SPACINGS + TERMS * LENGTH
 
 
 @inlined
@@ -46,27 +47,37 @@ def of_given(given: Table, first: int, at: int, lane: int, x: float) -> float:
 
 
 @inlined
-def _acting(w: Table, first: int, slot: int, theta: float, omega: float, a: float, side: float) -> float:
-    x = theta * w[first, slot]
+def _acting(
+    w: Table, first: int, slot: int, theta: float, omega: float, a: float, side: float, direction: float
+) -> float:
+    x, y = theta * w[first, slot], a * w[first + 2, slot]
+    push = 1.0 if a > 0.0 else -1.0
     return (
         of_work(w, first, ROTATION, slot, x, side)
-        + of_work(w, first, RATE, slot, omega * w[first + 1, slot], 1.0 if omega > 0.0 else -1.0)
+        + of_work(w, first, RATE, slot, omega * w[first + 1, slot], direction)
         + of_work(w, first, DAMPING, slot, x, side) * omega
-        + of_work(w, first, BASE, slot, a * w[first + 2, slot], 1.0 if a > 0.0 else -1.0)
+        + of_work(w, first, FRICTION, slot, x, side) * direction
+        + of_work(w, first, BASE, slot, y, push)
+        + of_work(w, first, BASE_DAMPING, slot, y, push) * omega
     )
 
 
 def table_acceleration(
-    w: Table, first: int, slot: int, theta: float, omega: float, a: float, side: float, general: Any
+    w: Table, first: int, slot: int, theta: float, omega: float, a: float, side: float, direction: float, general: Any
 ) -> float:
-    """Angular acceleration (rad s-2) of the law in the rows from ``first`` on; 0 where ``general`` knows none."""
-    return _acting(w, first, slot, theta, omega, a, side)
+    """Angular acceleration (rad s-2) of the law in the rows from ``first`` on; 0 where ``general`` knows none.
+
+    ``side`` and ``direction`` are the signs of theta and theta'.
+    """
+    return _acting(w, first, slot, theta, omega, a, side, direction)
 
 
-def _choose(w, first, slot, theta, omega, a, side, general):  # type: ignore[no-untyped-def]
+def _choose(w, first, slot, theta, omega, a, side, direction, general):  # type: ignore[no-untyped-def]
     if isinstance(general, types.Integer):
-        return lambda w, first, slot, theta, omega, a, side, general: _acting(w, first, slot, theta, omega, a, side)
-    return lambda w, first, slot, theta, omega, a, side, general: 0.0
+        return lambda w, first, slot, theta, omega, a, side, direction, general: _acting(
+            w, first, slot, theta, omega, a, side, direction
+        )
+    return lambda w, first, slot, theta, omega, a, side, direction, general: 0.0
 
 
 in_kernels(table_acceleration, _choose)

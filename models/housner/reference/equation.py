@@ -102,13 +102,18 @@ class Equation:
 
     def excess(self, side: int, largest: float, ground: tuple[float, float, float]) -> float:
         """Moment (N m) by which the block at rest starts to turn towards ``side``; <= 0: it stays."""
-        moment, _ = self.moment(0.0, 0.0, side, largest, ground)
+        return self.push(0.0, side, side, largest, ground)
+
+    def push(
+        self, theta: float, direction: int, side: int, largest: float, ground: tuple[float, float, float]
+    ) -> float:
+        """Moment (N m) by which the block without velocity starts to turn in ``direction``; <= 0: it stays."""
+        moment, _ = self.moment(theta, 0.0, side, largest, ground)
         if self.table is not None:
-            corner = self.half_width(side, largest) + self.rho
-            moment += (self.base_inertia + self.mass * corner**2) * self.table.acceleration(
-                0.0, 0.0, ground[0], side, side
-            )
-        return side * moment - self.coulomb
+            corner = self.half_width(side, max(largest, abs(theta))) + self.rho
+            law = self.table.acceleration(theta, 0.0, ground[0], side, direction)
+            moment += (self.base_inertia + self.mass * corner**2) * law
+        return direction * moment - self.coulomb
 
     def friction_demand(
         self,

@@ -99,11 +99,8 @@ class Rocking:
         self.events.append(Event(self.time, "onset"))
 
     def _hold(self, piece: PitchedPiece, shaken: bool) -> None:
-        eq = self.equation
-
         def excess(time: float, direction: int) -> float:
-            moment, _ = eq.moment(self.theta, 0.0, self.side, self.largest, piece.at(time))
-            return direction * moment - eq.coulomb
+            return self.equation.push(self.theta, direction, self.side, self.largest, piece.at(time))
 
         time = min(first_positive(excess, d, self.time, piece.end) for d in (1, -1))
         end = min(time, piece.end)
@@ -119,13 +116,13 @@ class Rocking:
         """Sign of the velocity, of the moment where there is none, 0 where friction holds the block."""
         if self.rate != 0.0:
             return 1 if self.rate > 0.0 else -1
-        moment, _ = self.equation.moment(self.theta, 0.0, self.side, self.largest, piece.at(self.time))
         if self.theta == 0.0:
             return self.side
-        if abs(moment) <= self.equation.coulomb:
+        ground = piece.at(self.time)
+        ahead, back = (self.equation.push(self.theta, d, self.side, self.largest, ground) for d in (1, -1))
+        if max(ahead, back) <= 0.0:
             return 0
-        ahead = 1 if moment > 0.0 else -1
-        return 1 if self._rates(self.time, self._state(), ahead, piece)[1] > 0.0 else -1
+        return 1 if self._rates(self.time, self._state(), 1 if ahead > back else -1, piece)[1] > 0.0 else -1
 
     def _state(self) -> FloatArray:
         """theta (rad), theta' (rad s-1), energy lost since (J), and the extra degrees of freedom."""

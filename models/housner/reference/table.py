@@ -9,11 +9,11 @@ import numpy as np
 from models.base import FloatArray
 from models.housner.block import REACHES
 
-TERMS, KNOTS = 5, 6
+TERMS, KNOTS = 7, 6
 
 
 class LawInTable:
-    """The law of one lane; ``columns`` as in `Block.table`: reaches of rotation, rate, base, then the five tables."""
+    """The law of one lane; ``columns`` as in `Block.table`: reaches of rotation, rate, base, then the tables."""
 
     def __init__(self, columns: FloatArray) -> None:
         self.reach = columns[:REACHES]
@@ -27,10 +27,15 @@ class LawInTable:
 
     def acceleration(self, theta: float, rate: float, base: float, side: float, direction: float) -> float:
         """Angular acceleration (rad s-2); ``side`` and ``direction`` are the signs of theta and theta'."""
-        at_rotation, damping = self._at(0, 0, theta, side), self._at(2, 0, theta, side)
-        at_rate = self._at(1, 1, rate, direction)
-        return at_rotation + at_rate + damping * rate + self._at(3, 2, base, math.copysign(1.0, base))
+        push = math.copysign(1.0, base)
+        at_rotation, at_rate, at_base = (
+            self._at(0, 0, theta, side),
+            self._at(1, 1, rate, direction),
+            self._at(4, 2, base, push),
+        )
+        damping = self._at(2, 0, theta, side) + self._at(5, 2, base, push)
+        return at_rotation + at_rate + at_base + damping * rate + self._at(3, 0, theta, side) * direction
 
     def at_impact(self, rate: float) -> float:
         """Change of the factor on the restitution for the rate before (rad s-1)."""
-        return self._at(4, 1, rate, rate)
+        return self._at(6, 1, rate, rate)

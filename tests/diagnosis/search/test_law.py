@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from diagnosis.data.measured import Measured
 from diagnosis.fit.misfit import Misfit
@@ -15,7 +16,7 @@ from diagnosis.fit.unknowns import of_specimen
 from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.search.law import Law, estimate
 from diagnosis.search.refit import Explanation
-from models.mechanisms.table_force import KNOTS, MECHANISM, row
+from models.mechanisms.table_force import KNOTS, MECHANISM, SIDES, row
 from tests.diagnosis.made import SPECIMEN, TRUE, recording
 
 RATE = 0.6
@@ -62,6 +63,24 @@ def test_a_one_sided_dashpot_is_found_and_predicts() -> None:
     assert np.mean(inside[above | below]) >= 0.7
     assert np.mean(table.value[above]) < -0.6 * RATE < 2.0 * np.mean(table.value[below])
     other = windows((3, 4), HIDDEN, 1)
+    before, after = chi2(plain, other), chi2(plain, other, law)
+    assert before > 1.5 and (before - after) / (before - 1.0) > 0.7
+
+
+@pytest.mark.parametrize(
+    ("term", "hidden"),
+    [
+        ("friction", {row("friction", side, k): -0.12 for side in SIDES for k in range(3)}),
+        ("base_damping", {row("base_damping", side, k): -0.3 * k for side in SIDES for k in range(KNOTS)}),
+    ],
+)
+def test_laws_of_two_variables_are_found_and_predict(term: str, hidden: dict[str, float]) -> None:
+    """A guide that rubs near the upright position; a damper that grips while the base accelerates."""
+    hidden = MECHANISM.nulls | {"reach_rotation": 0.1, "reach_base": 3.0} | hidden
+    plain = base(windows((1, 2), hidden, 0))
+    law = estimate(plain)
+    assert law is not None and law.tables[0].term == term
+    other = windows((3, 4), hidden, 1)
     before, after = chi2(plain, other), chi2(plain, other, law)
     assert before > 1.5 and (before - after) / (before - 1.0) > 0.7
 
