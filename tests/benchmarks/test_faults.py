@@ -20,6 +20,7 @@ ONCE = (
     "disk full in an export, netCDF",
     "disk full in a map",
     "disk full in a diagnosis",
+    "a folder that may not be written",
     "three runs of one study at once",
     "clocks",
 )
