@@ -8,6 +8,7 @@ known if it ends the process; what went wrong is a line of JSON each.
 from __future__ import annotations
 
 import json
+import os
 import random
 import re
 import resource
@@ -16,16 +17,19 @@ import sys
 import time
 import traceback
 import warnings
+from contextlib import suppress
 from pathlib import Path
 from types import FrameType
+
+import psutil
 
 from benchmarks.fuzz.mutate import mutate
 from benchmarks.fuzz.readers import Reader, readers
 from grids.netcdf_file import MORE_BYTES, TIMES_THE_FILE
 from models.errors import InputError
 
-LONGEST = 5.0
-"""s"""
+LONGEST, WAITS = 5.0, 60.0
+"""s of computing, by this process and those that it has started, and s by the clock, after which an input hangs."""
 MOST_KEPT = 400
 SAYS_EVERY = 5.0
 """s between two lines on how far it is: a silent process is taken for hung."""
@@ -35,19 +39,44 @@ class Hang(BaseException):
     """No code that is read catches this."""
 
 
-def _hang(number: int, frame: FrameType | None) -> None:
-    raise Hang
+def computed() -> float:
+    """s of computing by this process and by those that it has started."""
+    own = os.getpid()
+    children = Path(f"/proc/{own}/task/{own}/children").read_text().split()
+    used = 0.0
+    for process in (own, *map(int, children)):
+        with suppress(psutil.NoSuchProcess):
+            used += sum(psutil.Process(process).cpu_times()[:4])
+    return used
+
+
+class Alarm:
+    """Raises Hang in what takes too long; on a busy machine a clock alone would tell the others' work."""
+
+    def __init__(self) -> None:
+        signal.signal(signal.SIGALRM, self._look)
+
+    def set(self) -> None:
+        self.begun, self.since = time.monotonic(), computed()
+        signal.setitimer(signal.ITIMER_REAL, LONGEST, 1.0)
+
+    def off(self) -> None:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+
+    def _look(self, number: int, frame: FrameType | None) -> None:
+        if computed() - self.since > LONGEST or time.monotonic() - self.begun > WAITS:
+            raise Hang
 
 
 def peak_bytes() -> int:
     return 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 
 
-def attempt(reader: Reader, folder: Path, data: bytes) -> tuple[str, str]:
+def attempt(reader: Reader, folder: Path, data: bytes, alarm: Alarm) -> tuple[str, str]:
     """Read one input: what went wrong ("" if nothing did) and where it ended."""
     (folder / reader.file).write_bytes(data)
     before = peak_bytes()
-    signal.setitimer(signal.ITIMER_REAL, LONGEST)
+    alarm.set()
     wrong = where = ""
     try:
         said = reader.check(reader.read(folder))
@@ -62,7 +91,7 @@ def attempt(reader: Reader, folder: Path, data: bytes) -> tuple[str, str]:
     except Exception:
         wrong, where = "tracebacks", traceback.format_exc()
     finally:
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        alarm.off()
     if not wrong and peak_bytes() - before > TIMES_THE_FILE * len(data) + MORE_BYTES:
         wrong, where = "over_memory", f"{(peak_bytes() - before) / 1e6:.0f} MB for {len(data)} bytes"
     return wrong, where
@@ -80,16 +109,16 @@ def main() -> None:
     reader = next(reader for reader in readers() if reader.name == name)
     folder, draw = Path(place), random.Random(f"{name} {seed}")
     prepare(reader, folder)
-    signal.signal(signal.SIGALRM, _hang)
+    alarm = Alarm()
     warnings.simplefilter("error")
     corpus, seen = list(reader.seeds), set[str]()
     for data in reader.seeds:
-        attempt(reader, folder, data)
+        attempt(reader, folder, data, alarm)
     begun = said = time.perf_counter()
     for k in range(int(inputs)):
         source = draw.choice(corpus[-20:] if draw.random() < 0.3 else corpus)
         data = mutate(source, corpus, draw, reader.binary)
-        wrong, where = attempt(reader, folder, data)
+        wrong, where = attempt(reader, folder, data, alarm)
         if where not in seen:
             seen.add(where)
             if len(corpus) < MOST_KEPT:

@@ -28,10 +28,10 @@ FEW = {"cube without its seal": 1, "cube": 8}
 """Inputs for those of which each takes a process."""
 
 
-@pytest.fixture(autouse=True)
-def alarm() -> Iterator[None]:
-    old = signal.signal(signal.SIGALRM, campaign._hang)
-    yield
+@pytest.fixture
+def alarm() -> Iterator[campaign.Alarm]:
+    old = signal.getsignal(signal.SIGALRM)
+    yield campaign.Alarm()
     signal.signal(signal.SIGALRM, old)
 
 
@@ -45,15 +45,17 @@ def test_every_reader_is_here(by_name: dict[str, Reader]) -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_a_mutated_file_is_content_or_a_sentence(name: str, by_name: dict[str, Reader], tmp_path: Path) -> None:
+def test_a_mutated_file_is_content_or_a_sentence(
+    name: str, by_name: dict[str, Reader], tmp_path: Path, alarm: campaign.Alarm
+) -> None:
     reader, draw = by_name[name], random.Random(name)
     campaign.prepare(reader, tmp_path)
-    assert all(campaign.attempt(reader, tmp_path, seed) == ("", "accepted") for seed in reader.seeds[:1])
+    assert all(campaign.attempt(reader, tmp_path, seed, alarm) == ("", "accepted") for seed in reader.seeds[:1])
     kept = CORPUS / name.replace(" ", "_").replace(",", "")
     once = [path.read_bytes() for path in sorted(kept.glob("*"))]
     fresh = [mutate(draw.choice(reader.seeds), reader.seeds, draw, reader.binary) for _ in range(FEW.get(name, 60))]
     for data in once + fresh:
-        wrong, where = campaign.attempt(reader, tmp_path, data)
+        wrong, where = campaign.attempt(reader, tmp_path, data, alarm)
         assert not wrong, f"{where}\n{data[:500]!r}"
 
 
@@ -68,7 +70,7 @@ def harmful(read: Callable[[Path], Any]) -> Reader:
     return Reader("harmful", "x", (b"x",), read)
 
 
-def test_the_harness_sees_harm(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_harness_sees_harm(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, alarm: campaign.Alarm) -> None:
     def fails(folder: Path) -> Any:
         raise KeyError("x")
 
@@ -81,7 +83,15 @@ def test_the_harness_sees_harm(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
         (silent, "silent"),
         (harmful(takes_memory), "over_memory"),
     ):
-        assert campaign.attempt(reader, tmp_path, b"x")[0] == wrong
-    assert campaign.attempt(harmful(lambda folder: None), tmp_path, b"x") == ("", "accepted")
+        assert campaign.attempt(reader, tmp_path, b"x", alarm)[0] == wrong
+    assert campaign.attempt(harmful(lambda folder: None), tmp_path, b"x", alarm) == ("", "accepted")
     monkeypatch.setattr(campaign, "LONGEST", 0.1)
-    assert campaign.attempt(harmful(lambda folder: time.sleep(5)), tmp_path, b"x")[0] == "hangs"
+    assert campaign.attempt(harmful(lambda folder: _busy(5.0)), tmp_path, b"x", alarm)[0] == "hangs"
+    monkeypatch.setattr(campaign, "WAITS", 1.0)
+    assert campaign.attempt(harmful(lambda folder: time.sleep(20)), tmp_path, b"x", alarm)[0] == "hangs"
+
+
+def _busy(seconds: float) -> None:
+    begun = time.monotonic()
+    while time.monotonic() - begun < seconds:
+        pass
