@@ -52,6 +52,11 @@ class Equation:
         self.alpha = float(block.slenderness[0])
         self.frequency_parameter = float(block.frequency_parameter[0])
 
+    @property
+    def rubs(self) -> bool:
+        """Whether friction may hold the block where it turns."""
+        return self.coulomb > 0.0 or self.table is not None
+
     def half_width(self, side: int, largest: float) -> float:
         """b' in m of the contact on ``side``."""
         inset = min(MOST_INSET, self.crushing * largest)

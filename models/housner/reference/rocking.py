@@ -49,7 +49,7 @@ class Rocking:
         self.longest = 0.1 / eq.frequency_parameter
         self.events: list[Event] = []
         self.time = self.theta = self.rate = 0.0
-        self.mode, self.side = "rest", 1
+        self.mode, self.side, self.released = "rest", 1, 0
         self.largest = self.arc = self.crossing = self.lost = self.uplift = self.friction = 0.0
         self.impacts, self.earlier, self.onset, self.overturned = 0, 0.0, math.nan, math.nan
         self.failed = self.finished = False
@@ -102,7 +102,7 @@ class Rocking:
         def excess(time: float, direction: int) -> float:
             return self.equation.push(self.theta, direction, self.side, self.largest, piece.at(time))
 
-        time = min(first_positive(excess, d, self.time, piece.end) for d in (1, -1))
+        time, way = min((first_positive(excess, d, self.time, piece.end), d) for d in (1, -1))
         end = min(time, piece.end)
         self._write(end, None)
         self.uplift += end - self.time
@@ -110,10 +110,11 @@ class Rocking:
         if math.isinf(time):
             self.finished = not shaken
         else:
-            self.mode = "up"
+            self.mode, self.released = "up", way
 
     def _direction(self, piece: PitchedPiece) -> int:
         """Sign of the velocity, of the moment where there is none, 0 where friction holds the block."""
+        released, self.released = self.released, 0
         if self.rate != 0.0:
             return 1 if self.rate > 0.0 else -1
         if self.theta == 0.0:
@@ -121,7 +122,8 @@ class Rocking:
         ground = piece.at(self.time)
         ahead, back = (self.equation.push(self.theta, d, self.side, self.largest, ground) for d in (1, -1))
         if max(ahead, back) <= 0.0:
-            return 0
+            # where friction has just let go the moment is its couple, to rounding
+            return released
         return 1 if self._rates(self.time, self._state(), 1 if ahead > back else -1, piece)[1] > 0.0 else -1
 
     def _state(self) -> FloatArray:
@@ -186,7 +188,7 @@ class Rocking:
         named += [("topple", topple, 1)] if watch else []
         named += [("kink", kink(a), 0) for a in self._kinks(direction)]
         named += self._more_events(piece, direction)
-        hop = self._hop(lambda time: derivative(time, start)[1], piece.end)
+        hop = self._hop(lambda time: derivative(time, start)[1], piece.end, direction)
         solution, kind = self._solve(derivative, start, named, piece.end, hop)
         self._demand(solution, piece, direction)
         self.uplift += self.time - float(solution.t[0])
@@ -229,11 +231,12 @@ class Rocking:
             return solution, None
         return solution, next(n for (n, _, _), t in zip(named, solution.t_events or [], strict=True) if t.size)
 
-    def _hop(self, second: Callable[[float], float], end: float) -> float:
-        """First step (s) short enough that a small hop off the ground is not stepped over."""
-        if self.theta != 0.0:
+    def _hop(self, second: Callable[[float], float], end: float, direction: int) -> float:
+        """First step (s) short enough that a small hop off the ground, or between two stops, is not stepped over."""
+        if self.theta != 0.0 and (self.rate != 0.0 or not self.equation.rubs):
             return math.inf
-        now, later = self.side * second(self.time), self.side * second(end)
+        way = direction if self.theta != 0.0 else self.side
+        now, later = way * second(self.time), way * second(end)
         if now > 0.0 and later < 0.0:
             return (end - self.time) * now / (now - later)
         if min(now, later) < 0.0 and self.rate != 0.0:

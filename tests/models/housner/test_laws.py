@@ -104,6 +104,17 @@ def test_coulomb_friction_holds_the_block_and_delays_the_onset() -> None:
     assert by_reference(block, shaking, onset * (1 + 1e-9)).outputs["status"] == 2
 
 
+@pytest.mark.parametrize("share", [0.02, 0.4])
+def test_a_block_that_friction_lets_go_moves_on(share: float) -> None:
+    """Held and let go inside one sample, or by a moment that is the couple to rounding."""
+    shaking = random_motion(np.random.default_rng(4), duration=4.0)
+    block = assemble({"height": 3.0, "width": 0.6, "mass": 1000.0, "gravity": 9.81}, True)
+    run = by_reference(block.replace(coulomb=share * 1000.0 * 9.81 * 0.3), shaking, 3.0, tail=1.0)
+    assert run.outputs["status"] == 2 and run.outputs["impacts"] > 2
+    held = (run.rotation != 0.0) & (run.rate == 0.0)
+    assert held.any() == (share == 0.4)
+
+
 def test_work_of_friction_is_the_couple_times_the_angle() -> None:
     block = PLAIN.replace(coulomb=0.05 * WEIGHT * B, restitution=1.0)
     run = free(block, 0.1, 0.8)
