@@ -29,17 +29,24 @@ def index(s1: int, s2: int) -> int:
 class State(NamedTuple):
     """A configuration (``sides``: s1, s2), ``q`` = (theta_1, r) in rad and ``rate`` in rad s-1.
 
-    A closed joint (side 0) has zero opening and rate.
+    A closed joint (side 0) has zero opening and rate. ``way``: the sign of theta_1' that dry friction acts against,
+    0 where it holds the wall; without meaning where the base joint is closed or nothing rubs.
     """
 
     sides: tuple[int, int]
     q: tuple[float, float]
     rate: tuple[float, float]
+    way: int = 1
 
     @property
     def corners(self) -> tuple[int, int]:
         """Pivots to write the equations about: either serves at a closed joint."""
         return self.sides[0] or 1, self.sides[1] or 1
+
+    @property
+    def free(self) -> tuple[int, int]:
+        """``sides``, with 0 for a wall that friction holds too: where 0, the joint's rate stays zero."""
+        return self.sides[0] if self.way else 0, self.sides[1]
 
     @property
     def theta(self) -> tuple[float, float]:

@@ -12,11 +12,15 @@ turn into A_t = (A_z, -A_x) when differentiated by their angle, so Lagrange's eq
 q = (theta_1, r), are
 
     M11 = I1 + m1 A.A + I2 + m2 D.D      M12 = I2 + m2 D.C      M22 = I2 + m2 C.C
-    F1 = m2 X (theta_2'^2 - theta_1'^2) + G (m1 A_x + m2 D_x) - a (m1 A_z + m2 D_z) - c theta_1' - K1 psi''
+    F1 = m2 X (theta_2'^2 - theta_1'^2) + G (m1 A_x + m2 D_x) - a (m1 A_z + m2 D_z) - c theta_1' - C d - K1 psi''
     F2 = -m2 X theta_1'^2 + m2 (G C_x - a C_z) - K2 psi'',          X = B_z C_x - B_x C_z
 
 (Psycharis, Earthquake Engng Struct. Dyn. 19, 1990; Spanos, Roussis, Politis, Soil Dyn. Earthquake
 Engng 21, 2001, have them for each configuration.) A closed joint takes its row and column out.
+
+C is the couple of dry friction between block 1 and the base, d the sign of theta_1'. Where theta_1' = 0 friction is
+one more contact: it holds the wall, upright or not, as long as -C <= F1 - M12 r'' <= C (F1 without it), and the wall
+that gets away goes the way d of what exceeds C. So it raises the threshold at which the base opens too.
 
 A base that pitches by psi pushes with a - G psi in the place of a and, as its frame turns, with the couples K psi''
 of both bodies upright, K1 = I1 + m1 h1^2 + I2 + m2 (2 h1 + h2)^2, K2 = I2 + m2 (2 h1 + h2) h2 (`models.pitch`).
@@ -111,8 +115,10 @@ def products(stack: Stack, after: Vectors, before: Vectors) -> tuple[Real, Real,
     )
 
 
-def motion(stack: Stack, s1: Real, s2: Real, q: Rotations, rate: Rotations, ground: Ground, linear: bool) -> System:
-    """M q'' = F about the pivots ``s1``, ``s2`` (1 or -1)."""
+def motion(
+    stack: Stack, s1: Real, s2: Real, q: Rotations, rate: Rotations, ground: Ground, linear: bool, way: Real = 0.0
+) -> System:
+    """M q'' = F about the pivots ``s1``, ``s2`` (1 or -1); dry friction acts against ``way`` (1, -1, 0: not at all)."""
     v = vectors(stack, s1, s2, q, linear)
     a, gravity, turning = ground
     frame_1, frame_2 = stack.frame_inertia
@@ -124,7 +130,7 @@ def motion(stack: Stack, s1: Real, s2: Real, q: Rotations, rate: Rotations, grou
         w1, w2 = rate[0] * rate[0], (rate[0] + rate[1]) * (rate[0] + rate[1])
         cross = m2 * (v.dz * v.cx - v.dx * v.cz)
         f1, f2 = f1 + cross * (w2 - w1), f2 - cross * w1
-    f1 = f1 - stack.viscous * stack.corner_inertia(s1) * rate[0] - frame_1 * turning
+    f1 = f1 - stack.viscous * stack.corner_inertia(s1) * rate[0] - stack.coulomb * way - frame_1 * turning
     f2 = f2 - frame_2 * turning
     m11, m12, _, m22 = products(stack, still, still)
     return System(m11, m12, m22, f1, f2)

@@ -40,7 +40,7 @@ class Stacked(Model[Stack]):
     states = declaration.STATES
     identification = IDENTIFICATION
     bodies = 2
-    resumes_with = ("pivot_inset", "tilt", "eccentricity", "restitution", "viscous_damping")
+    resumes_with = ("pivot_inset", "tilt", "eccentricity", "restitution", "viscous_damping", "coulomb_damping")
 
     def assemble(self, values: Values, options: Mapping[str, str], *, vertical: bool, size: int) -> Stack:
         return assemble(values, vertical, size)

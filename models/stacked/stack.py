@@ -26,6 +26,7 @@ class Stack:
     ``base_restitution``, ``top_restitution``: given ratio of the relative angular velocities at a
     joint (nan: by projection), times ``base_factor``, ``top_factor``; see `models.stacked.reference.impact`.
     ``viscous``: couple on block 1 over the inertia of both about the corner and over theta_1', s-1.
+    ``coulomb``: couple of dry friction (N m) on block 1 against theta_1', see `models.stacked.equation`.
     ``pitch_per_acceleration`` (rad s2 m-1), ``pitch_low_pass`` (Hz): of the base, see `models.pitch`.
     """
 
@@ -50,6 +51,7 @@ class Stack:
     base_factor: FloatArray
     top_factor: FloatArray
     viscous: FloatArray
+    coulomb: FloatArray
     pitch_per_acceleration: FloatArray
     pitch_low_pass: FloatArray
 
@@ -183,6 +185,7 @@ def assemble(values: Values, vertical: bool, size: int | None = None) -> Stack:
         base_factor=one,
         top_factor=one,
         viscous=zero,
+        coulomb=zero,
         pitch_per_acceleration=zero,
         pitch_low_pass=np.full(shape, 10.0),
     )

@@ -17,11 +17,12 @@ from models.lanes.compiler import compiled, inlined
 from models.stacked.lanes import rows as r
 from models.stacked.lanes.attend import attend, finish, load, start, watch
 from models.stacked.lanes.equation import contact, rk4
+from models.stacked.lanes.friction import goes_on
 from models.stacked.lanes.locate import next_onset
 
 
 @inlined
-def step_all(w: Table, h: float, linear: Any, pitched: Any) -> int:
+def step_all(w: Table, h: float, linear: Any, general: Any) -> int:
     """One step of all W lanes without events; returns how many need attention."""
     flagged = 0
     for lane in range(r.W):
@@ -31,7 +32,7 @@ def step_all(w: Table, h: float, linear: Any, pitched: Any) -> int:
         g1 = w[r.GRAVITY, lane] + w[r.VSCALE, lane] * w[r.RV, lane]
         x1s, x2s = w[r.X1, lane], w[r.X2, lane]
         pitch, turning1, pushed = None, None, a1
-        if pitched is not None:
+        if general is not None:
             psi0, turning0 = w[r.PSI0, lane], w[r.TURNING0, lane]
             psi1, turning1 = w[r.PITCH, lane] * w[r.RP, lane], w[r.PITCH, lane] * w[r.RPP, lane]
             pushed = a1 - g1 * psi1
@@ -49,8 +50,11 @@ def step_all(w: Table, h: float, linear: Any, pitched: Any) -> int:
         w[r.WORK, lane] += work
         w[r.WORK_STEP, lane] = work
         w[r.MARGIN_1, lane], w[r.MARGIN_2, lane] = m1, m2
+        onward = True
+        if general is not None:
+            onward = goes_on(w[r.OPPOSING, lane], v1, x1s, u1, x1, h)
         # written so that a number that is none asks for attention
-        calm = (m1 >= 0.0) & (m2 >= 0.0) & (w[r.LIMIT_1, lane] > 0.0)
+        calm = (m1 >= 0.0) & (m2 >= 0.0) & onward & (w[r.LIMIT_1, lane] > 0.0)
         w[r.DEMAND_1, lane] = max(w[r.DEMAND_1, lane], d1 if calm else 0.0)
         w[r.DEMAND_2, lane] = max(w[r.DEMAND_2, lane], d2 if calm else 0.0)
         within = (abs(p1) < w[r.LIMIT_1, lane]) & (abs(p1 + p2) < w[r.LIMIT_2, lane])
@@ -73,7 +77,7 @@ def vacate(w: Table, slot: int) -> None:
 @compiled
 def advance(
     record: Record, first: Counts, last: Counts, given: Table, tables: Tables, every: int, fall: bool, linear: Any,
-    pitched: Any,
+    general: Any,
 ) -> int:  # fmt: skip
     """Run every lane from step ``first`` to ``last`` (n,); returns the number of lane-steps computed.
 
@@ -117,14 +121,14 @@ def advance(
                         trace[lane, k, 0], trace[lane, k, 1] = w[r.Q1, slot], w[r.Q2, slot]
                         trace[lane, k, 2], trace[lane, k, 3] = w[r.V1, slot], w[r.V2, slot]
                 if result[lane, r.R_CLOSED] != 0.0:
-                    at[slot] = next_onset(given, w, lane, slot, samples, at[slot], last[lane], chunk, pitched)
+                    at[slot] = next_onset(given, w, lane, slot, samples, at[slot], last[lane], chunk, general)
                     jumped = True
                 if at[slot] >= last[lane]:
                     finish(given, result, kept, w, lane, slot, at[slot] * h)
                     lane = -1
                     continue
                 shaken = at[slot] < shaken_steps
-                load(w, slot, samples, at[slot], linear, pitched)
+                load(w, slot, samples, at[slot], linear, general)
                 watch(given, w, lane, slot, shaken)
                 if jumped or at[slot] == shaken_steps:
                     # the ground may jump here: the closed joints must answer
@@ -153,11 +157,11 @@ def advance(
                 i = np.uint64(at[slot] + 1)
                 w[r.RA, slot] = samples[0, i]
                 w[r.RV, slot] = samples[1, i]
-                if pitched is not None:
+                if general is not None:
                     w[r.RP, slot] = samples[2, i]
                     w[r.RPP, slot] = samples[3, i]
                 at[slot] += 1
-            flagged = step_all(w, h, linear, pitched)
+            flagged = step_all(w, h, linear, general)
             steps += active
             if flagged > 0:
                 for slot in range(r.W):
@@ -167,7 +171,7 @@ def advance(
                         shaken = i + 1 < shaken_steps
                         over = attend(
                             given, result, kept, w, system, lane, slot, samples, i, h, shaken, fall, log, count,
-                            linear, pitched,
+                            linear, general,
                         )  # fmt: skip
                         if not math.isnan(over):
                             finish(given, result, kept, w, lane, slot, over)

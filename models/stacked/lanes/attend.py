@@ -13,6 +13,7 @@ from models.stacked.lanes import rows as r
 from models.stacked.lanes.bookkeeping import add_time, mark_configuration, raise_peaks, stand
 from models.stacked.lanes.equation import acceleration
 from models.stacked.lanes.events import one_step
+from models.stacked.lanes.friction import goes_on, rub, sign
 from models.stacked.lanes.locate import base
 from models.stacked.lanes.overturning import overturned
 
@@ -20,10 +21,9 @@ HALF_TURN = 0.5 * math.pi
 
 
 @inlined
-def sign(q: float, v: float) -> float:
+def side_of(q: float, v: float) -> float:
     """Side of a joint in a given state: that of its opening, else of its rate; 0 in contact."""
-    first = q if q != 0.0 else v
-    return 1.0 if first > 0.0 else -1.0 if first < 0.0 else 0.0
+    return sign(q if q != 0.0 else v)
 
 
 @called
@@ -35,6 +35,7 @@ def start(given: Table, result: Table, w: Table, lane: int, slot: int, time: flo
     w[r.VSCALE, slot] = given[lane, r.P_VSCALE]
     m1, m2 = given[lane, r.P_M1], given[lane, r.P_M2]
     high = given[lane, r.P_TALL] + given[lane, r.P_H2]
+    w[r.COULOMB, slot] = given[lane, r.P_COULOMB] / (m1 + m2)
     w[r.PITCH, slot] = given[lane, r.P_PITCH]
     w[r.FRAME_1, slot], w[r.FRAME_2, slot] = given[lane, r.P_FRAME_1] / (m1 + m2), given[lane, r.P_FRAME_2] / (m1 + m2)
     w[r.LEVER_1, slot] = (m1 * given[lane, r.P_H1] + m2 * high) / (m1 + m2)
@@ -48,19 +49,21 @@ def start(given: Table, result: Table, w: Table, lane: int, slot: int, time: flo
     for column in (acc.ONSET_BASE, acc.ONSET_TOP, acc.OVERTURNED_1, acc.OVERTURNED_2):
         result[lane, column] = math.nan
     result[lane, acc.PEAK_1], result[lane, acc.PEAK_2] = abs(q1), abs(q1 + q2)
-    s1, s2 = sign(q1, v1), sign(q2, v2)
+    s1, s2 = side_of(q1, v1), side_of(q2, v2)
     result[lane, r.R_SIDE_1], result[lane, r.R_SIDE_2], result[lane, r.R_SINCE] = s1, s2, time
     result[lane, r.R_CLOSED] = 1.0 if s1 == 0.0 and s2 == 0.0 else 0.0
     stand(given, w, lane, slot, s1, s2)
+    if w[r.COULOMB, slot] > 0.0:
+        rub(given, w, lane, slot, s1, sign(v1))
     mark_configuration(result, lane)
 
 
 @inlined
-def load(w: Table, slot: int, record: Table, i: int, linear: Any, pitched: Any) -> None:
+def load(w: Table, slot: int, record: Table, i: int, linear: Any, general: Any) -> None:
     """Inputs and accelerations at the start of step i."""
-    a, g, psi, turning = base(w, slot, record, i, 0.0, pitched)
+    a, g, psi, turning = base(w, slot, record, i, 0.0, general)
     w[r.A0, slot], w[r.G0, slot] = a, g
-    if pitched is not None:
+    if general is not None:
         w[r.PSI0, slot], w[r.TURNING0, slot] = psi, turning
         a -= g * psi
     w[r.X1, slot], w[r.X2, slot] = acceleration(
@@ -100,15 +103,18 @@ def fraction(q_start: float, q_end: float) -> float:
 @called
 def attend(
     given: Table, result: Table, kept: Table, w: Table, system: Table, lane: int, slot: int, record: Table, i: int,
-    h: float, shaken: bool, fall: bool, log: Table, count: Counts, linear: Any, pitched: Any,
+    h: float, shaken: bool, fall: bool, log: Table, count: Counts, linear: Any, general: Any,
 ) -> float:  # fmt: skip
     """What a flagged lane needs after step i; the time at which it ends, nan when it goes on."""
     started = (w[r.Q1S, slot], w[r.Q2S, slot], w[r.V1S, slot], w[r.V2S, slot])
     ended = (w[r.Q1, slot], w[r.Q2, slot], w[r.V1, slot], w[r.V2, slot])
     eventful = not (w[r.MARGIN_1, slot] >= 0.0 and w[r.MARGIN_2, slot] >= 0.0)
+    if general is not None:
+        onward = goes_on(w[r.OPPOSING, slot], started[2], w[r.X1S, slot], ended[2], w[r.X1, slot], h)
+        eventful = eventful or not onward
     if eventful or w[r.LIMIT_1, slot] < 0.0:
         w[r.WORK, slot] -= w[r.WORK_STEP, slot]
-        one_step(given, result, w, system, lane, slot, record, i, h, log, count, linear, pitched)
+        one_step(given, result, w, system, lane, slot, record, i, h, log, count, linear, general)
     else:
         raise_peaks(result, lane, started, ended, h)
     q1, q2, v1, v2 = w[r.Q1, slot], w[r.Q2, slot], w[r.V1, slot], w[r.V2, slot]

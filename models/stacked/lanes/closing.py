@@ -10,8 +10,8 @@ from models.lanes.events import note
 from models.stacked import account as acc
 from models.stacked.lanes import rows as r
 from models.stacked.lanes.bookkeeping import configure
-from models.stacked.lanes.choice import choose
-from models.stacked.lanes.corners import impulses, kinetic_energy, motion
+from models.stacked.lanes.corners import impulses, kinetic_energy
+from models.stacked.lanes.friction import respond, rub
 from models.stacked.lanes.impact import imposed, land
 
 
@@ -35,22 +35,23 @@ def close(
     after = landing
     rests = False
     if calm_1 and calm_2 and q1 == 0.0 and q2 == 0.0:
-        motion(system, given, lane, 0.0, 0.0, 0.0, 0.0, a, g, turning, linear)
-        n1, n2 = choose(system, 0.0, 0.0, False)
+        n1, n2, _ = respond(
+            given, w, system, lane, slot, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, a, g, turning, False, linear
+        )  # fmt: skip
         rests = n1 == 0.0 and n2 == 0.0
         if rests:
             after = (0.0, 0.0, 0.0, 0.0)
     if not rests and calm and up != 0.0:
         impulses(system, given, lane, c1, c2, q1, q2, v1, v2, linear)
         trial = imposed(system, joint, 0.0, s2 if joint == 0 else s1, energy)
-        motion(system, given, lane, q1, q2, trial[2], trial[3], a, g, turning, linear)
-        n1, n2 = choose(system, trial[0], trial[1], False)
+        n1, n2, _ = respond(
+            given, w, system, lane, slot, trial[0], trial[1], q1, q2, trial[2], trial[3], a, g, turning, False, linear
+        )  # fmt: skip
         if (n1 if joint == 0 else n2) == 0.0:
             after = trial
-    n1, n2 = after[0], after[1]
-    if n1 == 0.0 or n2 == 0.0:
-        motion(system, given, lane, q1, q2, after[2], after[3], a, g, turning, linear)
-        n1, n2 = choose(system, n1, n2, False)
+    n1, n2, way = respond(
+        given, w, system, lane, slot, after[0], after[1], q1, q2, after[2], after[3], a, g, turning, False, linear
+    )  # fmt: skip
     k1 = n1 if n1 != 0.0 else 1.0
     k2 = n2 if n2 != 0.0 else 1.0
     lost = energy - kinetic_energy(given, lane, k1, k2, q1, q2, after[2], after[3], linear)
@@ -62,6 +63,8 @@ def close(
         result[lane, acc.LOST_TOP] += lost
     note(log, count, lane, time, r.LOG_IMPACT, joint + 1.0)
     configure(given, result, w, lane, slot, n1, n2, time)
+    if turning is not None:
+        rub(given, w, lane, slot, n1, way)
     if n1 == 0.0 and n2 == 0.0:
         note(log, count, lane, time, r.LOG_REST, 1.0)
     return after[2], after[3]

@@ -78,17 +78,26 @@ UPRIGHT = (0.0, 1.0, 0.0, 1.0)
 
 @called
 def motion(
-    system: Table, given: Table, lane: int, q1: float, q2: float, v1: float, v2: float, a: float, g: float,
+    system: Table, given: Table, lane: int, up: float, q1: float, q2: float, v1: float, v2: float, a: float, g: float,
     turning: Any, linear: Any,
 ) -> None:  # fmt: skip
-    """M and F for each pair of pivots."""
+    """M and F for each pair of pivots, the wall at rest just about to turn about the base's.
+
+    With friction a wall that is ``up`` on a corner (0: the base is closed) keeps it: the pair's first sign is then that
+    of the way it turns.
+    """
     sc = turns(q1, q2, linear)
     lift = 1.0 if linear is None else 0.0
     m1, m2 = given[lane, r.P_M1], given[lane, r.P_M2]
-    for s1 in (1.0, -1.0):
+    for way in (1.0, -1.0):
+        s1 = way
+        if turning is not None:
+            s1 = up if up != 0.0 else way
         drag = given[lane, r.P_VISCOUS] * corner_inertia(given, lane, s1) * v1
+        if turning is not None:
+            drag += given[lane, r.P_COULOMB] * (way if v1 == 0.0 else 1.0 if v1 > 0.0 else -1.0)
         for s2 in (1.0, -1.0):
-            k = line(s1, s2)
+            k = line(way, s2)
             v = vectors(given, lane, s1, s2, sc, lift)
             f1 = g * (m1 * v[0] + m2 * v[4]) - a * (m1 * v[1] + m2 * v[5]) - drag
             f2 = m2 * (g * v[2] - a * v[3])

@@ -50,6 +50,7 @@ def forces(
     f1 = g * kx - a * kz + f2 - w[r.DRAG, lane] * v1
     if turning is not None:
         f1 -= w[r.FRAME_1, lane] * turning
+        f1 -= w[r.OPPOSING, lane]
         f2 -= w[r.FRAME_2, lane] * turning
     if linear is not None:
         dot = w[r.BX, lane] * w[r.CX, lane] + w[r.BZ, lane] * w[r.CZ, lane]
@@ -88,7 +89,8 @@ def contact(
 
     The margin of a joint that is up is its opening s q; of a closed one the smaller of the moments
     that hold it on its corners: with R its residual about the right corner and N the force across the
-    joint (both over M), -R on the right and R + 2 b N on the left.
+    joint (both over M), -R on the right and R + 2 b N on the left; dry friction helps at the base. Of a wall that it
+    holds, what it has to spare.
     """
     place = turned(w, lane, q1, q2, linear)
     kx, kz, bx, bz, cx, cz, sine, cosine = place
@@ -115,6 +117,8 @@ def contact(
         below = base_n
     closed_1 = min(-r1, r1 + w[r.WIDE_1, lane] * below)
     closed_2 = min(-r2, r2 + w[r.WIDE_2, lane] * across)
+    if turning is not None:
+        closed_1 += w[r.COULOMB, lane]
     margin_1 = w[r.SIDE_1, lane] * q1 if w[r.FREE_1, lane] > 0.0 else closed_1
     margin_2 = w[r.SIDE_2, lane] * q2 if w[r.FREE_2, lane] > 0.0 else closed_2
     base = abs(base_h) / base_n
@@ -134,10 +138,10 @@ def rk4(
     w: Table, lane: int, q1: float, q2: float, v1: float, v2: float, x1: float, x2: float, step: float,
     a0: float, a1: float, g0: float, g1: float, pitch: Any, linear: Any,
 ) -> tuple[float, float, float, float, float]:  # fmt: skip
-    """theta_1, r and their rates after ``step``, and the work of the couple over M.
+    """theta_1, r and their rates after ``step``, and the work of the couples over M.
 
     ``x1``, ``x2`` is q'' at the start; the base's own acceleration a, G and ``pitch`` (psi at both ends, psi'' at
-    both; None of a base that does not) are linear over the step.
+    both; None: the variant is not general) are linear over the step.
     """
     half = 0.5 * step
     am, gm = 0.5 * (a0 + a1), 0.5 * (g0 + g1)
@@ -155,8 +159,11 @@ def rk4(
     u1, u2 = acceleration(w, lane, q1 + step * p3, q2 + step * r3, p4, r4, a1, g1, turning1, linear)
     sixth = step / 6.0
     work = sixth * w[r.DRAG, lane] * (v1 * v1 + 2.0 * (p2 * p2 + p3 * p3) + p4 * p4)
+    turned = sixth * (v1 + 2.0 * (p2 + p3) + p4)
+    if pitch is not None:
+        work += w[r.OPPOSING, lane] * turned
     return (
-        q1 + sixth * (v1 + 2.0 * (p2 + p3) + p4),
+        q1 + turned,
         q2 + sixth * (v2 + 2.0 * (r2 + r3) + r4),
         v1 + sixth * (x1 + 2.0 * (y1 + z1) + u1),
         v2 + sixth * (x2 + 2.0 * (y2 + z2) + u2),

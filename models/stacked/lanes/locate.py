@@ -19,7 +19,7 @@ LATE = 1e-6
 
 
 @inlined
-def base(w: Table, slot: int, record: Table, i: int, f: float, pitched: Any) -> tuple[float, float, Any, Any]:
+def base(w: Table, slot: int, record: Table, i: int, f: float, general: Any) -> tuple[float, float, Any, Any]:
     """The base's own acceleration, G, psi and psi'' at the fraction f of step i; None of a base that does not pitch."""
     # the record may jump to zero at its end: no part of its last sample acts in the step after it
     live = record[4, i]
@@ -27,7 +27,7 @@ def base(w: Table, slot: int, record: Table, i: int, f: float, pitched: Any) -> 
     a = first * record[0, i] + second * record[0, i + 1]
     v = first * record[1, i] + second * record[1, i + 1]
     a, g = w[r.SCALE, slot] * a + w[r.OFFSET, slot], w[r.GRAVITY, slot] + w[r.VSCALE, slot] * v
-    if pitched is None:
+    if general is None:
         return a, g, None, None
     pitch = w[r.PITCH, slot]
     psi, turning = first * record[2, i] + second * record[2, i + 1], first * record[3, i] + second * record[3, i + 1]
@@ -35,33 +35,34 @@ def base(w: Table, slot: int, record: Table, i: int, f: float, pitched: Any) -> 
 
 
 @inlined
-def inputs(w: Table, slot: int, record: Table, i: int, f: float, pitched: Any) -> tuple[float, float, Any]:
+def inputs(w: Table, slot: int, record: Table, i: int, f: float, general: Any) -> tuple[float, float, Any]:
     """a, G and psi'' at the fraction f of step i."""
-    a, g, psi, turning = base(w, slot, record, i, f, pitched)
-    if pitched is not None:
+    a, g, psi, turning = base(w, slot, record, i, f, general)
+    if general is not None:
         a -= g * psi
     return a, g, turning
 
 
 @called
-def onset(given: Table, w: Table, lane: int, slot: int, record: Table, i: int, f: float, pitched: Any) -> float:
+def onset(given: Table, w: Table, lane: int, slot: int, record: Table, i: int, f: float, general: Any) -> float:
     """First fraction >= f of step i at which the stack leaves rest, NONE if it stays.
 
     A joint opens where -p > G k to the right or p > G k to the left, p = a + (couple over -psi'') psi''/(M h) and k the
-    slenderness (tangent) on that side, of both as one body or of the upper block.
+    slenderness (tangent) on that side, of both as one body or of the upper block; dry friction holds the base.
     """
-    a0, g0, turning0 = inputs(w, slot, record, i, f, pitched)
-    a1, g1, turning1 = inputs(w, slot, record, i, 1.0, pitched)
+    a0, g0, turning0 = inputs(w, slot, record, i, f, general)
+    a1, g1, turning1 = inputs(w, slot, record, i, 1.0, general)
     first = NONE
     for joint in range(2):
-        p0, p1 = a0, a1
-        if pitched is not None:
+        p0, p1, dry = a0, a1, 0.0
+        if general is not None:
             lever = frame(given, lane, joint)
+            dry = given[lane, r.P_COULOMB] / moment(given, lane) if joint == 0 else 0.0
             p0, p1 = a0 + lever * turning0, a1 + lever * turning1
         for side in (1.0, -1.0):
             k = given[lane, (r.P_RIGHT_1 if side > 0.0 else r.P_LEFT_1) + 2 * joint]
-            m0 = -side * p0 - g0 * k
-            m1 = -side * p1 - g1 * k
+            m0 = -side * p0 - g0 * k - dry
+            m1 = -side * p1 - g1 * k - dry
             if m0 > 0.0:
                 first = f
             elif m1 > 0.0:
@@ -70,18 +71,23 @@ def onset(given: Table, w: Table, lane: int, slot: int, record: Table, i: int, f
 
 
 @inlined
+def moment(given: Table, lane: int) -> float:
+    """M h: mass and height of the centre of both as one body."""
+    high = given[lane, r.P_TALL] + given[lane, r.P_H2]
+    return float(given[lane, r.P_M1] * given[lane, r.P_H1] + given[lane, r.P_M2] * high)
+
+
+@inlined
 def frame(given: Table, lane: int, joint: int) -> float:
     """Couple over -psi'' on what turns about a joint, over its mass and the height of its centre."""
-    m2, h2 = given[lane, r.P_M2], given[lane, r.P_H2]
     if joint == 1:
-        return float(given[lane, r.P_FRAME_2] / (m2 * h2))
-    moment = given[lane, r.P_M1] * given[lane, r.P_H1] + m2 * (given[lane, r.P_TALL] + h2)
-    return float(given[lane, r.P_FRAME_1] / moment)
+        return float(given[lane, r.P_FRAME_2] / (given[lane, r.P_M2] * given[lane, r.P_H2]))
+    return float(given[lane, r.P_FRAME_1] / moment(given, lane))
 
 
 @called
 def next_onset(
-    given: Table, w: Table, lane: int, slot: int, record: Table, i: int, last: int, chunk: Table, pitched: Any
+    given: Table, w: Table, lane: int, slot: int, record: Table, i: int, last: int, chunk: Table, general: Any
 ) -> int:
     """First step from i on in which the resting stack is lifted, ``last`` if there is none.
 
@@ -101,7 +107,7 @@ def next_onset(
             if push < (w[r.GRAVITY, slot] - up) * k:
                 i += CHUNK
                 continue
-        if onset(given, w, lane, slot, record, i, 0.0, pitched) < NONE:
+        if onset(given, w, lane, slot, record, i, 0.0, general) < NONE:
             return i
         i += 1
     return last
@@ -109,10 +115,10 @@ def next_onset(
 
 @called
 def look(
-    w: Table, slot: int, state: State, record: Table, i: int, f: float, linear: Any, pitched: Any
+    w: Table, slot: int, state: State, record: Table, i: int, f: float, linear: Any, general: Any
 ) -> tuple[Pair, Pair, Pair]:
     """`contact` of a state at fraction f of step i: q'', margins and friction demands of both joints."""
-    a, g, turning = inputs(w, slot, record, i, f, pitched)
+    a, g, turning = inputs(w, slot, record, i, f, general)
     x1, x2, m1, m2, d1, d2 = contact(w, slot, state[0], state[1], state[2], state[3], a, g, turning, linear)
     return (x1, x2), (m1, m2), (d1, d2)
 
@@ -120,18 +126,18 @@ def look(
 @called
 def part(
     w: Table, slot: int, state: State, second: Pair, record: Table, i: int, f: float, share: float, h: float,
-    linear: Any, pitched: Any,
+    linear: Any, general: Any,
 ) -> tuple[State, Pair, Pair, Pair, float]:  # fmt: skip
     """State, q'', margins, demands and work after ``share`` of step i from its fraction f."""
-    a0, g0, psi0, turning0 = base(w, slot, record, i, f, pitched)
-    a1, g1, psi1, turning1 = base(w, slot, record, i, f + share, pitched)
+    a0, g0, psi0, turning0 = base(w, slot, record, i, f, general)
+    a1, g1, psi1, turning1 = base(w, slot, record, i, f + share, general)
     pitch = None
-    if pitched is not None:
+    if general is not None:
         pitch = psi0, psi1, turning0, turning1
     q1, q2, v1, v2, work = rk4(
         w, slot, state[0], state[1], state[2], state[3], second[0], second[1], share * h, a0, a1, g0, g1, pitch, linear
     )
-    if pitched is not None:
+    if general is not None:
         a1 -= g1 * psi1
     x1, x2, m1, m2, d1, d2 = contact(w, slot, q1, q2, v1, v2, a1, g1, turning1, linear)
     return (q1, q2, v1, v2), (x1, x2), (m1, m2), (d1, d2), work
@@ -158,7 +164,7 @@ def hermite_root(q: float, v: float, x: float, q_end: float, v_end: float, x_end
 @called
 def closing(
     w: Table, slot: int, joint: int, state: State, second: Pair, end: State, second_end: Pair, record: Table, i: int,
-    f: float, rest: float, h: float, linear: Any, pitched: Any,
+    f: float, rest: float, h: float, linear: Any, general: Any,
 ) -> tuple[float, State, Pair, Pair, Pair, float]:  # fmt: skip
     """Share of the step until ``joint`` closes; state, q'', margins, demands and work there.
 
@@ -173,7 +179,7 @@ def closing(
     if not low < share < high:
         share = 0.5 * rest
     while True:
-        found, x, margins, demands, work = part(w, slot, state, second, record, i, f, share, h, linear, pitched)
+        found, x, margins, demands, work = part(w, slot, state, second, record, i, f, share, h, linear, general)
         opening, v = margins[joint], side * found[joint + 2]
         if opening < 0.0:
             high = share
@@ -195,7 +201,7 @@ def closing(
 @called
 def opening(
     w: Table, slot: int, joint: int, state: State, second: Pair, first: float, last: float, record: Table, i: int,
-    f: float, rest: float, h: float, linear: Any, pitched: Any,
+    f: float, rest: float, h: float, linear: Any, general: Any,
 ) -> tuple[float, State, Pair, Pair, Pair, float]:  # fmt: skip
     """Share of the step until the closed ``joint`` opens; state, q'', margins, demands and work there.
 
@@ -209,7 +215,7 @@ def opening(
     while True:
         trial = low + (high - low) * m_low / (m_low - m_high)
         share = trial if low < trial < high else 0.5 * (low + high)
-        found, x, margins, demands, work = part(w, slot, state, second, record, i, f, share, h, linear, pitched)
+        found, x, margins, demands, work = part(w, slot, state, second, record, i, f, share, h, linear, general)
         past = margins[joint] + late
         if abs(past) <= 0.1 * late or high - low <= 1e-14:
             return share, found, x, margins, demands, work

@@ -23,7 +23,7 @@ def overturned(
     energy = kinetic_energy(given, lane, c1, c2, q1, q2, v1, v2, None)
     energy += g * (m1 * v[1] + m2 * v[5]) + a * (m1 * (pivot + v[0]) + m2 * (pivot + v[4]))
     whole = math.sqrt(a * a + g * g)
-    if s1 != 0.0 and s1 * (g * v[0] - a * v[1]) > 0.0 and s1 * v1 > 0.0:
+    if s1 != 0.0 and s1 * (g * v[0] - a * v[1]) > given[lane, r.P_COULOMB] / m1 and s1 * v1 > 0.0:
         mass = m1 + m2
         arm = pivot - (m1 * given[lane, r.P_D1] + m2 * given[lane, r.P_D2]) / mass
         centre = (m1 * given[lane, r.P_H1] + m2 * (given[lane, r.P_TALL] + given[lane, r.P_H2])) / mass

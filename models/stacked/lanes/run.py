@@ -85,6 +85,7 @@ def given_table(stack: Stack, scale: FloatArray, initial: Mapping[str, FloatArra
         (r.P_FRAME_1, frame_1),
         (r.P_FRAME_2, frame_2),
         (r.P_PITCH, stack.pitch_per_acceleration * scale),
+        (r.P_COULOMB, stack.coulomb),
         (r.P_Q1, initial.get("q1", 0.0)),
         (r.P_Q2, initial.get("q2", 0.0)),
         (r.P_V1, initial.get("w1", 0.0)),
@@ -101,7 +102,8 @@ def run(stack: Stack, request: Request, refinement: int = 1) -> Run:
     found, steps = empty(request, r.N_RESULT, 4), 0
     shaking = request.shaking
     pitched = np.where(stack.pitch_per_acceleration != 0.0, stack.pitch_low_pass, 0.0)
-    for (per_sample, corner), lanes in groups(substeps(stack, shaking.time_step) * refinement, pitched):
+    general = (pitched > 0.0) | (stack.coulomb > 0.0)
+    for (per_sample, corner, more), lanes in groups(substeps(stack, shaking.time_step) * refinement, pitched, general):
         part, asked = stack.take(lanes), request.take(lanes)
         psi = pitch(shaking.horizontal, shaking.time_step, corner) if corner > 0.0 else (None, None)
         record = recorded(shaking, per_sample, request.tail, psi)
@@ -110,7 +112,7 @@ def run(stack: Stack, request: Request, refinement: int = 1) -> Run:
         steps += advance(
             record, first, last, given_table(part, asked.scale, initial_state(asked.initial, part.size)), tables,
             per_sample if asked.history else 0, asked.history, True if request.linear else None,
-            True if corner > 0.0 else None,
+            True if more else None,
         )  # fmt: skip
         put(found, lanes, tables)
     account = found.result[:, :N_ACCOUNT]

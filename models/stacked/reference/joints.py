@@ -30,22 +30,32 @@ class Joints:
         self.stack, self.linear, self.ledger = stack.one(), linear, ledger
         self.state = REST
 
-    def system(self, corners: tuple[int, int], q: Pair, rate: Pair, ground: Ground) -> System:
-        return motion(self.stack, *corners, q, rate, ground, self.linear)
+    def system(self, corners: tuple[int, int], state: State, ground: Ground, way: int) -> System:
+        return motion(self.stack, *corners, state.q, state.rate, ground, self.linear, float(way))
 
     def pull(self, joint: int, corner: int, state: State, ground: Ground) -> float:
-        """Moment (N m) by which a closed joint would open about ``corner``; <= 0: it stays closed."""
-        corners = (corner, state.corners[1]) if joint == BASE else (state.corners[0], corner)
-        m = self.system(corners, state.q, state.rate, ground)
-        x1, x2 = held(m, *state.sides)
+        """Moment (N m) by which a closed joint would open about ``corner``; <= 0: it stays closed.
+
+        Of a wall that friction holds: by which it would turn the way ``corner``.
+        """
+        if joint == BASE:
+            m = self.system((state.sides[0] or corner, state.corners[1]), state, ground, corner)
+        else:
+            m = self.system((state.corners[0], corner), state, ground, state.way)
+        x1, x2 = held(m, *state.free)
         return corner * float(m.r1 - m.m12 * x2 if joint == BASE else m.r2 - m.m12 * x1)
 
     def _settled(self, state: State, ground: Ground, moving: bool = False) -> State:
-        """What the closed joints of ``state`` do under these forces."""
-        if all(state.sides):
-            return state
-        chosen = choose(lambda c1, c2: self.system((c1, c2), state.q, state.rate, ground), *state.sides, moving=moving)
-        return state._replace(sides=chosen)
+        """What the closed joints of ``state`` do under these forces, and a wall that friction may hold."""
+        s1, s2 = state.sides
+        stops = s1 != 0 and state.rate[0] == 0.0 and float(self.stack.coulomb) > 0.0
+        going = 0 if state.rate[0] == 0.0 else 1 if state.rate[0] > 0.0 else -1
+
+        def system(c1: int, c2: int) -> System:
+            return self.system((s1 or c1, s2 or c2), state, ground, going or c1)
+
+        n1, n2 = choose(system, 0 if stops else s1, s2, moving=moving)
+        return state._replace(sides=(s1, n2), way=n1) if stops else state._replace(sides=(n1, n2), way=going or n1 or 1)
 
     def _go(self, state: State, time: float) -> None:
         """Go over to ``state``; the first uplift of a joint is its onset."""
@@ -60,10 +70,19 @@ class Joints:
         self._go(self._settled(self.state, ground, moving), time)
 
     def open(self, joint: int, side: int, time: float) -> None:
-        """A closed joint opens without impact."""
+        """A closed joint opens without impact, or friction lets the wall go the way ``side``."""
         s1, s2 = self.state.sides
-        self._go(self.state._replace(sides=(side, s2) if joint == BASE else (s1, side)), time)
+        if joint == BASE and s1:
+            self.state = self.state._replace(way=side)
+            return
+        state = self.state._replace(way=side) if joint == BASE else self.state
+        self._go(state._replace(sides=(side, s2) if joint == BASE else (s1, side)), time)
         self.ledger.events.append(Event(time, "change_of_pattern", joint + 1))
+
+    def stop(self, ground: Ground, time: float) -> None:
+        """The wall turns: dry friction changes its sign, or holds it."""
+        self.state = self.state._replace(rate=(0.0, self.state.rate[1]))
+        self.settle(ground, time)
 
     def land(self, joint: int, ground: Ground, time: float) -> None:
         """``joint`` closes: the impact, and what stays closed after it."""

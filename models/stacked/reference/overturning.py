@@ -58,6 +58,8 @@ def margins(stack: Stack, state: State, ground: Ground) -> tuple[float, float]:
     wall = top = -math.inf
     if s1:
         moment = float(s1 * (gravity * v.ax - a * v.az))
+        # dry friction could still hold it; of its couple the wall's own weight has to be the larger
+        moment -= float(stack.coulomb / stack.mass_1)
         wall = min(moment, s1 * state.rate[0], balance(stack, s1, ground) - now)
     if s2:
         moment = float(s2 * (gravity * v.cx - a * v.cz))

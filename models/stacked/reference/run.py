@@ -119,11 +119,13 @@ class _Run:
     def _move(self, piece: PitchedPiece, shaken: bool) -> None:
         state, joints = self.joints.state, self.joints
         drag = float(self.stack.viscous) * float(self.stack.corner_inertia(state.corners[0]))
+        dry = float(self.stack.coulomb) * state.way
 
         def derivative(time: float, y: FloatArray) -> list[float]:
             q1, q2, v1, v2, _ = y.tolist()
-            system = joints.system(state.corners, (q1, q2), (v1, v2), piece.at(time))
-            return [v1, v2, *held(system, *state.sides), drag * v1 * v1]
+            now = state._replace(q=(q1, q2), rate=(v1, v2))
+            system = joints.system(state.corners, now, piece.at(time), state.way)
+            return [v1, v2, *held(system, *state.free), (drag * v1 + dry) * v1]
 
         falls = not shaken and self.ledger.frozen is None
         if falls and max(margins(self.stack, state, piece.at(self.time)[:2])) > 0.0:
@@ -134,6 +136,10 @@ class _Run:
             function.terminal = terminal  # type: ignore[attr-defined]
             function.direction = sense  # type: ignore[attr-defined]
         start = np.array([*state.q, *state.rate, 0.0])
+        back = math.inf
+        if dry and state.sides[BASE]:
+            now, later = (state.way * derivative(time, start)[2] for time in (self.time, piece.end))
+            back = _stop(abs(state.rate[BASE]), now, later, piece.end - self.time)
         solution = solve_ivp(
             derivative,
             (self.time, piece.end),
@@ -144,7 +150,7 @@ class _Run:
             rtol=self.rtol,
             atol=self.atol,
             max_step=self.most,
-            first_step=min(self.most, piece.end - self.time, _hop(state, derivative(self.time, start))),
+            first_step=min(self.most, piece.end - self.time, _hop(state, derivative(self.time, start)), back),
         )
         end, last = float(solution.t[-1]), solution.y[:, -1].tolist()
         assert solution.sol is not None and solution.t_events is not None and solution.y_events is not None
@@ -155,7 +161,7 @@ class _Run:
         self.ledger.write(end, solution.sol)
         self.ledger.add_time(state.sides, end - self.time)
         self.time = end
-        joints.state = State(state.sides, (last[0], last[1]), (last[2], last[3]))
+        joints.state = state._replace(q=(last[0], last[1]), rate=(last[2], last[3]))
         if solution.status == 1:
             kinds = zip(watched, solution.t_events, strict=True)
             self._happen(next(kind for (kind, _, _, ends), t in kinds if ends and t.size), piece)
@@ -165,7 +171,7 @@ class _Run:
 
         def at(y: FloatArray) -> State:
             q1, q2, v1, v2, _ = y.tolist()
-            return State(state.sides, (q1, q2), (v1, v2))
+            return state._replace(q=(q1, q2), rate=(v1, v2))
 
         def opening(joint: int, side: int) -> Callable[[float, FloatArray], float]:
             return lambda time, y: side * float(y[joint])
@@ -179,11 +185,13 @@ class _Run:
             ("fall", lambda time, y: max(map(abs, at(y).theta)) - HALF_TURN, 1, True),
         ]
         for joint, name in zip(JOINTS, ("base", "top"), strict=True):
-            side = state.sides[joint]
+            side = state.free[joint]
             if side:
                 found.append((f"impact {name}", opening(joint, side), -1, True))
             else:
                 found += [(f"open {name} {c}", pull(joint, c), 1, True) for c in (1, -1)]
+        if state.free[BASE] and float(self.stack.coulomb) > 0.0:
+            found.append(("stop", lambda time, y: state.way * float(y[2]), -1, True))
         if falls:
             found.append(("fall", lambda time, y: max(margins(self.stack, at(y), piece.at(time)[:2])), 1, True))
         return found
@@ -195,6 +203,9 @@ class _Run:
                 self._overturn(piece)
             else:
                 self.finished = True
+            return
+        if what == "stop":
+            self.joints.stop(piece.at(self.time), self.time)
             return
         joint = BASE if where[0] == "base" else TOP
         if what == "impact":
@@ -220,6 +231,16 @@ class _Run:
 
 def _sign(number: float) -> int:
     return (number > 0.0) - (number < 0.0)
+
+
+def _stop(rate: float, now: float, later: float, time: float) -> float:
+    """First step (s) short enough that a wall which soon stops and comes back is not stepped over.
+
+    ``rate`` and its derivatives at the start of the stretch and ``time`` later are along the wall's direction.
+    """
+    if rate == 0.0:
+        return time * now / (now - later) if now > 0.0 > later else math.inf
+    return -rate / now if now < 0.0 else math.inf
 
 
 def _hop(state: State, slope: list[float]) -> float:

@@ -30,10 +30,13 @@ def random_walls(seed: int, count: int) -> tuple[Stack, FloatArray]:
     return MODEL.build(values, vertical=True), onset * rng.uniform(1.2, 4.0, count)
 
 
+@pytest.mark.parametrize("dry", [0.0, 0.6])
 @pytest.mark.parametrize("linear", [False, True])
-def test_lanes_agree_with_the_reference(linear: bool) -> None:
-    """Outputs of random walls, where the lanes' own answer does not depend on the step."""
+def test_lanes_agree_with_the_reference(linear: bool, dry: float) -> None:
+    """Outputs of random walls, without and with dry friction, where the lanes' own answer is not one of the step."""
     stack, scale = random_walls(21, WALLS)
+    couple = np.random.default_rng(21).uniform(0.02, 1.0, WALLS) * dry
+    stack = stack.replace(coulomb=couple * stack.mass * stack.gravity * stack.half_length_1)
     shaking = random_motion(np.random.default_rng(1), duration=4.5)
     words = {"formulation": "linear" if linear else "nonlinear"}
     request = Request(shaking, scale, words, tail=3.0)

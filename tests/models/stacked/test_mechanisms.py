@@ -11,6 +11,7 @@ from tests.models.strategies import random_motion
 
 ACTING = {
     "pivot_inset", "tilt", "eccentricity", "restitution", "viscous_damping", "vertical_acceleration", "table_pitch",
+    "coulomb_damping",
 }  # fmt: skip
 
 

@@ -33,7 +33,8 @@ def random_stacks(rng: np.random.Generator, size: int) -> Stack:
         half_length_1=b1, half_joint=b2, base_pivot=b1, top_pivot=b2, shift_1=zero, shift_2=zero,
         gravity=np.full(size, G), offset=zero, vertical_factor=zero,
         base_restitution=np.full(size, np.nan), top_restitution=np.full(size, np.nan),
-        base_factor=one, top_factor=one, viscous=zero, pitch_per_acceleration=zero, pitch_low_pass=10.0 * one,
+        base_factor=one, top_factor=one, viscous=zero, coulomb=zero,
+        pitch_per_acceleration=zero, pitch_low_pass=10.0 * one,
     )  # fmt: skip
 
 
