@@ -101,9 +101,6 @@ def contact(
     top_h = share * (a + x1 * bz - w1 * bx) + t2 * cz - w2 * cx
     top_n = share * (g - x1 * bx - w1 * bz) - t2 * cx - w2 * cz
     base_h = a + x1 * kz - w1 * kx + t2 * cz - w2 * cx
-    if turning is not None:
-        top_h += w[r.LEVER_2, lane] * turning
-        base_h += w[r.LEVER_1, lane] * turning
     base_n = g - x1 * kx - w1 * kz - t2 * cx - w2 * cz
     # a closed joint leaves a moment about its right corner, and from it the one about its left corner
     r1 = f1 - m11 * x1 - m12 * x2
@@ -115,6 +112,10 @@ def contact(
     else:
         across = cosine * top_n + sine * top_h
         below = base_n
+    if turning is not None:
+        # the couples of the turning frame are the same about either corner: across the joint none of it
+        top_h += w[r.LEVER_2, lane] * turning
+        base_h += w[r.LEVER_1, lane] * turning
     closed_1 = min(-r1, r1 + w[r.WIDE_1, lane] * below)
     closed_2 = min(-r2, r2 + w[r.WIDE_2, lane] * across)
     if turning is not None:

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 import models
+from models.runs import Request
 from models.shaking import Shaking
 from models.stacked.model import MODEL
-from tests.models.stacked.walls import LANES, A, B, G
+from tests.models.stacked.walls import LANES, A, B, G, random_wall
 from tests.models.strategies import random_motion
 
 ACTING = {
@@ -143,3 +144,14 @@ def test_lanes_agree_with_the_reference_on_a_pitching_table(vertical: bool) -> N
     for joint in ("base", "top"):
         demand = f"friction_demand_{joint}"
         assert lanes.outputs[demand] == pytest.approx(reference.outputs[demand], rel=0.02)
+
+
+def test_a_joint_that_opens_on_a_pitching_table_stays_open() -> None:
+    """Residuals about both corners tell the same: no stack of many opens and closes again without end."""
+    rng = np.random.default_rng(3)
+    walls = [random_wall(rng) for _ in range(100)]
+    values = {name: np.array([wall[name] for wall in walls]) for name in walls[0]}
+    scale = 3.0 * MODEL.derive(values)["onset_acceleration"]
+    shaking = random_motion(np.random.default_rng(103), duration=6.0, vertical=True)
+    found = MODEL.run("lanes", MODEL.build({**values, **PITCHED}, vertical=True), Request(shaking, scale)).outputs
+    assert np.sum(found["status"] == 2) > 10 and not np.any(found["status"] == 5)
