@@ -11,7 +11,7 @@ from models.stacked import account as acc
 from models.stacked.lanes import rows as r
 from models.stacked.lanes.bookkeeping import configure
 from models.stacked.lanes.corners import impulses, kinetic_energy
-from models.stacked.lanes.friction import respond, rub
+from models.stacked.lanes.friction import respond, rub, stopped
 from models.stacked.lanes.impact import imposed, land
 
 
@@ -22,7 +22,8 @@ def close(
 ) -> tuple[float, float]:  # fmt: skip
     """The impact of ``joint`` at ``time``; sets the configuration, returns the rates after it.
 
-    Rates so small that the swing ahead does not matter end, if the forces of now keep the joint closed.
+    Rates so small that the swing ahead does not matter end, if the forces of now keep the joint closed and, where the
+    wall is up, friction holds it.
     """
     s1, s2 = result[lane, r.R_SIDE_1], result[lane, r.R_SIDE_2]
     c1 = s1 if s1 != 0.0 else 1.0
@@ -41,6 +42,14 @@ def close(
         rests = n1 == 0.0 and n2 == 0.0
         if rests:
             after = (0.0, 0.0, 0.0, 0.0)
+    if turning is not None:
+        if joint == 1 and calm_1 and calm_2 and stopped(w, slot, s1, 0.0):
+            _, n2, way = respond(
+                given, w, system, lane, slot, s1, 0.0, q1, q2, 0.0, 0.0, a, g, turning, False, linear
+            )  # fmt: skip
+            rests = n2 == 0.0 and way == 0.0
+            if rests:
+                after = (s1, 0.0, 0.0, 0.0)
     if not rests and calm and up != 0.0:
         impulses(system, given, lane, c1, c2, q1, q2, v1, v2, linear)
         trial = imposed(system, joint, 0.0, s2 if joint == 0 else s1, energy)

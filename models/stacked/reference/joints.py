@@ -6,7 +6,7 @@ import math
 
 from models.base import Event
 from models.stacked import account as acc
-from models.stacked.configuration import BASE, JOINTS, State
+from models.stacked.configuration import BASE, JOINTS, TOP, State
 from models.stacked.declaration import REST_VELOCITY
 from models.stacked.equation import Ground, System, held, motion
 from models.stacked.reference.choice import choose
@@ -98,11 +98,18 @@ class Joints:
             self.ledger.events.append(Event(time, "rest"))
 
     def _after(self, joint: int, before: State, ground: Ground) -> State:
-        """Rates so small that the swing ahead does not matter end, if the forces keep the joint closed."""
+        """Rates so small that the swing ahead does not matter end, if the forces keep the joint closed.
+
+        Where the wall is up, friction has to hold it.
+        """
         landing = impact(self.stack, joint, before, self.linear)
         calm = [abs(landing.rate[j]) < self.calm[j] for j in JOINTS]
         if before.q == (0.0, 0.0) and all(calm) and not any(self._settled(REST, ground).sides):
             return REST
+        if joint == TOP and before.sides[BASE] and all(calm):
+            trial = self._settled(State((before.sides[BASE], 0), before.q, (0.0, 0.0)), ground)
+            if trial.way == 0 and not trial.sides[TOP]:
+                return trial
         if landing.sides[joint] and calm[joint]:
             trial = self._settled(closed(self.stack, joint, before, self.linear), ground)
             if not trial.sides[joint]:

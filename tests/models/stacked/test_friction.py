@@ -10,8 +10,10 @@ from models.stacked.configuration import State
 from models.stacked.equation import Rotations, System, motion
 from models.stacked.lanes import run as lanes
 from models.stacked.model import MODEL
+from models.stacked.reference import run as reference
 from models.stacked.reference.choice import candidates, margin
 from models.stacked.reference.overturning import energy
+from tests.models.stacked.test_lanes import random_walls
 from tests.models.stacked.walls import LANES, A, B, G, random_stacks
 from tests.models.strategies import random_motion
 
@@ -156,6 +158,20 @@ def test_exactly_one_way_on_is_admissible() -> None:
                 for way in (1, -1, 0)]  # fmt: skip
         assert np.all(np.sum(ways, axis=0) == 1)
         assert np.mean(np.sum(admissible, axis=0) == 1) > (0.98 if corner else 0.9999)
+
+
+def test_an_upper_block_comes_to_rest_on_a_wall_that_is_held() -> None:
+    """Its last small impacts free the wall no more: of many stacks none bounces without end."""
+    stack, scale = random_walls(0, 1500)
+    size = np.exp(np.random.default_rng(0).uniform(np.log(1e-3), np.log(2.0), stack.size))
+    stack = stack.replace(coulomb=size * stack.mass * stack.gravity * stack.half_length_1)
+    request = Request(random_motion(np.random.default_rng(100), duration=6.0, vertical=True), 1.3 * scale, tail=3.0)
+    assert not np.any(lanes.run(stack, request).outputs["status"] == 5)
+    one = (stack.take([1497]), request.take([1497]))
+    found, expected = lanes.run(*one).outputs, reference.run(*one).outputs
+    for name in ("impacts_base", "impacts_top", "configurations"):
+        assert found[name] == expected[name], name
+    assert found["residual_rotation_1"] == pytest.approx(expected["residual_rotation_1"], abs=1e-7)
 
 
 def test_an_overturning_wall_is_not_held() -> None:
