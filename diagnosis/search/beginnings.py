@@ -263,8 +263,29 @@ def _weighed(found: Search, fits: Sequence[Explanation]) -> Search | None:
         rest = without(trial.best, candidate)
         if rest.in_spell and adjusted(rest) - adjusted(trial.best) < MISSING:
             trial.best = rest
+    for simpler in _in_the_spell(trial.best):
+        if adjusted(simpler) - adjusted(trial.best) < MISSING:
+            trial.best = simpler
+            break
     trial.best = with_memory(_thorough(trial.best))
     return trial
+
+
+def _in_the_spell(best: Explanation) -> Iterator[Explanation]:
+    """Each effect that always acts, in the spell of the one beside it and alone.
+
+    Where it is the one that begins, always acting it takes too little, and another one makes up for the rest.
+    """
+    *others, begins = best.candidates
+    if begins.spell is None:
+        return
+    for other in others:
+        f = without(best, begins, 0).fitted
+        staged = replace(other, spell=begins.spell, price=begins.price)
+        try:
+            yield Explanation((staged,), fit(in_spell(f.misfit, other.name, begins.spell), f.u, f.states))
+        except InputError:  # it cannot change within a recording
+            continue
 
 
 def _likelihood(found: Search) -> float:

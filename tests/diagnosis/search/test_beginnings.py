@@ -14,11 +14,11 @@ from diagnosis.errors.model import calibrated
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.setup import measure
 from diagnosis.progress import silent
-from diagnosis.search.beginnings import alone
+from diagnosis.search.beginnings import _in_the_spell, alone
 from diagnosis.search.candidates import candidates
-from diagnosis.search.found import Search
+from diagnosis.search.found import MISSING, Search, adjusted
 from diagnosis.search.null import null_distribution
-from diagnosis.search.refit import Explanation
+from diagnosis.search.refit import Explanation, extend
 from diagnosis.search.runs import InRuns
 from diagnosis.search.screen import score
 from diagnosis.search.spells import Spell
@@ -101,6 +101,20 @@ def test_what_may_change_again_is_told_from_what_stays_or_is_gone() -> None:
     assert may_change_again(Spell(0, 2.0, 0, None), 2)
     assert not may_change_again(Spell(0, 2.0, 1, None), 2)
     assert not may_change_again(Spell(0, None, 1, 3.0), 2)
+
+
+def test_what_takes_too_little_always_is_tried_in_the_spell_of_what_makes_up_for_it() -> None:
+    """A dashpot in the first recording: as one that always acts and another law in the first it explains as much."""
+    recordings = [made("a", 13, [(1.0, {"viscous_damping.rate": 0.3})]), made("b", 6, [])]
+    measured = measure(SPECIMEN, recordings)
+    fitted, _ = calibrated(SPECIMEN, measured)
+    known = {c.name: c for c in candidates(measured, SPECIMEN)}
+    dashpot, drag = known["viscous_damping"], replace(known["quadratic_damping"], spell=Spell(0, None, 0, None))
+    always = extend(Explanation((), fitted), dashpot, np.array([dashpot.unknowns[0].coordinate(0.15)]))
+    both = extend(always, drag, np.array([drag.unknowns[0].coordinate(1.0)]))
+    (simpler,) = _in_the_spell(both)
+    assert simpler.names == ("viscous_damping",) and simpler.candidates[0].spell == drag.spell
+    assert adjusted(simpler) < adjusted(both) + MISSING < adjusted(always)
 
 
 def test_a_mechanism_without_a_slope_starts_in_a_run_from_what_was_tried() -> None:
