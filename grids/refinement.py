@@ -133,7 +133,7 @@ class Refinement:
     def _drawn(self) -> Cells:
         """A sample of the inferred cells, and what they are expected to be."""
         inferred = np.flatnonzero(self.values == NOT_COMPUTED)
-        cells = np.sort(self._random.choice(inferred, min(self._sample, inferred.size), replace=False))
+        cells: Cells = np.sort(self._random.choice(inferred, min(self._sample, inferred.size), replace=False))
         self._expected = self.labels()[cells]
         if not cells.size:
             self._conclude(0, 0)

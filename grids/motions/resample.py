@@ -58,5 +58,5 @@ def resample(
             f"{new_step:g} s: give a smaller step"
         )
     taps = _window(max(up, down))
-    whole = resample_poly(values, up, down, window=taps)  # type: ignore[call-overload]  # stubs: no array
+    whole = resample_poly(values, up, down, window=taps)  # type: ignore[call-overload,unused-ignore]  # older stubs: no array
     return np.asarray(whole[:count], dtype=np.float64)
