@@ -65,10 +65,11 @@ def _seconds(size: int) -> int:
 def _limit(more_bytes: int, seconds: int) -> None:
     """Let this process take so much more memory and computing time."""
     now = 1024 * int(Path("/proc/self/status").read_text().split("VmSize:")[1].split()[0])
-    resource.setrlimit(resource.RLIMIT_AS, (now + more_bytes, resource.RLIM_INFINITY))
     used = resource.getrusage(resource.RUSAGE_SELF)
     spent = int(used.ru_utime + used.ru_stime)
-    resource.setrlimit(resource.RLIMIT_CPU, (spent + seconds + 1, resource.RLIM_INFINITY))
+    for kind, limit in ((resource.RLIMIT_AS, now + more_bytes), (resource.RLIMIT_CPU, spent + seconds + 1)):
+        hard = resource.getrlimit(kind)[1]  # that of a batch system cannot be raised
+        resource.setrlimit(kind, (limit if hard == resource.RLIM_INFINITY else min(limit, hard), hard))
 
 
 def _read(path: Path, most_bytes: int, arrays: list[np.ndarray]) -> dict[str, Any]:
@@ -79,6 +80,7 @@ def _read(path: Path, most_bytes: int, arrays: list[np.ndarray]) -> dict[str, An
         if sum(sizes.values()) > most_bytes:
             raise ValueError(f"it says that it holds {sum(sizes.values()):.3g} bytes, far more than a file of its size")
         for name, variable in data.variables.items():
+            _check_scaling(name, variable)
             one: dict[str, Any] = {
                 "name": name,
                 "dimensions": variable.dimensions,
@@ -96,6 +98,14 @@ def _read(path: Path, most_bytes: int, arrays: list[np.ndarray]) -> dict[str, An
                 one["text"] = [str(value) for value in np.ravel(variable[...])]
             described.append(one)
         return {"attributes": _attributes(data), "variables": described}
+
+
+def _check_scaling(name: str, variable: Any) -> None:
+    """Raise ValueError for a scale or offset in words, which netCDF4 leaves out or stumbles over."""
+    for attribute in ("scale_factor", "add_offset"):
+        value = getattr(variable, attribute, 1.0)
+        if isinstance(value, str):
+            raise ValueError(f"{attribute} of {name} is {value!r}, no number")
 
 
 def _attributes(owner: Any) -> dict[str, str]:

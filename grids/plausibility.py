@@ -52,14 +52,22 @@ def suspicions_of_plan(plan: Plan) -> tuple[str, ...]:
             f"pga goes to {pga.max():.3g} m s-2 ({pga.max() / GRAVITY:.2g} g) and has no unit: was g meant? "
             "Say unit = 'g' or unit = 'm/s^2'."
         )
-    most = USUAL["pga"][1]
-    found += [
-        f"motion {motion.name} peaks at {motion.pga / GRAVITY:.3g} g (usual: up to {most / GRAVITY:g} g); "
-        "is the unit of its file right?"
-        for motion in plan.motions
-        if motion.pga > most
-    ]
+    factor = float(np.max(varied.get("motion_scale", np.array([plan.fixed.get("motion_scale", 1.0)]))))
+    for motion in plan.motions:
+        found += suspicions_of_peak(f"motion {motion.name}", motion.pga)
+        if factor != 1.0 and motion.pga <= USUAL["pga"][1]:
+            found += suspicions_of_peak(f"motion {motion.name} times motion_scale {factor:g}", factor * motion.pga)
     return tuple(found)
+
+
+def suspicions_of_peak(what: str, pga: float) -> tuple[str, ...]:
+    """A sentence about a motion whose largest acceleration (m s-2) is unusual."""
+    most = USUAL["pga"][1]
+    if pga <= most:
+        return ()
+    return (
+        f"{what} peaks at {pga / GRAVITY:.3g} g (usual: up to {most / GRAVITY:g} g); are its unit and its scale right?",
+    )
 
 
 def suspicions_of_specimen(specimen: Specimen) -> tuple[str, ...]:

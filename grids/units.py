@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     import pint
 
 _NUMBER = re.compile(r"\s*([+-]?(?:inf|nan|(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?))\s*(.*?)\s*")
-SMALLEST, LARGEST = 1e-290, 1e290
-"""Sizes beyond which a number is a mistake, and its products with units would leave floating point."""
+SMALLEST, LARGEST = 1e-30, 1e30
+"""Sizes (SI) beyond which a number is a mistake, and powers and products of several would leave floating point."""
 _EXPONENT = re.compile(r"(?<=[A-Za-zµμ])\s*(?:\^|\*\*)?\s*\(?([+-]?\d+)\)?")
 _PRODUCT = re.compile(r"(?<=[\w)])\s+(?=[A-Za-zµμ(])")
 _ANGLES = ("radian", "degree", "arcminute", "arcsecond", "turn", "revolution")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 
 FREE_TIME_STEP = 1e-3
 """s, step of a history without shaking."""
+LARGEST_SCALE = 1e6
 
 
 def simulate(
@@ -44,21 +46,35 @@ def simulate(
 
     if isinstance(specimen, str | Path):
         specimen = read_specimen(specimen)
-    if duration is not None and not duration > 0.0:
+    if duration is not None and not 0.0 < duration < math.inf:
         raise InputError(f"duration is {duration!r} s: give a positive time")
+    if not 0.0 < abs(scale) <= LARGEST_SCALE:
+        raise InputError(f"scale is {scale!r}: give a factor on the motion, not 0 and at most {LARGEST_SCALE:g}")
     if motion is None:
         if duration is None:
             raise InputError("no motion and no duration: name a motion, or give the time of free motion in s")
+        _check_steps(duration, FREE_TIME_STEP)
         shaking = Shaking.silence(duration, FREE_TIME_STEP)
     else:
         if isinstance(motion, str | Path) and is_recording(Path(motion)):
             motion = read_recording(motion, base_only=True)
         shaking = _shaking(specimen, motion, component)
+        if duration is not None:
+            _check_steps(duration, shaking.time_step)
     name = motion.name if isinstance(motion, Recording) else None
     places = motion.places if isinstance(motion, Recording) else None
     return simulate_specimen(
         specimen, shaking, scale=scale, duration=duration, integrator=integrator, recording=name, places=places
     )
+
+
+def _check_steps(duration: float, step: float) -> None:
+    from models.lanes.record import MOST_STEPS
+
+    if not 1.0 <= duration / step <= MOST_STEPS:
+        raise InputError(
+            f"duration is {duration:g} s: give from {step:g} s (one step of the motion) to {MOST_STEPS * step:g} s"
+        )
 
 
 def _shaking(specimen: Specimen, motion: Motion | Recording | str | Path, component: str | None) -> Shaking:

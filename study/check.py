@@ -76,9 +76,7 @@ def load_plan(folder: Path) -> Plan:
 
     Raises InputError when there is no study, or when motions, model or declarations have changed.
     """
-    manifest = Manifest.load(folder)
-    if manifest is None:
-        raise InputError(f"{folder} holds no study: give a folder under results/ that a run has written")
+    manifest = Manifest.of(folder)
     damaged = damaged_blocks(manifest, BlockStore(folder))
     if damaged:
         raise InputError(f"{folder} has damaged blocks: {len(damaged)}; run the plan again, they are computed anew")

@@ -85,6 +85,18 @@ class Manifest:
                 f"{path} is damaged ({error}): run the plan again, it is made anew from the plan and the blocks"
             ) from None
 
+    @classmethod
+    def of(cls, folder: Path) -> Manifest:
+        """The same; InputError where there is none."""
+        found = cls.load(folder)
+        if found is not None:
+            return found
+        if (folder / "blocks").is_dir():
+            raise InputError(
+                f"{folder}: manifest.json is lost: run the plan again, it is made anew and finished blocks are kept"
+            )
+        raise InputError(f"{folder} holds no study: give a folder under results/ that a run has written")
+
 
 def _keyed(plan: Plan, blocks: Iterable[Rectangle]) -> dict[str, Rectangle]:
     setting = Setting.of(plan)

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from models.errors import InputError
 from study.manifest import Manifest
 from study.recovery import damaged_blocks
 from study.store import BlockStore
@@ -51,9 +50,7 @@ class State:
 def state(folder: str | Path) -> State:
     """How far the study of a folder is. Raises InputError when it holds none."""
     folder = Path(folder)
-    manifest = Manifest.load(folder)
-    if manifest is None:
-        raise InputError(f"{folder} holds no study: give a folder under results/ that a run has written")
+    manifest = Manifest.of(folder)
     store = BlockStore(folder)
     damaged = damaged_blocks(manifest, store)
     done = (manifest.blocks.keys() & store.finished()).difference(damaged)

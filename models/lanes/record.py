@@ -7,9 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from models.base import FloatArray
+from models.errors import InputError
 from models.lanes.arrays import Record
 from models.lanes.chunks import extremes
 from models.shaking import Shaking
+
+MOST_STEPS = 20_000_000
+"""Of one run: a day at 5 ms; a motion of that length takes a GB."""
 
 
 def recorded(shaking: Shaking, per_sample: int, tail: float, more: Sequence[FloatArray | None] = ()) -> Record:
@@ -21,6 +25,11 @@ def recorded(shaking: Shaking, per_sample: int, tail: float, more: Sequence[Floa
     channels = [shaking.horizontal, shaking.vertical, *more]
     shaken = (shaking.horizontal.size - 1) * per_sample
     end = shaken + int(np.ceil(tail / step - 1e-9))
+    if end > MOST_STEPS:
+        raise InputError(
+            f"the run takes {end:.3g} steps of {step:.3g} s ({end * step:.3g} s), more than {MOST_STEPS:.0e}: "
+            "shorten the motion or its tail, or stretch time less"
+        )
     samples = np.zeros((len(channels) + 1, end + 2))
     samples[-1, :shaken] = 1.0
     fine = np.arange(shaken + 1) / per_sample

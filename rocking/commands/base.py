@@ -89,6 +89,16 @@ def read_event(cube: xr.Dataset, text: str | None) -> Event:
 STRICT = "Refuse what is unusual (a block 1500 m high, a PGA over 5 g) instead of warning."
 
 
+def number(text: str | float) -> float:
+    """The number of an option, written as in plans: 1_5 is none."""
+    try:
+        if "_" in str(text):
+            raise ValueError
+        return float(text)
+    except ValueError:
+        raise typer.BadParameter(f"{text!r} is no number; write for example 0.5") from None
+
+
 def warn(suspicions: Sequence[str], strict: bool) -> None:
     """Print suspicions as warnings on stderr; InputError with the first one if ``strict``."""
     if strict and suspicions:

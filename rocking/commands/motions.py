@@ -43,6 +43,8 @@ def motions(
 def _describe(motion: Motion) -> None:
     """Intensity measures, source and what was done."""
     from grids.motions.intensity import intensity_measures
+    from grids.plausibility import suspicions_of_peak
+    from rocking.commands.base import warn
 
     measures = intensity_measures(motion)
     rows = {
@@ -59,3 +61,4 @@ def _describe(motion: Motion) -> None:
         typer.echo(f"  {name:<16} {text}")
     for note in motion.notes:
         typer.echo(f"  note: {note}")
+    warn(suspicions_of_peak(motion.name, motion.pga), False)

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from models.errors import InputError
-from rocking.commands.base import STRICT, warn
+from rocking.commands.base import STRICT, number, warn
 
 
 def simulate(
@@ -17,19 +17,22 @@ def simulate(
     motion: Annotated[
         str | None, typer.Option(help="Shipped motion, motion file, or recording (its base motion).")
     ] = None,
-    duration: Annotated[float | None, typer.Option(help="Length of the run in s.")] = None,
+    duration: Annotated[float | None, typer.Option(help="Length of the run in s.", parser=number)] = None,
     integrator: Annotated[str, typer.Option(help="lanes, reference or newmark.")] = "lanes",
     component: Annotated[str | None, typer.Option(help="Horizontal component of the motion.")] = None,
-    scale: Annotated[float, typer.Option(help="Factor on the motion.")] = 1.0,
+    scale: Annotated[float, typer.Option(help="Factor on the motion.", parser=number)] = 1.0,
     displacement_high_pass: Annotated[
         float | None,
-        typer.Option(help="Write displacements as integrated from accelerations, high-passed at this corner in Hz."),
+        typer.Option(
+            help="Write displacements as integrated from accelerations, high-passed at this corner in Hz.",
+            parser=number,
+        ),
     ] = None,
     figure: Annotated[Path | None, typer.Option(help="Draw the rotation over time (.png, .pdf).")] = None,
     strict: Annotated[bool, typer.Option("--strict", help=STRICT)] = False,
 ) -> None:
     """Simulate a specimen and write every observable over time, and the events."""
-    from grids.plausibility import suspicions_of_specimen
+    from grids.plausibility import suspicions_of_peak, suspicions_of_specimen
     from grids.specimen import read_specimen, with_mechanism
     from rocking.simulation import simulate as simulate_history
     from study.figures.save import check_suffix
@@ -44,6 +47,7 @@ def simulate(
         wall = with_mechanism(wall, "integrated_displacement", {"high_pass_hz": displacement_high_pass})
     warn(suspicions_of_specimen(wall), strict)
     history = simulate_history(wall, motion, duration=duration, integrator=integrator, component=component, scale=scale)
+    warn(suspicions_of_peak("the motion", float(abs(history["base_acceleration_x"]).max())), strict)
     typer.echo(f"written: {write_history(history, out)} ({history.sizes['event']} events)")
     if figure is not None:
         from study.figures import plot_history, save_figure

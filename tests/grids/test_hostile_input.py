@@ -7,6 +7,8 @@ import io
 import os
 import shutil
 import struct
+import subprocess
+import sys
 import time
 import zipfile
 from collections.abc import Callable
@@ -135,17 +137,31 @@ def test_folders_that_the_netcdf_library_cannot_open(name: str, tmp_path: Path) 
     assert table.stat().st_size > 1000
 
 
-def test_a_text_scale_factor(tmp_path: Path) -> None:
+@pytest.mark.parametrize("text", ["two", "0.001"])
+def test_a_text_scale_factor(tmp_path: Path, text: str) -> None:
     path = tmp_path / "scale.nc"
     with netCDF4.Dataset(path, "w") as data:
         data.createDimension("time", 20)
-        variable = data.createVariable("time", "i4", ("time",))
+        data.createVariable("time", "f8", ("time",))[:] = 0.01 * np.arange(20)
+        variable = data.createVariable("base_acceleration_x", "i4", ("time",))
         variable[:] = np.arange(20)
-        variable.scale_factor = "two"
-    with contextlib.suppress(InputError):
+        variable.scale_factor = text
+    with pytest.raises(InputError, match=f"scale_factor of base_acceleration_x is '{text}', no number"):
         read_netcdf(path)
-    with pytest.raises(InputError):
-        read_recording(path)
+
+
+@pytest.mark.parametrize("limit", ["-v 16000000", "-t 3600"])
+def test_limits_of_a_batch_system_are_kept(tmp_path: Path, limit: str) -> None:
+    """They were to be raised, which is refused, and a good file was said to be damaged."""
+    path = tmp_path / "good.nc"
+    with netCDF4.Dataset(path, "w") as data:
+        data.createDimension("time", 20)
+        data.createVariable("time", "f8", ("time",))[:] = np.arange(20.0)
+    read = f"from pathlib import Path; from grids.netcdf_file import read_netcdf; read_netcdf(Path('{path}'))"
+    done = subprocess.run(
+        ["bash", "-c", f'ulimit {limit}; "$0" -c "$1"', sys.executable, read], capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
 
 
 def test_a_file_that_breaks_off_leaves_the_next_one_alone(tmp_path: Path) -> None:

@@ -89,4 +89,15 @@ def test_a_motion_that_peaks_beyond_any_earthquake(tmp_path: Path) -> None:
     )
     named = PLAN.replace('files = ["ridgecrest_2019_clc"]', 'files = ["m.AT2"]')
     (said,) = suspicions_of_plan(parse_plan(named, tmp_path))
-    assert "peaks at 20 g" in said and "is the unit of its file right?" in said
+    assert "peaks at 20 g" in said and "are its unit and its scale right?" in said
+
+
+def test_a_factor_that_takes_a_motion_beyond_any_earthquake() -> None:
+    scaled = re.sub(r"pga = .*", "motion_scale = { values = [1, 1000] }", PLAN)
+    (said,) = suspicions_of_plan(parse_plan(scaled, Path()))
+    assert "times motion_scale 1000 peaks at" in said
+
+
+def test_time_stretched_beyond_sense() -> None:
+    (said,) = suspicions_of_plan(parse_plan(PLAN.replace("[axes]", "[axes]\ntime_scale = { values = [1000] }"), Path()))
+    assert "time_scale = 1000 is unusually large" in said

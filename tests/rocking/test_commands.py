@@ -249,6 +249,36 @@ def test_simulate_refuses_before_the_work_what_it_would_refuse_after() -> None:
         assert refused.exit_code == 2 and words in refused.stderr and not Path("h.nc").exists()
 
 
+@pytest.mark.parametrize(
+    ("option", "value", "words"),
+    [
+        *(("--scale", value, "scale is") for value in ("nan", "inf", "1e300")),
+        *((option, "1_5", "is no number") for option in ("--scale", "--duration", "--displacement-high-pass")),
+        *(("--duration", value, "duration is") for value in ("1e-300", "1e30", "1e7")),
+    ],
+)
+def test_simulate_refuses_numbers_of_no_sense(option: str, value: str, words: str) -> None:
+    Path("wall.toml").write_text(SPECIMEN)
+    refused = rocking("simulate", "wall.toml", "--motion", "ridgecrest_2019_clc", "--out", "h.nc", option, value)
+    assert refused.exit_code == 2 and words in refused.stderr and not Path("h.nc").exists()
+
+
+def test_simulate_suspects_a_motion_beyond_any_earthquake() -> None:
+    Path("wall.toml").write_text(SPECIMEN)
+    words = ("simulate", "wall.toml", "--motion", "ridgecrest_2019_clc", "--scale", 100, "--out", "h.nc")
+    refused = rocking(*words, "--strict")
+    assert refused.exit_code == 2 and "the motion peaks at" in refused.stderr and not Path("h.nc").exists()
+    warned = rocking(*words)
+    assert warned.exit_code == 0 and "warning: the motion peaks at" in warned.stderr
+
+
+@pytest.mark.parametrize("tail", ["1e7 s", "1e9 s"])
+def test_a_run_without_end_is_refused(tail: str) -> None:
+    Path("long.toml").write_text(plan_text(tail=tail))
+    refused = rocking("plan", "long.toml")
+    assert refused.exit_code == 2 and "shorten the motion or its tail" in refused.stderr
+
+
 def test_a_set_of_motions_from_plan_to_figures() -> None:
     plan = plan_text(
         motion='files = ["ridgecrest_2019_c*", "ridgecrest_2019_tow2"]\nvertical = false',

@@ -134,6 +134,15 @@ def test_a_damaged_manifest_is_made_anew_and_no_block_is_given_up(
     assert again(folder).repaired == ()
 
 
+def test_a_lost_manifest_is_told_from_a_folder_without_a_study(folder: Path, tmp_path: Path) -> None:
+    (folder / "manifest.json").unlink()
+    with pytest.raises(InputError, match=r"manifest.json is lost: run the plan again"):
+        state(folder)
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(InputError, match="holds no study"):
+        state(tmp_path / "empty")
+
+
 def test_blocks_of_another_plan_are_not_given_up_without_a_manifest(folder: Path) -> None:
     (folder / "manifest.json").unlink()
     with pytest.raises(InputError, match="computed for another plan"):

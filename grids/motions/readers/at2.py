@@ -29,6 +29,7 @@ _NUMBER = r"([-+]?\d*\.?\d+(?:[eE][-+]?\d+)?)"
 _NPTS = (re.compile(r"NPTS\s*=\s*(\d{1,9})\b", re.I), re.compile(rf"^\s*(\d{{1,9}})\s+{_NUMBER}\s*,?\s*NPTS", re.I))
 _DT = (re.compile(rf"DT\s*=\s*{_NUMBER}", re.I), re.compile(rf"^\s*\d+\s+{_NUMBER}\s*,?\s*NPTS", re.I))
 _RSN = re.compile(r"RSN\d+_", re.I)
+_NAMED_VERTICAL = re.compile(r"(UP|DWN|DN|VER|VRT|UD|-V|-Z)$", re.I)
 
 
 def _heading(line: str) -> tuple[str, str]:
@@ -71,12 +72,16 @@ def heading_of(path: Path) -> tuple[str, str]:
 
 
 def is_vertical(path: Path) -> bool:
-    """Whether a file holds the vertical component, by its second line."""
-    return vertical_sign(heading_of(path)[1]) != 0
+    """Whether a file holds the vertical component, by its second line; where that is lost by its name."""
+    component = heading_of(path)[1]
+    return vertical_sign(component) != 0 if component else _NAMED_VERTICAL.search(path.stem) is not None
 
 
 def _siblings(path: Path) -> list[Path]:
-    """The files of the record that ``path`` belongs to, itself included, by name."""
+    """The files of the record that ``path`` belongs to, itself included, by name.
+
+    One whose heading is lost belongs to it by its number alone: it is damaged, which is for the caller to say.
+    """
     event, component = heading_of(path)
     number = _RSN.match(path.name)
     if number:
@@ -86,7 +91,9 @@ def _siblings(path: Path) -> list[Path]:
     else:
         prefix = ""
     beside = (p for p in path.parent.iterdir() if p.suffix.lower() == ".at2")
-    found = [p for p in beside if p.name.upper().startswith(prefix.upper()) and event and heading_of(p)[0] == event]
+    named = [p for p in beside if p.name.upper().startswith(prefix.upper())] if event else []
+    headings = {p: heading_of(p) for p in named}
+    found = [p for p, (other, end) in headings.items() if other == event or (number and not (other and end))]
     return sorted({path, *found})
 
 

@@ -36,10 +36,10 @@ _POINTS = re.compile(
 def _read(path: Path, key: str | None, statement: Mapping[str, Any]) -> Record:
     lines = read_text(path)
     components: list[tuple[str, float, FloatArray]] = []
-    name = ""
+    name, announced = "", 0
     for number, line in enumerate(lines):
         if channel := _CHANNEL.match(line):
-            name = channel[1]
+            name, announced = channel[1], announced + 1
         elif (points := _POINTS.match(line)) is not None:
             where = f"{path.name}: channel {name or len(components) + 1}"
             count, a_line, width = int(points[1]), int(points[4]), int(points[5])
@@ -61,6 +61,11 @@ def _read(path: Path, key: str | None, statement: Mapping[str, Any]) -> Record:
         raise InputError(
             f"{path.name}: no line 'N Accelerogram points at R pts/sec in units of U. Format: ...': "
             "it is no CSMIP volume 1 file"
+        )
+    if len(components) < announced:
+        raise InputError(
+            f"{path.name}: {announced} channels, {len(components)} with a line 'N Accelerogram points at R pts/sec': "
+            "the file is damaged, fetch it again"
         )
     source = {
         "format": CSMIP_V1.name,

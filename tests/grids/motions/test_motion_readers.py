@@ -217,6 +217,24 @@ def test_a_damaged_neighbour_of_an_at2_file_is_left_out_with_a_note(files):
         read_motion(path)
 
 
+@pytest.mark.parametrize("content", ["", "garbage\n", "\0" * 400])
+def test_a_vertical_neighbour_without_its_heading_is_refused(files, content):
+    """It was left out without a word: the block would have been shaken otherwise."""
+    path = files.at2_record()
+    path.with_name("RSN7_SOME_STA-UP.AT2").write_text(content)
+    with pytest.raises(InputError, match=r"RSN7_SOME_STA-UP\.AT2"):
+        read_motion(path)
+
+
+def test_a_channel_without_its_line_of_points_is_no_v1_file(tmp_path):
+    raw = real("motions/formats/CICCC.V1").read_text("latin-1")
+    for damaged in ("-35430 Accelerogram points", "99999999999 Accelerogram points"):
+        path = tmp_path / "CICCC.V1"
+        path.write_text(raw.replace("35430 Accelerogram points", damaged, 1), "latin-1")
+        with pytest.raises(InputError, match=r"3 channels, 2 with a line"):
+            read_motion(path)
+
+
 def test_a_first_line_of_numbers_is_no_header(files):
     (files.folder / "bare.csv").write_text("\n".join(f"{0.1 * k},{np.sin(k)}" for k in range(50)))
     table = 'time_step = "0.01 s"\n{}[columns]\nnorth = {{ column = 2, unit = "g" }}\n'
