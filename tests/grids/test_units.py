@@ -71,12 +71,12 @@ UNITS = st.sampled_from(
 )
 
 
-SIZES = st.floats(1e-280, 1e12)
+SIZES = st.floats(1e-24, 1e12)
 
 
 @given(st.one_of(st.just(0.0), SIZES, SIZES.map(lambda x: -x)), UNITS)
 def test_there_and_back(number: float, units: tuple[str, str]) -> None:
     unit, si = units
     factor = factor_to_si(unit, si, "x")
-    assert to_si(f"{number!r} {unit}", si, "x") / factor == pytest.approx(number, rel=1e-14, abs=1e-300)
+    assert to_si(f"{number!r} {unit}", si, "x") / factor == pytest.approx(number, rel=1e-14, abs=0.0)
     assert to_si(f"{number!r} {si}", si, "x") == number
