@@ -53,7 +53,7 @@ class Target:
         too_low = number <= self.low if self.low_open else number < self.low
         if too_low or number > self.high or math.isinf(number):
             raise InputError(
-                f"{where} = {with_unit(number, self.unit)} ({self.meaning}): it must be {self._allowed()}"
+                f"{where} = {with_unit(number, self.unit)} ({self.meaning}): it must be {self._allowed(number)}"
                 f"{self._per_cent(number)}."
             )
         return number
@@ -69,13 +69,15 @@ class Target:
         meant = self.unit == "1" and self.high <= 1.0 and self.low < share <= self.high
         return f" ({number:g} % is {share:g})" if meant else ""
 
-    def _allowed(self) -> str:
+    def _allowed(self, number: float) -> str:
         parts = []
         if math.isfinite(self.low):
             word = "greater than" if self.low_open else "at least"
             parts.append(f"{word} {with_unit(self.low, self.unit)}")
         if math.isfinite(self.high):
             parts.append(f"at most {with_unit(self.high, self.unit)}")
+        elif not math.isfinite(number):
+            parts.append("finite")
         allowed = " and ".join(parts) or "finite"
         if self.null is not None and math.isinf(self.null):
             allowed += ", or inf for no effect"

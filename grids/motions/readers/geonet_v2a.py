@@ -78,13 +78,14 @@ def _read(path: Path, key: str | None, statement: Mapping[str, Any]) -> Record:
         name, step, samples, used = _read_component(lines[start:], path, len(components) + 1)
         components.append((name, step, samples))
         start += used
+    few = (f"holds {len(components)} components, such a file has 3: is it cut short?",) if len(components) < 3 else ()
     source = {
         "format": GEONET_V2A.name,
         "files": (path.name,),
         "station": lines[2].strip(),
         "record": lines[0].strip(),
     }
-    return assemble(path.stem, components, source, where=path.name)
+    return assemble(path.stem, components, source, where=path.name, notes=few)
 
 
 GEONET_V2A = Reader("GeoNet V2A", (".v2a",), _read)

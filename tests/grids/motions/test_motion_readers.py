@@ -12,6 +12,7 @@ from grids.motions.intensity import velocity_and_displacement
 from grids.motions.write import write_motion
 from grids.netcdf_lock import NETCDF_LOCK
 from models.errors import InputError
+from tests.grids.motions.conftest import EAST, NORTH
 
 G = 9.80665
 
@@ -215,6 +216,12 @@ def test_a_damaged_neighbour_of_an_at2_file_is_left_out_with_a_note(files):
     upward.write_text("\n".join(upward.read_text().splitlines()[:-3]))
     with pytest.raises(InputError, match=upward.name):
         read_motion(path)
+
+
+def test_a_v2a_file_cut_between_two_components_says_so(files):
+    assert not any("is it cut short" in note for note in read_motion(files.v2a()).notes)
+    short = files.v2a("short.V2A", components=(("N10E", NORTH), ("N80W", EAST)))
+    assert any("holds 2 components, such a file has 3" in note for note in read_motion(short).notes)
 
 
 @pytest.mark.parametrize("content", ["", "garbage\n", "\0" * 400])
