@@ -57,7 +57,8 @@ LAW = RubberLaw(
                 "arm_stiffness_ratio", "k_1/k", "1", "stiffness of the relaxing arm over the layer's", 0.0, 1.5
             ),
             MechanismParameter(
-                "relaxation_time", "tau", "s", "relaxation time of the arm", 0.005, 0.5, null=0.05, shape=True
+                "relaxation_time", "tau", "s", "relaxation time of the arm", 0.005, 0.5, null=0.05, shape=True,
+                required=True,
             ),
         ),
         equation="s = k u + k1 (u - v) + c u', v' = (u - v)/tau",

@@ -48,7 +48,8 @@ LAW = RubberLaw(
                 "rate", "r_p", "s-1", "rate of permanent compression beyond the strain limit", 0.0, 20.0
             ),
             MechanismParameter(
-                "strain_limit", "eps_p", "1", "strain without permanent compression", 0.0, 2.0, null=0.5, shape=True
+                "strain_limit", "eps_p", "1", "strain without permanent compression", 0.0, 2.0, null=0.5, shape=True,
+                required=True,
             ),
         ),
         equation="s = k (u - u_p) + c u', u_p' = rate e max(0, (u - u_p)/e - strain_limit)",
