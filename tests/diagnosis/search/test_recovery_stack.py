@@ -57,7 +57,9 @@ def test_the_direction_of_the_score_is_a_finite_difference(name: str) -> None:
         back = null if found.candidate.one_sided else null - step
         r = fitted.misfit.residuals([at(fitted.point, found.candidate, u) for u in (null + step, back)])
         wanted = opened.reduced((r[0] - r[1]) / (null + step - back)[0])[0]
-        assert np.linalg.norm(found.column - wanted) < 0.03 * np.linalg.norm(wanted)
+        # the statistic knows the direction alone; where an impact comes or goes within a step there is no derivative
+        along = np.sum(found.column * wanted) / (np.linalg.norm(found.column) * np.linalg.norm(wanted))
+        assert along > 0.99
 
 
 @pytest.mark.parametrize("name", EFFECTS)
