@@ -124,6 +124,11 @@ BAD: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "falling span": (PGA, "pga = { linspace = [3, 1, 5] }", ("[3, 1, 5]", "swap")),
     "span of two": (PGA, "pga = { linspace = [3, 1] }", ("[3, 1]", "[low, high, count]")),
     "broken count": (PGA, "pga = { linspace = [1, 3, 2.5] }", ("2.5", "whole number")),
+    "ratio from next to nothing": (
+        PGA,
+        "pga = { geomspace = [1e-320, 1, 5] }",
+        ("1e-320", "beyond any size"),
+    ),
     "ratio from zero": (PGA, "pga = { geomspace = [0, 1, 5] }", ("starts at 0 m s-2", "above zero")),
     "axis in another unit": (PGA, "pga = { values = [1], unit = 'm' }", ("pga", "'m'", "'m s-2' is needed")),
     "unknown axis": (PGA, "pgaa = { values = [1] }", ("pgaa", "did you mean 'pga'")),

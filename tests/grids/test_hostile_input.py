@@ -33,7 +33,20 @@ from tests.study.test_example_cube import EXAMPLE
 
 
 @pytest.mark.parametrize(
-    "text", ["1_ m", "1_5 m", "1s1e9dB,", "1e-320 m", "1e400 m", "-1e299 m", "１ m", "1" + "0" * 5000 + " m"]
+    "text",
+    [
+        "1_ m",
+        "1_5 m",
+        "1s1e9dB,",
+        "1e-320 m",
+        "1e-200 m",
+        "1e160 m",
+        "1e300 m",
+        "1e400 m",
+        "-1e299 m",
+        "１ m",
+        "1" + "0" * 5000 + " m",
+    ],
 )
 def test_words_that_are_no_lengths(text: str) -> None:
     with pytest.raises(InputError):
