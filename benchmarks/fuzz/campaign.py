@@ -42,9 +42,12 @@ class Hang(BaseException):
 def computed() -> float:
     """s of computing by this process and by those that it has started."""
     own = os.getpid()
-    children = Path(f"/proc/{own}/task/{own}/children").read_text().split()
+    try:
+        children = [int(word) for word in Path(f"/proc/{own}/task/{own}/children").read_text().split()]
+    except OSError:  # not every kernel lists them; looking through all processes is slower
+        children = [process.pid for process in psutil.Process().children()]
     used = 0.0
-    for process in (own, *map(int, children)):
+    for process in (own, *children):
         with suppress(psutil.NoSuchProcess):
             used += sum(psutil.Process(process).cpu_times()[:4])
     return used
