@@ -72,7 +72,7 @@ class Manifest:
     def load(cls, folder: Path) -> Manifest | None:
         """The manifest of a folder; None when it has none. Raises DamagedManifest."""
         path = folder / "manifest.json"
-        if not path.exists():
+        if not path.is_file():  # a pipe would be waited for
             return None
         try:
             record = json.loads(path.read_text("utf-8"))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import random
 import shutil
 from collections.abc import Callable
@@ -136,6 +137,9 @@ def test_a_damaged_manifest_is_made_anew_and_no_block_is_given_up(
 
 def test_a_lost_manifest_is_told_from_a_folder_without_a_study(folder: Path, tmp_path: Path) -> None:
     (folder / "manifest.json").unlink()
+    with pytest.raises(InputError, match=r"manifest.json is lost: run the plan again"):
+        state(folder)
+    os.mkfifo(folder / "manifest.json")
     with pytest.raises(InputError, match=r"manifest.json is lost: run the plan again"):
         state(folder)
     (tmp_path / "empty").mkdir()
