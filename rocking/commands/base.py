@@ -99,6 +99,16 @@ def number(text: str | float) -> float:
         raise typer.BadParameter(f"{text!r} is no number; write for example 0.5") from None
 
 
+def whole(text: str | int) -> int:
+    """The same for a whole number."""
+    try:
+        if "_" in str(text):
+            raise ValueError
+        return int(text)
+    except ValueError:
+        raise typer.BadParameter(f"{text!r} is no whole number; write for example 4") from None
+
+
 def warn(suspicions: Sequence[str], strict: bool) -> None:
     """Print suspicions as warnings on stderr; InputError with the first one if ``strict``."""
     if strict and suspicions:

@@ -7,12 +7,12 @@ from typing import Annotated
 
 import typer
 
-from rocking.commands.base import STRICT, human_bytes, human_time, warn
+from rocking.commands.base import STRICT, human_bytes, human_time, warn, whole
 
 
 def plan(
     plan: Annotated[Path, typer.Argument(help="Plan file (TOML).")],
-    workers: Annotated[int | None, typer.Option(help="Blocks at once (default: one a core).")] = None,
+    workers: Annotated[int | None, typer.Option(help="Blocks at once (default: one a core).", parser=whole)] = None,
     strict: Annotated[bool, typer.Option("--strict", help=STRICT)] = False,
 ) -> None:
     """Check a plan and print its axes, every value of its cells, blocks, bytes, memory a task and the time."""

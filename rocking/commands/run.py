@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from rocking.commands.base import FAILURES, STRICT, human_time, warn
+from rocking.commands.base import FAILURES, STRICT, human_time, warn, whole
 from rocking.interrupts import INTERRUPTED
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ def run(
     scheduler: Annotated[
         str, typer.Option(help="synchronous, threads, processes, or tcp://host:port of a dask cluster.")
     ] = "threads",
-    workers: Annotated[int | None, typer.Option(help="Blocks at once (default: one a core).")] = None,
+    workers: Annotated[int | None, typer.Option(help="Blocks at once (default: one a core).", parser=whole)] = None,
     results: Annotated[Path, typer.Option(help="Folder of all results.")] = Path("results"),
     strict: Annotated[bool, typer.Option("--strict", help=STRICT)] = False,
 ) -> None:

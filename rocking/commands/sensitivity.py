@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from rocking.commands.base import NEAREST, SELECT, read_event, read_selection
+from rocking.commands.base import NEAREST, SELECT, read_event, read_selection, whole
 from rocking.commands.fragility import EXCEEDS
 from rocking.commands.run import run
 
@@ -23,7 +23,7 @@ def sensitivity(
     select: Annotated[list[str] | None, typer.Option(help=f"{SELECT}, for axes other than motion.")] = None,
     nearest: Annotated[bool, typer.Option("--nearest", help=NEAREST)] = False,
     scheduler: Annotated[str, typer.Option(help="As of rocking run.")] = "threads",
-    workers: Annotated[int | None, typer.Option(help="As of rocking run.")] = None,
+    workers: Annotated[int | None, typer.Option(help="As of rocking run.", parser=whole)] = None,
     results: Annotated[Path, typer.Option(help="Folder of all results.")] = Path("results"),
 ) -> None:
     """Run the study, print a table of what to tune first, write sensitivity.nc and figures beside the cube."""

@@ -263,6 +263,16 @@ def test_simulate_refuses_numbers_of_no_sense(option: str, value: str, words: st
     assert refused.exit_code == 2 and words in refused.stderr and not Path("h.nc").exists()
 
 
+def test_whole_numbers_are_written_as_such(finished: Path) -> None:
+    for words in (
+        ("check", finished, "--cells"),
+        ("run", "small.toml", "--workers"),
+        ("plan", "small.toml", "--workers"),
+    ):
+        refused = rocking(*words, "1_0")
+        assert refused.exit_code == 2 and "is no whole number" in refused.stderr
+
+
 def test_simulate_suspects_a_motion_beyond_any_earthquake() -> None:
     Path("wall.toml").write_text(SPECIMEN)
     words = ("simulate", "wall.toml", "--motion", "ridgecrest_2019_clc", "--scale", 100, "--out", "h.nc")
