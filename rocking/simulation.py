@@ -48,8 +48,10 @@ def simulate(
         specimen = read_specimen(specimen)
     if duration is not None and not 0.0 < duration < math.inf:
         raise InputError(f"duration is {duration!r} s: give a positive time")
-    if not 0.0 < abs(scale) <= LARGEST_SCALE:
-        raise InputError(f"scale is {scale!r}: give a factor on the motion, not 0 and at most {LARGEST_SCALE:g}")
+    if scale == 0.0:
+        raise InputError("scale 0 leaves no motion; for free motion leave the motion out and give a duration")
+    if not abs(scale) <= LARGEST_SCALE:
+        raise InputError(f"scale is {scale!r}: give a factor on the motion, at most {LARGEST_SCALE:g}")
     if motion is None:
         if duration is None:
             raise InputError("no motion and no duration: name a motion, or give the time of free motion in s")

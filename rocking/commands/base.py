@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import errno
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import typer
 from typer.core import TyperGroup
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from study.sets.cells import Event
 
+NumberT = TypeVar("NumberT", int, float)
 USER_ERROR = 2
 FAILURES = 1
 
@@ -91,22 +92,21 @@ STRICT = "Refuse what is unusual (a block 1500 m high, a PGA over 5 g) instead o
 
 def number(text: str | float) -> float:
     """The number of an option, written as in plans: 1_5 is none."""
-    try:
-        if "_" in str(text):
-            raise ValueError
-        return float(text)
-    except ValueError:
-        raise typer.BadParameter(f"{text!r} is no number; write for example 0.5") from None
+    return _plain(text, float, "number; write for example 0.5")
 
 
 def whole(text: str | int) -> int:
     """The same for a whole number."""
+    return _plain(text, int, "whole number; write for example 4")
+
+
+def _plain(text: object, kind: Callable[[Any], NumberT], said: str) -> NumberT:
     try:
         if "_" in str(text):
             raise ValueError
-        return int(text)
+        return kind(text)
     except ValueError:
-        raise typer.BadParameter(f"{text!r} is no whole number; write for example 4") from None
+        raise typer.BadParameter(f"{text!r} is no {said}") from None
 
 
 def warn(suspicions: Sequence[str], strict: bool) -> None:

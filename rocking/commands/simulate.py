@@ -7,7 +7,6 @@ from typing import Annotated
 
 import typer
 
-from models.errors import InputError
 from rocking.commands.base import STRICT, number, warn
 
 
@@ -38,8 +37,6 @@ def simulate(
     from study.figures.save import check_suffix
     from study.history import write_history
 
-    if scale == 0.0:
-        raise InputError("--scale 0 leaves no motion; for free motion leave --motion out and give --duration")
     if figure is not None:
         check_suffix(figure)
     wall = read_specimen(specimen)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cache
 
 import numpy as np
@@ -28,16 +29,21 @@ WALL = Specimen(
 NOISE = 0.01
 
 
-@cache
-def recorded(seed: int) -> Recording:
+def recording(seed: int, effect: Mapping[str, float]) -> Recording:
+    """Both rotations with white noise of 1 % of their peaks."""
     base = motion(seed, pga=6.0)
-    ran = models.get("stacked").simulate(TRUE, base, duration=base.duration)
+    ran = models.get("stacked").simulate({**TRUE, **effect}, base, duration=base.duration)
     rng = np.random.default_rng(seed)
     channels = {"base_acceleration_x": base.horizontal}
     for name in ("rotation_1", "rotation_2"):
         true = ran.channels[name]
         channels[name] = true + NOISE * np.max(np.abs(true)) * rng.normal(size=true.size)
     return Recording(f"run_{seed}", TIME_STEP, base.time, channels)
+
+
+@cache
+def recorded(seed: int) -> Recording:
+    return recording(seed, {})
 
 
 def test_the_wall_is_recovered_from_both_rotations() -> None:

@@ -4,19 +4,16 @@ from __future__ import annotations
 
 from functools import cache
 
-import numpy as np
 import pytest
 
 import models
-from diagnosis.fit.intervals import covariances
-from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.setup import base_fit, measure
 from diagnosis.search.candidates import candidates
-from diagnosis.search.refit import Explanation, again, best_of, extend, with_memory
-from diagnosis.search.screen import score
+from diagnosis.search.refit import Explanation
 from grids.instruments import INSTRUMENTS
 from grids.instruments.base import Level
 from tests.diagnosis.made import PEAK, SPECIMEN, recording
+from tests.diagnosis.search.recovered import assert_recovered
 
 EFFECTS: dict[str, dict[str, float]] = {
     "sliding": {"friction": 0.142},
@@ -75,16 +72,7 @@ def test_every_mechanism_of_the_block_and_its_sensors_is_here() -> None:
 def test_a_simulated_effect_is_seen_and_recovered(name: str) -> None:
     before = base(name)
     own = [c for c in candidates(before.measured, SPECIMEN) if c.name == name]
-    seen = [s for s in score(linearise_about(before.fitted), own) if s.starts]
-    assert max(s.statistic for s in seen) > 15.0
-    after = with_memory(best_of([again(extend(before, s.candidate, start)) for s in seen for start in s.starts]))
-    assert before.loss - after.loss > 15.0
-    unknown = after.candidates[0].unknowns[0]
-    place = [x.name for x in after.fitted.misfit.unknowns].index(unknown.name)
-    sandwich, laplace = covariances(after.fitted)
-    deviation = np.sqrt(max(sandwich[place, place], laplace[place, place]))
-    truth = unknown.coordinate(_truth(name, before))
-    assert abs(after.fitted.u[place] - truth) < 3.0 * deviation, (after.fitted.values[unknown.name], deviation)
+    assert_recovered(before, own, _truth(name, before))
 
 
 def _truth(name: str, before: Explanation) -> float:
