@@ -11,11 +11,11 @@ from diagnosis.answer.result import EffectStage, HeldStage
 from diagnosis.data.measured import Measured
 from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.solver import fit
-from diagnosis.search.beginnings import largest_run
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.found import MISSING
 from diagnosis.search.instants import NO_UNKNOWNS, Instant, ends_of
 from diagnosis.search.refit import Explanation
+from diagnosis.search.runs import largest_run
 from diagnosis.search.spells import Spell
 from grids.stages import Stage
 from models.base import FloatArray

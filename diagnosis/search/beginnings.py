@@ -3,7 +3,7 @@
 Tests go in sequence and things happen: a joint cracks, a strap slips off, a sensor is knocked. Where nothing that
 always acts explains the recordings, every mechanism is screened in every run of successive windows
 (`diagnosis.search.runs`), and the strongest are refitted so: parameters with the spell held, then the run of windows
-in which the recordings ask for the effect with the parameters held, in turn; last the instants within the windows
+in which the recordings ask for the effect (`diagnosis.search.asked`), in turn; last the instants within the windows
 (`diagnosis.search.instants`).
 
 Many runs are searched, so a spell has a price: how much more of the largest statistic chance brings (its 5 % level,
@@ -24,16 +24,18 @@ from diagnosis.fit.solver import fit
 from diagnosis.forces.columns import forces
 from diagnosis.forces.constancy import flags, tests
 from diagnosis.progress import Progress
+from diagnosis.search.asked import asked_for
 from diagnosis.search.beside import seconds
 from diagnosis.search.budget import RESERVED
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.found import MISSING, Search, adjusted, explains_all, price, survives
-from diagnosis.search.instants import NO_UNKNOWNS, WHOLE, ends_of
+from diagnosis.search.instants import WHOLE, ends_of
 from diagnosis.search.null import null_distribution
-from diagnosis.search.refit import QUICK, Explanation, again, best_of, extend, with_memory, without
-from diagnosis.search.runs import SHORTEST, InRuns, chance, in_runs, runs
+from diagnosis.search.refit import QUICK, Explanation, again, best_of, extend, further, ways, with_memory, without
+from diagnosis.search.runs import InRuns, chance, in_runs, runs
+from diagnosis.search.screen import Score, score
 from diagnosis.search.spells import Spell, in_spell, of_windows
-from diagnosis.search.weighing import by_white_noise, weigh_again
+from diagnosis.search.weighing import as_white_noise, by_white_noise, weigh_again
 from models.base import FloatArray
 from models.errors import InputError
 
@@ -41,7 +43,7 @@ FAINT = 8.0
 """Statistic less the price of a spell under which nothing is refitted."""
 SHARE, NEAR = 0.25, 0.85
 """Of the strongest statistic, what a mechanism must reach to be refitted; of the largest gain, to be refined."""
-MOST, THOROUGH = 6, 3
+MOST, MOST_HIDDEN, THOROUGH = 6, 3, 3
 TURNS = 3
 FEWEST_WINDOWS = 4
 
@@ -93,12 +95,22 @@ def _in_spells(found: Search, start: Explanation) -> list[Explanation]:
     scores = found.scores if of_base else seconds(found, start)
     ends = runs(len(found.measured.windows))
     cost = max(0.0, chance(screen, scores, ends).band - null_distribution(screen, scores).band)
-    fits = sorted(_quick(found, start, in_runs(screen, scores, ends), ends, cost), key=adjusted)
+    fits = list(_quick(found, start, in_runs(screen, scores, ends), ends, cost))
+    fits += _quick(found, start, _hidden_by_errors(found, start, scores, ends), ends, cost, MOST_HIDDEN)
+    fits.sort(key=adjusted)
     if not fits:
         return []
     least = max(MISSING, NEAR * (adjusted(start) - adjusted(fits[0])))
     near = [single for single in fits if adjusted(start) - adjusted(single) >= least]
     return sorted((_thorough(single) for single in near[:THOROUGH]), key=adjusted)
+
+
+def _hidden_by_errors(
+    found: Search, start: Explanation, scores: Sequence[Score], ends: NDArray[np.int64]
+) -> list[InRuns]:
+    """The same screen against white noise: scatter of events holds much of a law of them that changes."""
+    white = linearise_about(as_white_noise(start.fitted, found.errors))
+    return in_runs(white, score(white, [one.candidate for one in scores]), ends)
 
 
 def _needed(found: Search, start: Explanation, single: Explanation) -> bool:
@@ -130,14 +142,19 @@ def _settled(found: Search) -> bool:
 
 
 def _quick(
-    found: Search, start: Explanation, screened: Sequence[InRuns], ends: NDArray[np.int64], cost: float
+    found: Search,
+    start: Explanation,
+    screened: Sequence[InRuns],
+    ends: NDArray[np.int64],
+    cost: float,
+    most: int = MOST,
 ) -> Iterator[Explanation]:
     """Quick refits of the strongest mechanisms, each in the run in which its statistic is largest."""
     m = found.measured
     strongest = sorted(screened, key=lambda one: -float(one.statistic.max()))
     largest = float(strongest[0].statistic.max()) if strongest else 0.0
     whole = _of_whole_recordings(m.recording_of, ends)
-    for one in strongest[:MOST]:
+    for one in strongest[:most]:
         if float(one.statistic.max()) < max(FAINT + cost, SHARE * largest):
             return
         for allowed in (np.ones(len(ends), bool), whole):
@@ -161,11 +178,10 @@ def _in_run(found: Search, start: Explanation, staged: Candidate, coordinates: S
 
 
 def _moved(single: Explanation) -> Explanation:
-    """The same mechanism in the run of windows that asks for it, parameters and run in turn."""
+    """The same mechanism in the run of windows that asks for it, refitted, until that stays."""
     for _ in range(TURNS):
-        candidate = single.candidates[-1]
-        spell = _asked_for(single)
-        if spell is None or spell == candidate.spell:
+        spell = asked_for(single)
+        if spell == single.candidates[-1].spell:
             break
         try:
             other = _in(single, spell)
@@ -180,40 +196,9 @@ def _moved(single: Explanation) -> Explanation:
 def _in(single: Explanation, spell: Spell) -> Explanation:
     """The same model refitted with its last mechanism in another spell."""
     *others, candidate = single.candidates
-    f = single.fitted
-    fitted = fit(in_spell(f.misfit, candidate.name, spell), f.u, f.states, QUICK)
-    return Explanation((*others, replace(candidate, spell=spell)), fitted)
-
-
-def _asked_for(single: Explanation) -> Spell | None:
-    """The run of windows in which the mechanism takes most off the loss, parameters held; None where it is all."""
-    candidate = single.candidates[-1]
-    f = single.fitted
-    on = in_spell(f.frozen, candidate.name, None)
-    nulls = {x.name: x.value(float(u)) for x, u in zip(candidate.unknowns, candidate.null, strict=True)}
-    off = replace(on, fixed={**on.fixed, **nulls})
-    gain = np.subtract(*(fit(one, NO_UNKNOWNS, f.states, QUICK).window_losses for one in (off, on)))
-    low, high = _simplest(gain, f.measured.recording_of)
-    return None if (low, high) == (0, gain.size - 1) else of_windows(f.measured, low, high)
-
-
-def _simplest(gain: FloatArray, recording_of: NDArray[np.int64]) -> tuple[int, int]:
-    """The run with the largest gain, or a longer one that begins or ends with a recording and gains as much."""
-    low, high = largest_run(gain)
-    first = int(np.flatnonzero(recording_of == recording_of[low])[0])
-    last = int(np.flatnonzero(recording_of == recording_of[high])[-1])
-    low = first if float(gain[first:low].sum()) > -WHOLE else low
-    high = last if float(gain[high + 1 : last + 1].sum()) > -WHOLE else high
-    return low, high
-
-
-def largest_run(values: FloatArray) -> tuple[int, int]:
-    """First and last place of the run of at least `SHORTEST` places with the largest sum."""
-    total = np.concatenate([[0.0], np.cumsum(values)])
-    place, shortest = np.arange(total.size), min(SHORTEST, values.size)
-    sums = np.where(place[:, None] + shortest <= place, total[None, :] - total[:, None], -np.inf)
-    low, high = np.unravel_index(int(np.argmax(sums)), sums.shape)
-    return int(low), int(high) - 1
+    moved = replace(single.fitted, misfit=in_spell(single.fitted.misfit, candidate.name, spell))
+    single = Explanation((*others, replace(candidate, spell=spell)), moved)
+    return best_of([further(way, QUICK) for way in ways(single)])
 
 
 def _thorough(single: Explanation) -> Explanation:

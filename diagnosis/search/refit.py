@@ -56,21 +56,31 @@ class Explanation:
 def extend(
     explanation: Explanation, candidate: Candidate, start: FloatArray, iterations: int = ITERATIONS
 ) -> Explanation:
-    """Fit with one more mechanism, from the explanation's optimum and the candidate's ``start``.
-
-    About the motion with the events as they were, or without what they were: that may stand for the mechanism.
-    """
+    """Fit with one more mechanism, from the explanation's optimum and the candidate's ``start``; the best of `ways`."""
     base = explanation.fitted
     misfit = replace(
         in_spell(base.misfit, candidate.name, candidate.spell),
         unknowns=(*base.misfit.unknowns, *candidate.unknowns),
         fixed={**base.misfit.fixed, **candidate.held},
     )
-    u, ways = np.concatenate([base.u, start]), [misfit]
-    if base.measured.as_it_was is not None:
-        ways.append(misfit.undisturbed)
-    fits = [fit(way, u, base.states, iterations) for way in ways]
-    return Explanation((*explanation.candidates, candidate), min(fits, key=lambda f: f.loss))
+    grown = Explanation(
+        (*explanation.candidates, candidate), replace(base, misfit=misfit, u=np.concatenate([base.u, start]))
+    )
+    return best_of([further(way, iterations) for way in ways(grown)])
+
+
+def ways(explanation: Explanation) -> list[Explanation]:
+    """About the motion with the events as they were, and without what they were: that may stand for a mechanism."""
+    f = explanation.fitted
+    if f.measured.as_it_was is None:
+        return [explanation]
+    return [explanation, replace(explanation, fitted=replace(f, misfit=f.misfit.undisturbed))]
+
+
+def further(explanation: Explanation, iterations: int = ITERATIONS) -> Explanation:
+    """The same model fitted from where it stands."""
+    f = explanation.fitted
+    return replace(explanation, fitted=fit(f.misfit, f.u, f.states, iterations))
 
 
 def joined(explanation: Explanation, single: Explanation) -> Explanation:

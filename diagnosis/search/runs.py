@@ -56,6 +56,15 @@ def runs(windows: int) -> NDArray[np.int64]:
     return np.array(found, np.int64).reshape(-1, 2)
 
 
+def largest_run(values: FloatArray) -> tuple[int, int]:
+    """First and last place of the run of at least `SHORTEST` places with the largest sum."""
+    total = np.concatenate([[0.0], np.cumsum(values)])
+    place, shortest = np.arange(total.size), min(SHORTEST, values.size)
+    sums = np.where(place[:, None] + shortest <= place, total[None, :] - total[:, None], -np.inf)
+    low, high = np.unravel_index(int(np.argmax(sums)), sums.shape)
+    return int(low), int(high) - 1
+
+
 def in_runs(screen: Linearisation, scores: Sequence[Score], ends: NDArray[np.int64]) -> list[InRuns]:
     """The statistics of all mechanisms in the runs ``ends`` (R, 2)."""
     found = []

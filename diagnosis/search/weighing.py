@@ -14,7 +14,7 @@ from diagnosis.fit.solver import Fitted, fit
 from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.found import Search, adjusted
-from diagnosis.search.refit import Explanation, without
+from diagnosis.search.refit import Explanation, best_of, further, ways, without
 
 NEAR, OWN = 0.3, 0.4
 """Share of the leader's gain from which an explanation is taken along, and from which its own errors are estimated."""
@@ -23,10 +23,9 @@ MOST, MOST_OWN = 6, 4
 
 def reweighed(explanation: Explanation, errors: Errors) -> Explanation:
     """The explanation refitted under these errors, about the events as these have them or without."""
-    f, ways = explanation.fitted, [errors.on(explanation.fitted.misfit)]
-    if ways[0].measured.as_it_was is not None:
-        ways.append(ways[0].undisturbed)
-    return replace(explanation, fitted=min((fit(way, f.u, f.states) for way in ways), key=lambda one: one.loss))
+    f = explanation.fitted
+    weighed = replace(explanation, fitted=replace(f, misfit=errors.on(f.misfit)))
+    return best_of([further(way) for way in ways(weighed)])
 
 
 def as_white_noise(fitted: Fitted, errors: Errors) -> Fitted:

@@ -83,6 +83,18 @@ def test_what_begins_in_the_second_recording_is_named_with_its_instant(
     assert when_text(stages).startswith("from ") and when_text(stages).endswith("of b on, and stays")
 
 
+@pytest.mark.parametrize(("factor", "instant"), [(0.93, 4.0), (0.92, 5.0)])
+def test_a_law_of_impacts_that_changes_is_found_where_the_base_bends_to_the_mean(factor: float, instant: float) -> None:
+    """Errors estimated about the base take the change for scatter of impacts, and its score is nothing under these."""
+    _, yielded = searched([made("a", 13, []), made("b", 6, [(instant, {"restitution.factor_on_housner": factor})])])
+    best = yielded[-1].best
+    assert best is not None and best.names == ("restitution",)
+    spell = best.candidates[0].spell
+    assert spell is not None and (spell.first, spell.last, spell.ends) == (1, 1, None)
+    assert spell.begins == pytest.approx(instant, abs=0.7)
+    assert best.fitted.values["restitution.factor_on_housner"] == pytest.approx(factor, abs=0.015)
+
+
 def test_nothing_begins_where_nothing_is_missing() -> None:
     _, yielded = searched([made("a", 13, []), made("b", 6, [])])
     assert yielded == []

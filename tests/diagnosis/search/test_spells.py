@@ -12,9 +12,8 @@ from scipy.stats import chi2
 from diagnosis.data.measured import Measured
 from diagnosis.fit.linearisation import Linearisation, linearise_about
 from diagnosis.fit.setup import base_fit, measure
-from diagnosis.search.beginnings import largest_run
 from diagnosis.search.candidates import candidates
-from diagnosis.search.runs import FEWEST, chance, in_runs, runs
+from diagnosis.search.runs import FEWEST, chance, in_runs, largest_run, runs
 from diagnosis.search.screen import Score, score
 from diagnosis.search.spells import Spell, of_windows
 from grids.stages import intervals
