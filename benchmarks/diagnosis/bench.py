@@ -23,16 +23,16 @@ class Bench:
 
     designs: Callable[[int], list[suite.CaseDesign]]
     figures: Callable[[Sequence[Scored]], dict[str, Any]]
-    made_by: str = ""
-    """A file of this folder that its cases depend on beside those of `suite.MAKERS`."""
+    made_by: tuple[str, ...] = ()
+    """Files of this folder that its cases depend on beside those of `suite.MAKERS`."""
 
 
 BENCHES = {
     "diagnosis": Bench(suite.suite, report.grouped),
     "laboratory": Bench(laboratory.suite, report.by_imperfection),
     "beginnings": Bench(beginnings.suite, report.by_beginning),
-    "walls": Bench(walls.designs, report.of_all, "walls.py"),
-    "bases": Bench(bases.designs, report.by_base, "bases.py"),
+    "walls": Bench(walls.designs, report.of_all, ("walls.py", "fibre_wall.py")),
+    "bases": Bench(bases.designs, report.by_base, ("bases.py",)),
 }
 
 
@@ -57,7 +57,7 @@ def bench(
     designs = BENCHES[name].designs(seed)[:cases]
     here = suite.place(folder, seed, name)
     if made_by := BENCHES[name].made_by:
-        digest = hashlib.sha256(Path(__file__).with_name(made_by).read_bytes()).hexdigest()
+        digest = hashlib.sha256(b"".join(Path(__file__).with_name(one).read_bytes() for one in made_by)).hexdigest()
         here = here.with_name(f"{here.name}-{digest[:8]}")
     runner.run_all(designs, seed, here / "cases", here / run, jobs=jobs, minutes=minutes, say=say, answering=answering)
     answered = [scored for _, scored in runner.answered(designs, here / "cases", here / run)]

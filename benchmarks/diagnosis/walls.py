@@ -1,8 +1,9 @@
 """Concealed cases of a wall and a block on top between rubber layers, by seed: what is asked for, and how it is made.
 
-The motions are those of the lanes of `interface` at an eighth of the shaking's step, so a case shows whether the chain
-finds what is hidden, not whether another program would have moved alike. A motion is scaled so that the wall without
-the effect turns 1.5 to 8 times as far as it does when its base begins to lift.
+The motions of every other case, and of those with a law outside the catalogue, are those of `fibre_wall`, a program
+apart; the others are those of the lanes of `interface` at an eighth of the shaking's step. Half of the cases have one
+of a laboratory's errors (`imperfections`) besides. A motion is scaled so that the wall without the effect turns 1.5 to
+8 times as far as it does when its base begins to lift.
 
 Nominal size: 10 times the noise (rms over windows and rotations) is what the effect changes in windows that start from
 the true rotations, less what a linear refit of layers, height and length takes up.
@@ -11,14 +12,17 @@ the true rotations, less what a linear refit of layers, height and length takes 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from benchmarks.diagnosis import instruments, shakings, suite
+from benchmarks.diagnosis import fibre_wall, imperfections, instruments, shakings, suite
 from benchmarks.diagnosis.cases import LOW_PASS, RECORDINGS, Case, drawn
+from benchmarks.diagnosis.imperfections import Imperfections
+from benchmarks.diagnosis.open_laws import LAWS, Law
 from benchmarks.diagnosis.scene import FloatArray, Unsuitable
+from benchmarks.diagnosis.unseen_laws import UNSEEN
 from models.interface.model import MODEL
 from models.shaking import Shaking
 
@@ -39,7 +43,11 @@ SCALES = np.geomspace(0.3, 6.0, 24)
 NOMINAL, WITHIN = 10.0, 0.1
 SHARES = np.geomspace(0.01, 1.0, 12)
 NOISE = 0.01
-COUNTS: dict[suite.Kind, int] = {"null": 60, "single": 80, "pair": 20}
+COUNTS: dict[suite.Kind, int] = {"null": 60, "single": 80, "pair": 20, "open": 20}
+ERRORS = (*imperfections.COLOURS, *imperfections.OTHERS)
+"""A laboratory's errors of walls: nothing that scatters."""
+COARSE = 32
+"""Fibres with which the size of a law outside the catalogue is sought."""
 
 
 @dataclass(frozen=True)
@@ -70,6 +78,12 @@ CATALOGUE: dict[str, Hidden] = {
         },
     ),
     "pivot_inset": Hidden("contact_geometry", "inset_over_half_width", 0.0, (0.35,)),
+    "one_sided_stiffness": Hidden("one_sided_stiffness", "right_over_left", 1.0, (0.5, 2.0)),
+    "added_stiffness": Hidden("added_stiffness", "couple_stiffness", 0.0, (-1e6, 5e6)),
+    "viscous_damping": Hidden("viscous_damping", "couple_damping", 0.0, (5e5,)),
+    "coulomb_damping": Hidden("coulomb_damping", "over_m_g_b", 0.0, (0.1,)),
+    "tilt": Hidden("tilt", "tilt", 0.0, (-0.05, 0.05)),
+    "eccentricity": Hidden("tilt", "offset_top", 0.0, (-0.2, 0.2)),
     "offset": Hidden("offset", "offset_over_peak", 0.0, (-0.15, 0.15), sensor=True),
     "gain": Hidden("gain", "gain", 0.0, (-0.12, 0.12), sensor=True),
     "delay": Hidden("delay", "delay", 0.0, (0.04,), sensor=True),
@@ -84,18 +98,32 @@ class WallDesign(suite.CaseDesign):
 
 
 def designs(seed: int) -> list[suite.CaseDesign]:
-    """All cases in mixed order; every effect as often as every other one, pairs of two classes at random."""
+    """All cases in mixed order; every effect as often as every other one, pairs of two classes at random.
+
+    Every second case of a kind has one of a laboratory's errors, in turn. Laws outside the catalogue are those kept for
+    the evaluation at its seed, the others at any other.
+    """
     rng = np.random.default_rng(seed)
-    names = list(CATALOGUE)
-    single = [(names[i],) for _ in range(COUNTS["single"] // len(names)) for i in rng.permutation(len(names))]
-    pairs: list[tuple[str, ...]] = [tuple(rng.choice(names, 2, replace=False).tolist()) for _ in range(COUNTS["pair"])]
-    groups: list[list[tuple[suite.Kind, tuple[str, ...]]]] = [
-        [("null", ())] * COUNTS["null"], [("single", one) for one in single], [("pair", two) for two in pairs],
-    ]  # fmt: skip
+    laws = [name for name, law in (UNSEEN if seed == suite.EVALUATION_SEED else LAWS).items() if fibre_wall.knows(law)]
+    groups: list[list[tuple[suite.Kind, tuple[str, ...], str]]] = []
+    for kind, count in COUNTS.items():
+        chosen = _pairs(count, rng) if kind == "pair" else suite.names_of(kind, count, list(CATALOGUE), laws, rng)
+        errors = [str(one) for _ in range(count) for one in rng.permutation(ERRORS)]
+        groups.append([(kind, names, errors[k // 2] if k % 2 else "") for k, names in enumerate(chosen)])
     return [
-        WallDesign(number, kind, chosen, NOISE, 1.0)
-        for number, (kind, chosen) in enumerate(suite.in_mixed_order(groups, rng))
+        WallDesign(number, kind, chosen, NOISE, 1.0, error)
+        for number, (kind, chosen, error) in enumerate(suite.in_mixed_order(groups, rng))
     ]
+
+
+def _pairs(count: int, rng: np.random.Generator) -> list[tuple[str, ...]]:
+    """Pairs of two classes."""
+    found: list[tuple[str, ...]] = []
+    while len(found) < count:
+        one, other = rng.choice(list(CATALOGUE), 2, replace=False).tolist()
+        if CATALOGUE[one].effect_class != CATALOGUE[other].effect_class:
+            found.append((one, other))
+    return found
 
 
 def make(design: suite.CaseDesign, seed: int) -> Case:
@@ -103,26 +131,68 @@ def make(design: suite.CaseDesign, seed: int) -> Case:
     return drawn(design, seed, _case)
 
 
+@dataclass(frozen=True)
+class Truth:
+    """A wall, what is missing in it, and the program that moves it: `fibre_wall` (``apart``), or the lanes."""
+
+    wall: Mapping[str, float]
+    mechanisms: Mapping[str, float]
+    apart: bool
+    law: Law | None = None
+    numbers: tuple[float, ...] = (0.0,) * 7
+    largest: float = 1.0
+
+    def rotations(self, shaking: Shaking, fibres: int = fibre_wall.FIBRES) -> dict[str, FloatArray]:
+        """Rotations (rad) and their rates at the shaking's steps. Raises Unsuitable where a body falls."""
+        if not self.apart:
+            channels = MODEL.simulate({**self.wall, **self.mechanisms}, shaking).channels
+            return {name: channels[name] for name in HELD}
+        found = fibre_wall.run(
+            self.wall,
+            shaking.horizontal,
+            shaking.time_step,
+            self.mechanisms,
+            self.law,
+            self.numbers,
+            self.largest,
+            fibres,
+        )
+        if not np.isfinite(found).all():
+            raise Unsuitable
+        rates = np.gradient(found, shaking.time_step, axis=1)
+        return dict(zip(HELD, (*found, *rates), strict=True))
+
+
 def _case(design: suite.CaseDesign, seed: int, rng: np.random.Generator) -> Case:
     nominal, true = _wall(rng)
     sampling = float(rng.choice(list(LOW_PASS)))
     drawn = [_motion(true, rng, LOW_PASS[sampling]) for _ in RECORDINGS]
     peak = drawn[0][2]
-    found = [_sized(CATALOGUE[name], name, true, drawn, rng) for name in design.names]
-    wall = {f"{n}.{k}": v for n, p in found if not CATALOGUE[n].sensor for k, v in p.items()}
-    sensors = {n: p for n, p in found if CATALOGUE[n].sensor}
+    apart = design.number % 2 == 0 or design.kind == "open"
+    errors = Imperfections()
+    if design.imperfection:
+        errors = imperfections.draw(design.imperfection, design.names, sampling, rng)
+    truth, sensors, effects = Truth(true, {}, apart), {}, []
+    if design.kind == "open":
+        truth, size = _law({**LAWS, **UNSEEN}[design.names[0]], truth, drawn, rng)
+        effects = [{"name": design.names[0], "class": "open", "parameters": {"size": size}}]
+    else:
+        found = [_sized(CATALOGUE[name], name, true, drawn, rng) for name in design.names]
+        wall = {f"{n}.{k}": v for n, p in found if not CATALOGUE[n].sensor for k, v in p.items()}
+        truth, sensors = replace(truth, mechanisms=wall), {n: p for n, p in found if CATALOGUE[n].sensor}
+        effects = [
+            {"name": n, "class": CATALOGUE[n].effect_class, "parameters": p, "primary": CATALOGUE[n].parameter}
+            for n, p in found
+        ]
     channels, notes = {}, {}
     for name, (source, shaking, _) in zip(RECORDINGS, drawn, strict=True):
-        channels[name], noise = _recorded({**true, **wall}, sensors, shaking, sampling, peak, design.noise, rng)
+        channels[name], noise = _recorded(truth, sensors, errors, shaking, sampling, peak, design.noise, rng)
         notes[name] = {"motion": source, "pga": shaking.pga, "noise_std": noise, "duration": shaking.duration}
-    effects = [
-        {"name": n, "class": CATALOGUE[n].effect_class, "parameters": p, "primary": CATALOGUE[n].parameter}
-        for n, p in found
-    ]
     key = {
         "kind": design.kind, "model": MODEL.name, "seed": seed, "number": design.number,
         "noise_fraction_of_peak": design.noise, "relative_size": 1.0, "sampling_hz": sampling, "weak": False,
-        "effects": effects, "over_peak": peak, "true_parameters": true, "recordings": notes,
+        "effects": effects, "over_peak": peak, "true_parameters": true, "recordings": notes, "program_apart": apart,
+        "imperfections": errors.described(), "named_rightly": errors.named_rightly,
     }  # fmt: skip
     return Case(_specimen(design.label, nominal), sampling, channels, key)
 
@@ -173,8 +243,29 @@ def _sized(
     def size(share: float) -> float:
         sensors = {name: at(share)} if row.sensor else {}
         wall = {} if row.sensor else {f"{name}.{k}": v for k, v in at(share).items()}
-        return max(strength(true, wall, sensors, shaking, peak) for _, shaking, _ in drawn[:2])
+        return max(strength(Truth(true, wall, False), sensors, shaking, peak) for _, shaking, _ in drawn[:2])
 
+    return name, at(_nominal(size))
+
+
+def _law(
+    law: Law, plain: Truth, drawn: Sequence[tuple[str, Shaking, float]], rng: np.random.Generator
+) -> tuple[Truth, float]:
+    """The wall with a law outside the catalogue at nominal size, and that size."""
+    end = law.end * (float(rng.choice([-1.0, 1.0])) if law.either else 1.0)
+    numbers, peak, length = law.draw(rng), drawn[0][2], min(shaking.duration for _, shaking, _ in drawn)
+    begin = float(rng.uniform(0.25, 0.5)) * length
+    interval = begin, begin + float(rng.uniform(0.15, 0.3)) * length
+
+    def at(share: float) -> Truth:
+        return replace(plain, law=law, numbers=(share * end, *numbers, *interval, 0.0), largest=peak)
+
+    share = _nominal(lambda share: max(strength(at(share), {}, shaking, peak, COARSE) for _, shaking, _ in drawn[:2]))
+    return at(share), share * end
+
+
+def _nominal(size: Callable[[float], float]) -> float:
+    """Share (0-1) of the way to the end of a range at which the effect has nominal size."""
     low = 0.0
     for share in SHARES.tolist():
         if size(share) < NOMINAL:
@@ -185,18 +276,18 @@ def _sized(
             middle = 0.5 * (low + high)
             found = size(middle)
             if abs(found / NOMINAL - 1.0) < WITHIN:
-                return name, at(middle)
+                return middle
             low, high = (middle, high) if found < NOMINAL else (low, middle)
         raise Unsuitable
     raise Unsuitable
 
 
 def strength(
-    true: Mapping[str, float], wall: Mapping[str, float], sensors: instruments.Sensors, shaking: Shaking, peak: float
+    truth: Truth, sensors: instruments.Sensors, shaking: Shaking, peak: float, fibres: int = fibre_wall.FIBRES
 ) -> float:
     """Of an effect in one recording, over its noise."""
-    step = shaking.time_step
-    channels = MODEL.simulate({**true, **wall}, shaking).channels
+    true, step = truth.wall, shaking.time_step
+    channels = truth.rotations(shaking, fibres)
     base = instruments.base(shaking.horizontal, step, sensors)
     seen = np.stack([instruments.response(channels[c], shaking.horizontal, step, sensors, peak) for c in ROTATIONS])
     noise = NOISE * np.max(np.abs(seen), axis=1)
@@ -229,21 +320,23 @@ def strength(
 
 
 def _recorded(
-    values: Mapping[str, float], sensors: instruments.Sensors, shaking: Shaking, sampling: float, peak: float,
+    truth: Truth, sensors: instruments.Sensors, errors: Imperfections, shaking: Shaking, sampling: float, peak: float,
     noise: float, rng: np.random.Generator,
 ) -> tuple[dict[str, FloatArray], dict[str, float]]:  # fmt: skip
     """Channels as written to the file, and the standard deviation of the noise in each."""
     fine = shakings.on_fine_grid(shaking)
-    ran = MODEL.simulate(values, fine).channels
-    signals = {"base_acceleration_x": instruments.base(fine.horizontal, fine.time_step, sensors)}
+    ran, seen = truth.rotations(fine), {**sensors, **errors.sensors}
+    base = instruments.base(fine.horizontal, fine.time_step, seen)
+    share, largest = float(rng.uniform(0.002, 0.005)), float(np.max(np.abs(base)))
+    sampled = instruments.logged(base, fine.time_step, sampling, shaking.duration)
+    deviations = {"base_acceleration_x": share * largest}
+    channels = {"base_acceleration_x": sampled + share * largest * rng.normal(size=sampled.size)}
     for name in ROTATIONS:
-        signals[name] = instruments.response(ran[name], fine.horizontal, fine.time_step, sensors, peak)
-    shares = {"base_acceleration_x": float(rng.uniform(0.002, 0.005)), **dict.fromkeys(ROTATIONS, noise)}
-    channels, deviations = {}, {}
-    for name, signal in signals.items():
+        signal = instruments.response(ran[name], fine.horizontal, fine.time_step, seen, peak)
+        largest = float(np.max(np.abs(signal)))
         sampled = instruments.logged(signal, fine.time_step, sampling, shaking.duration)
-        deviations[name] = shares[name] * float(np.max(np.abs(signal)))
-        channels[name] = sampled + deviations[name] * rng.normal(size=sampled.size)
+        deviations[name] = noise * largest
+        channels[name] = sampled + errors.noise(sampled, 1.0 / sampling, noise, largest, rng)
     return channels, deviations
 
 
