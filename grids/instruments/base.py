@@ -14,7 +14,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -34,18 +34,24 @@ class Surroundings:
 
     ``base_acceleration`` (..., samples): the measured horizontal one, at the samples of the channels, in m s-2.
     ``reference_peak``: the rotation (rad) over which levels are given; None: the largest of the run itself.
-    ``start`` (..., 1): time (s) of the first sample since the start of the recording.
+    ``start`` (..., 1): time (s) of the first sample since the start of the recording. ``began``: the time (s) at which
+    an instrument by its name began to act, where that is within the recording.
     """
 
     time_step: float
     base_acceleration: FloatArray
     reference_peak: float | None = None
     start: FloatArray | float = 0.0
+    began: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def time(self) -> FloatArray:
         """Times (..., samples) since the start of the recording, in s."""
         return np.asarray(self.start + self.time_step * np.arange(self.base_acceleration.shape[-1]))
+
+    def time_of(self, instrument: str) -> FloatArray:
+        """Times (..., samples) since an instrument acts, in s, 0 before."""
+        return np.maximum(self.time - self.began.get(instrument, 0.0), 0.0)
 
     def peak(self, channels: Channels) -> float:
         """The rotation (rad) over which levels are given; without one, the largest of the first rotation channel."""

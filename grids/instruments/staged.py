@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -40,7 +41,10 @@ def recorded_in_stages(
     """Channels (..., samples) as recorded; ``how`` for one set of instruments."""
     found = dict(how(channels, sets[0][1], around))
     sample = np.rint(around.time / around.time_step)
-    for first, instruments in sets[1:]:
-        later = how(channels, instruments, around)
+    began: dict[str, float] = {}
+    for (_, before), (first, instruments) in pairwise(sets):
+        new = {name: first * around.time_step for name in instruments if name not in before}
+        began = {name: began[name] for name in instruments if name in began} | new
+        later = how(channels, instruments, replace(around, began=began))
         found = {name: np.where(sample >= first, later[name], x) for name, x in found.items()}
     return found

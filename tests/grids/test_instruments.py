@@ -10,6 +10,7 @@ from scipy.signal import butter, sosfilt
 
 from grids.instruments import INSTRUMENTS, moved, recorded
 from grids.instruments.base import Surroundings
+from grids.instruments.staged import recorded_in_stages
 from grids.instruments.windowed import read_at, recorded_in_windows
 from models.shaking import Shaking
 
@@ -163,3 +164,16 @@ def test_a_filter_in_windows_is_the_filter_of_the_record(order: int) -> None:
     around = Surroundings(STEP, np.zeros(400))
     seen = sensor.acts["windowed"](window, values, around)["rotation_1"]
     np.testing.assert_allclose(seen[:300], whole[recorded_peak : recorded_peak + 300], atol=0.01)
+
+
+def test_a_drift_that_begins_within_a_recording_grows_from_there() -> None:
+    """Not by a jump to what it would have come to since the start: that is a sensor that is knocked."""
+    plain, drifting = {"offset": {"offset_over_peak": 0.1}}, {"drift": {"rate": 0.01}}
+    around = replace(AROUND, reference_peak=0.1)
+    sets = [(0, plain), (40, {**plain, **drifting}), (70, drifting)]
+    found = recorded_in_stages({"rotation_1": np.zeros(TIME.size)}, sets, around)["rotation_1"]
+    np.testing.assert_allclose(found[:40], 0.01)
+    np.testing.assert_allclose(found[40:70], 0.01 + 0.01 * STEP * np.arange(30), rtol=1e-12)
+    np.testing.assert_allclose(found[70:], 0.01 * STEP * np.arange(30, TIME.size - 40), rtol=1e-12)  # it goes on
+    always = recorded_in_stages({"rotation_1": np.zeros(TIME.size)}, [(0, drifting)], around)["rotation_1"]
+    np.testing.assert_allclose(always, 0.01 * around.time, rtol=1e-12)
