@@ -20,7 +20,7 @@ from diagnosis.fit.misfit import reduce
 from diagnosis.fit.solver import Fitted, fit
 from diagnosis.search.instants import NO_UNKNOWNS, WHOLE
 from diagnosis.search.refit import QUICK, Explanation, ways, without
-from diagnosis.search.runs import runs
+from diagnosis.search.runs import over_runs, runs
 from diagnosis.search.spells import Spell, in_spell, of_windows
 from models.base import FloatArray
 
@@ -80,14 +80,8 @@ def _losses(single: Explanation, ends: NDArray[np.int64]) -> FloatArray:
     never = never.among(np.array([*shared, *range(f.u.size, size)], np.int64), size)
     precision, slope = f.misfit.prior_normal(f.u)
     precision = precision + np.diag(np.where(np.arange(size) < f.u.size, LARGEST**-2, 0.0))
-    loss = never.loss.sum() + _over(acting.loss - never.loss, ends)
-    gradient = never.gradient.sum(axis=0) + slope + _over(acting.gradient - never.gradient, ends)
-    hessian = never.hessian.sum(axis=0) + precision + _over(acting.hessian - never.hessian, ends)
+    loss = never.loss.sum() + over_runs(acting.loss - never.loss, ends)
+    gradient = never.gradient.sum(axis=0) + slope + over_runs((acting.gradient - never.gradient).T, ends).T
+    hessian = never.hessian.sum(axis=0) + precision + over_runs((acting.hessian - never.hessian).T, ends).T
     step = np.linalg.solve(hessian, gradient[..., None])[..., 0]
     return np.asarray(loss + f.misfit.prior(f.u) - np.sum(gradient * step, axis=1))
-
-
-def _over(values: FloatArray, ends: NDArray[np.int64]) -> FloatArray:
-    """Sums of values (W, ...) over the runs (R, ...)."""
-    total = np.concatenate([np.zeros((1, *values.shape[1:])), np.cumsum(values, axis=0)])
-    return np.asarray(total[ends[:, 1] + 1] - total[ends[:, 0]])

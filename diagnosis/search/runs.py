@@ -71,7 +71,7 @@ def in_runs(screen: Linearisation, scores: Sequence[Score], ends: NDArray[np.int
     for one in scores:
         sums = _Sums.of(screen, one.column, ends)
         along = np.einsum("w,wm,wm->w", screen.weights, one.column, screen.residual)
-        amount = _over(along[None], ends)[0] - sums.path @ screen.inverse @ screen.gradient
+        amount = over_runs(along, ends) - sums.path @ screen.inverse @ screen.gradient
         amplitude = -amount / np.where(sums.usable, sums.free, np.inf)
         found.append(InRuns(one, sums.statistic(amount[None], one.side)[0], amplitude))
     return found
@@ -93,7 +93,7 @@ def chance(screen: Linearisation, scores: Sequence[Score], ends: NDArray[np.int6
         part = slice(start, start + AT_ONCE)
         for one, of_runs in zip(scores, sums, strict=True):
             along = np.einsum("wm,swm->sw", one.column, noise, optimize=True)
-            amount = _over(along, ends) - gradient @ screen.inverse @ of_runs.path.T
+            amount = over_runs(along, ends) - gradient @ screen.inverse @ of_runs.path.T
             largest[part] = np.maximum(largest[part], of_runs.statistic(amount, one.side).max(axis=1, initial=0.0))
     draws = np.sort(largest)
     level = float(np.quantile(draws, 1.0 - TAIL))
@@ -114,8 +114,8 @@ class _Sums:
         weighted = screen.weights[:, None] * column
         information = np.einsum("wm,wm->w", weighted, column)
         along = np.einsum("wmi,wm->wi", screen.by_unknown, weighted, optimize=True)
-        path = _over(along.T, ends).T
-        free = _over(information[None], ends)[0] - np.einsum("ri,ij,rj->r", path, screen.inverse, path)
+        path = over_runs(along.T, ends).T
+        free = over_runs(information, ends) - np.einsum("ri,ij,rj->r", path, screen.inverse, path)
         return cls(free, path, free > FEWEST * max(float(information.sum()), 1e-9))
 
     def statistic(self, amount: FloatArray, side: int) -> FloatArray:
@@ -124,7 +124,7 @@ class _Sums:
         return np.where(right, amount**2 / np.where(self.usable, self.free, 1.0), 0.0)
 
 
-def _over(values: FloatArray, ends: NDArray[np.int64]) -> FloatArray:
-    """Sums of values (s, W) over the runs (s, R)."""
-    total = np.pad(np.cumsum(values, axis=1), ((0, 0), (1, 0)))
-    return np.asarray(total[:, ends[:, 1] + 1] - total[:, ends[:, 0]])
+def over_runs(values: FloatArray, ends: NDArray[np.int64]) -> FloatArray:
+    """Sums of values (..., W) over the runs (..., R)."""
+    total = np.concatenate([np.zeros((*values.shape[:-1], 1)), np.cumsum(values, axis=-1)], axis=-1)
+    return np.asarray(total[..., ends[:, 1] + 1] - total[..., ends[:, 0]])

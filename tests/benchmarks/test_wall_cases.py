@@ -29,7 +29,7 @@ def test_every_effect_is_asked_for_as_often_and_stands_in_the_catalogue() -> Non
         assert all(low <= end <= high for end in row.ends)
 
 
-def test_programs_and_errors_are_shared_out_alike() -> None:
+def test_errors_are_shared_out_alike_and_pairs_are_of_two_classes() -> None:
     asked = walls.designs(7)
     for kind, count in walls.COUNTS.items():
         assert sum(bool(one.imperfection) for one in asked if one.kind == kind) == count // 2

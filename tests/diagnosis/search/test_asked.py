@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from diagnosis.data.measured import AsItWas
 from diagnosis.errors.model import calibrated
 from diagnosis.fit.setup import measure
 from diagnosis.search.asked import asked_for, losses
@@ -53,3 +54,15 @@ def test_losses_of_runs_are_those_of_refits(in_a_wrong_spell: Explanation) -> No
         (k,) = np.flatnonzero((ends == run).all(axis=1))
         actual = again(_in(settled, of_windows(m, *run))).loss
         assert predicted[k] - settled.loss == pytest.approx(actual - settled.loss, rel=0.3, abs=3.0)
+
+
+def test_what_events_were_taken_for_may_stand_for_the_mechanism(in_a_wrong_spell: Explanation) -> None:
+    """Events as they were estimated about the base may be wrong with the mechanism: without them counts too."""
+    m, f = in_a_wrong_spell.measured, in_a_wrong_spell.fitted
+    wrong = AsItWas(tuple(np.zeros_like(one.horizontal) for one in m.shakings), 0.1 * m.values)
+    predictor = replace(f.misfit.predictor, measured=replace(m, as_it_was=wrong))
+    about = replace(in_a_wrong_spell, fitted=replace(f, misfit=replace(f.misfit, predictor=predictor)))
+    ends = runs(len(m.windows))
+    np.testing.assert_allclose(losses(about, ends), losses(in_a_wrong_spell, ends))
+    spell = asked_for(in_a_wrong_spell)
+    assert _in(about, spell).loss == pytest.approx(_in(in_a_wrong_spell, spell).loss)
