@@ -1,21 +1,19 @@
-"""The laws of the family in compiled kernels: one fibre's response, composed from the laws' own updates.
+"""The laws of the family in compiled kernels: any of them on one fibre, each in a pass of its own.
 
-There is a variant for each law alone, all of it in registers, and one for any combination, where each law goes over
-all fibres and lanes by itself behind a flag of the call, so that a law that does not act costs nothing; a kernel is
-compiled with the one that it is asked for. A flat table holds the hidden states, in rows of one number for each fibre
-and lane, and the laws' numbers, in rows of one for each lane.
+Each law goes over all fibres and lanes by itself behind a flag of the call, so that a law that does not act costs
+nothing and one compiled kernel holds every combination. A flat table holds the hidden states, in rows of one number for
+each fibre and lane, and the laws' numbers, in rows of one for each lane.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from inspect import signature
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from models.base import FloatArray
-from models.lanes.compiler import in_kernels, inlined
+from models.lanes.compiler import inlined
 from models.rubber import LAWS
 from models.rubber.base import Numbers, RubberLaw
 from models.rubber.layer import Hidden
@@ -24,8 +22,6 @@ Table = Any
 Given = Sequence[tuple[RubberLaw, Numbers]]
 
 ORDER = tuple(law for role in ("shifts", "adds", "softens") for law in LAWS.values() if law.role == role)
-VARIANTS = ((), *((law,) for law in ORDER), ORDER)
-"""The laws that a kernel can be compiled for, by the number of the variant."""
 HIDDEN_ROW = {law.name: row for row, law in enumerate(law for law in ORDER if law.hidden)}
 N_HIDDEN = len(HIDDEN_ROW)
 _ENDS = np.cumsum([0, *(len(law.wanted) for law in ORDER)]).tolist()
@@ -33,22 +29,17 @@ NUMBER_ROWS = {law.name: range(_ENDS[k], _ENDS[k + 1]) for k, law in enumerate(O
 N_NUMBERS = _ENDS[-1]
 
 
-def variant_for(laws: Given) -> tuple[int, ...]:
-    """A tuple as long as the number of the smallest variant that holds ``laws``: the compiler knows its length.
-
-    Its items are a sum of bits, 2^k for the k-th law of the variant, that says which of them act.
-    """
-    wanted = {law.name for law, _ in laws}
-    fitting = [k for k, held in enumerate(VARIANTS) if wanted <= {law.name for law in held}]
-    number = min(fitting, key=lambda k: len(VARIANTS[k]))
-    return (sum(1 << k for k, law in enumerate(VARIANTS[number]) if law.name in wanted),) * number
+def acting(laws: Given) -> int:
+    """Which laws act, as a sum of bits: 2^k for the k-th of `ORDER`."""
+    names = {law.name for law, _ in laws}
+    return sum(1 << k for k, law in enumerate(ORDER) if law.name in names)
 
 
 def number_table(laws: Given, step: FloatArray) -> FloatArray:
     """The numbers (n, `N_NUMBERS`) of n layers for steps of ``step`` (n,) seconds; absent laws at their null."""
     table = np.zeros((step.size, N_NUMBERS))
     if not laws:
-        return table  # of which the variant without laws reads nothing
+        return table
     one = {"stiffness": np.ones(1), "thickness": np.ones(1)}
     given = {law.name: p for law, p in laws}
     for law in ORDER:
@@ -87,45 +78,23 @@ Going = tuple[float, float, float, float]
 """What passes from law to law: u and its growth as shifts have left them, stress beyond k u and slope so far."""
 
 
-def responding(laws: Sequence[RubberLaw], places: Places) -> tuple[Step, Step]:
-    """Compiled ``numbers(t, i)``: what the laws want of lane i, read once for many of its fibres; and
-    ``respond(t, j, u, change, k, numbers)``: stress beyond k u and its slope, without dashpot, of fibre j.
-
-    ``u`` is the compression at the end of a step over which it has grown by ``change`` (m), k the spring. The
-    hidden states in the table ``t`` go on by the step.
-    """
-    numbers, found = _none, _untouched
-    for place, law in enumerate(laws):
-        numbers = _with(numbers, _numbers_at(list(NUMBER_ROWS[law.name]), places))
-        found = _JOINS[law.role](found, _updating(law, places), place == 0)
-
-    @inlined
-    def respond(t: Table, j: int, u: float, change: float, k: float, n: Any) -> tuple[float, float]:
-        _, _, more, slope = found(t, j, u, change, k, n)
-        return more, slope
-
-    return numbers, respond
-
-
 def passing(law: RubberLaw, places: Places, first: int) -> tuple[Step, Step]:
-    """Compiled ``numbers(t, i)``, as of `responding`, and ``go_on(t, j, u, k, numbers)``: one law's pass over fibre j.
+    """One law's pass over a fibre: compiled ``numbers(t, i)``, what the law wants of lane i; and ``go_on(t, j, k,
+    numbers)``, which takes fibre j with the spring k over the coming step.
 
-    It reads and writes `Going` in four rows of the table ``t`` from ``first`` on, each as long as one of hidden states.
+    What the laws before have left and what this one leaves, `Going`, stands in four rows of the table ``t`` from
+    ``first`` on, each as long as one of hidden states.
     """
-
+    join = _JOINS[law.role](_updating(law, places))
     second, third, fourth = (first + row * places.columns for row in (1, 2, 3))
 
     @inlined
-    def held(t: Table, j: int, u: float, change: float, k: float, n: Any) -> Going:
-        return t[first + j], t[second + j], t[third + j], t[fourth + j]
+    def go_on(t: Table, j: int, k: float, n: Any) -> None:
+        t[first + j], t[second + j], t[third + j], t[fourth + j] = join(
+            t, j, t[first + j], t[second + j], t[third + j], t[fourth + j], k, n
+        )
 
-    found = _JOINS[law.role](held, _updating(law, places), False)
-
-    @inlined
-    def go_on(t: Table, j: int, u: float, k: float, n: Any) -> None:
-        t[first + j], t[second + j], t[third + j], t[fourth + j] = found(t, j, u, 0.0, k, n)
-
-    return _with(_none, _numbers_at(list(NUMBER_ROWS[law.name]), places)), go_on
+    return _numbers_at(list(NUMBER_ROWS[law.name]), places), go_on
 
 
 def guarded(passes: Sequence[Step]) -> Step:
@@ -151,53 +120,29 @@ def _then(before: Step, own: Step, bit: int) -> Step:
     return both
 
 
-@inlined
-def _none(t: Table, i: int) -> Any:
-    return ()
-
-
-@inlined
-def _untouched(t: Table, j: int, u: float, change: float, k: float, n: Any) -> Going:
-    return u, change, 0.0, 0.0
-
-
-def _with(before: Step, own: Step) -> Step:
+def _shifting(update: Step) -> Step:
     @inlined
-    def both(t: Table, i: int) -> Any:
-        return before(t, i), own(t, i)
-
-    return both
-
-
-def _shifting(before: Step, update: Step, first: bool) -> Step:
-    @inlined
-    def shifted(t: Table, j: int, u: float, change: float, k: float, n: Any) -> Going:
-        left, grown, more, slope = before(t, j, u, change, k, n[0])
-        was, shift, _ = update(t, j, left, grown, n[1])
-        return left - shift, grown - (shift - was), -k * shift if first else more - k * shift, slope
+    def shifted(t: Table, j: int, u: float, change: float, more: float, slope: float, k: float, n: Any) -> Going:
+        was, shift, _ = update(t, j, u, change, n)
+        return u - shift, change - (shift - was), more - k * shift, slope
 
     return shifted
 
 
-def _adding(before: Step, update: Step, first: bool) -> Step:
+def _adding(update: Step) -> Step:
     @inlined
-    def added(t: Table, j: int, u: float, change: float, k: float, n: Any) -> Going:
-        left, grown, more, slope = before(t, j, u, change, k, n[0])
-        _, stress, steeper = update(t, j, left, grown, n[1])
-        return left, grown, stress if first else more + stress, steeper if first else slope + steeper
+    def added(t: Table, j: int, u: float, change: float, more: float, slope: float, k: float, n: Any) -> Going:
+        _, stress, steeper = update(t, j, u, change, n)
+        return u, change, more + stress, slope + steeper
 
     return added
 
 
-def _softening(before: Step, update: Step, first: bool) -> Step:
+def _softening(update: Step) -> Step:
     @inlined
-    def softened(t: Table, j: int, u: float, change: float, k: float, n: Any) -> Going:
-        left, grown, more, slope = before(t, j, u, change, k, n[0])
-        _, lost, _ = update(t, j, left, grown, n[1])
-        if first:
-            steep = lost * k
-            return left, grown, -steep * u, -steep
-        return left, grown, more - lost * (k * u + more), slope - lost * (k + slope)
+    def softened(t: Table, j: int, u: float, change: float, more: float, slope: float, k: float, n: Any) -> Going:
+        _, lost, _ = update(t, j, u, change, n)
+        return u, change, more - lost * (k * u + more), slope - lost * (k + slope)
 
     return softened
 
@@ -246,24 +191,3 @@ def _numbers_at(rows: Sequence[int], places: Places) -> Step:
         return (*before(t, i), t[at + i])
 
     return more
-
-
-def looks_back(laws: Sequence[RubberLaw]) -> bool:
-    """Whether one of the laws wants to know how the compression has changed."""
-    return any("change" in signature(law.update).parameters for law in laws)
-
-
-def chosen(variants: Sequence[Callable[..., None]]) -> Callable[..., None]:
-    """A function ``(t, which)`` for kernels: of ``variants``, compiled ``(t, which)``, the one `variant_for` names.
-
-    Which one is known when the kernel that calls it is compiled, and only that one is.
-    """
-
-    def run(t: Table, which: Any) -> None:
-        variants[len(which)](t, which)
-
-    def variant(t: Any, which: Any) -> Callable[..., None]:
-        one = variants[len(which)]
-        return lambda t, which: one(t, which)
-
-    return in_kernels(run, variant)

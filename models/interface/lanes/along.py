@@ -1,12 +1,12 @@
 """What rubber laws add along one joint: four of its 16 Gauss fibres at a time, for all lanes.
 
 The loop over the W lanes has no branches; joint and fibres are constants of each loop, so that it becomes vector code.
-A law alone goes through in registers; in a combination each law takes all fibres on by itself.
+Each law takes all fibres on by itself.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 from models.interface.fibres import COUNT, NODES, WEIGHTS
@@ -26,7 +26,7 @@ APART = COUNT + 1
 LAST = tuple((r.N_WORK + 2 * rubber.N_NUMBERS + joint * (1 + rubber.N_HIDDEN) * APART) * W for joint in range(2))
 _GOING = r.N_WORK + 2 * rubber.N_NUMBERS + 2 * (1 + rubber.N_HIDDEN) * APART
 GOING = _GOING * W
-"""What passes from law to law in a combination, four rows of every fibre: u, its change, stress beyond k u, slope."""
+"""What passes from law to law, four rows of every fibre: u, its change, stress beyond k u, slope."""
 N_WORK_LAWS = _GOING + 4 * APART
 PLACES = [rubber.Places(LAST[joint] + APART * W, APART * W, P_LAWS[joint], W) for joint in range(2)]
 
@@ -64,34 +64,8 @@ def _add(w: Table, joint: int, f0: int, i: int, four: Any) -> None:
     w[(r.F3_B + joint) * W + i] += SECOND[f0] * d0 + SECOND[f1] * d1 + SECOND[f2] * d2 + SECOND[f3] * d3
 
 
-def _alone(law: RubberLaw, joint: int, sided: bool) -> Callable[..., None]:
-    """Compiled ``(w, f0, i)``: four fibres of a joint of one lane under one law beside the linear one."""
-    numbers, respond = rubber.responding((law,), PLACES[joint])
-    looks_back, last = rubber.looks_back((law,)), LAST[joint]
-
-    @inlined
-    def fibre(w: Table, f: int, i: int, strip: Any, n: Any) -> tuple[float, float]:
-        u, change, j = max(NODES[f] * strip[0] - strip[1], 0.0), 0.0, f * W + i
-        if looks_back:
-            change = u - w[last + j]
-            w[last + j] = u
-        more, slope = respond(w, j, u, change, strip[4], n)
-        return _beyond(f, strip, u, more, slope)
-
-    @inlined
-    def four(w: Table, f0: int, i: int) -> None:
-        strip, n = _strip(w, joint, f0, i, sided), numbers(w, i)
-        _add(
-            w, joint, f0, i,
-            (fibre(w, f0, i, strip, n), fibre(w, f0 + 1, i, strip, n), fibre(w, f0 + 2, i, strip, n),
-             fibre(w, f0 + 3, i, strip, n)),
-        )  # fmt: skip
-
-    return four
-
-
 def _begin(joint: int) -> Callable[..., None]:
-    """Compiled ``(w, f0, i)``: u and its change of four fibres, for the laws of a combination."""
+    """Compiled ``(w, f0, i)``: u and its change of four fibres, for the first of the laws."""
     last = LAST[joint]
 
     @inlined
@@ -113,23 +87,22 @@ def _begin(joint: int) -> Callable[..., None]:
 
 
 def _pass(law: RubberLaw, joint: int) -> Callable[..., None]:
-    """Compiled ``(w, f0, i)``: one law of a combination takes four fibres on."""
+    """Compiled ``(w, f0, i)``: one law takes four fibres on."""
     numbers, go_on = rubber.passing(law, PLACES[joint], GOING)
-    last = LAST[joint]
 
     @inlined
     def four(w: Table, f0: int, i: int) -> None:
         k, n, j = w[(r.KB + joint) * W + i], numbers(w, i), f0 * W + i
-        go_on(w, j, w[last + j], k, n)
-        go_on(w, j + W, w[last + j + W], k, n)
-        go_on(w, j + 2 * W, w[last + j + 2 * W], k, n)
-        go_on(w, j + 3 * W, w[last + j + 3 * W], k, n)
+        go_on(w, j, k, n)
+        go_on(w, j + W, k, n)
+        go_on(w, j + 2 * W, k, n)
+        go_on(w, j + 3 * W, k, n)
 
     return four
 
 
 def _end(joint: int, sided: bool) -> Callable[..., None]:
-    """Compiled ``(w, f0, i)``: what a combination adds to the sums by four fibres."""
+    """Compiled ``(w, f0, i)``: what the laws add to the sums by four fibres."""
 
     @inlined
     def fibre(w: Table, f: int, i: int, strip: Any) -> tuple[float, float]:
@@ -163,34 +136,23 @@ def _over_all(four: Callable[..., None]) -> Callable[..., None]:
     return all_fibres
 
 
-def _joint(laws: Sequence[RubberLaw], joint: int, sided: bool = False) -> Callable[..., None]:
-    """Compiled ``(w, which)``: the fibres of one joint of all lanes; ``sided``: a factor on the springs of a half."""
-    if not laws:
+def _joint(joint: int, sided: bool = False) -> Callable[..., None]:
+    """Compiled ``(w, acting)``: the fibres of one joint of all lanes; ``sided``: a factor on the springs of a half.
 
-        @inlined
-        def nothing(w: Table, which: Any) -> None:
-            return
-
-        return nothing
-    if len(laws) == 1:
-        alone = _over_all(_alone(laws[0], joint, sided))
-
-        @inlined
-        def one(w: Table, which: Any) -> None:
-            alone(w)
-
-        return one
+    ``acting``: which laws, as of `models.rubber.lanes.acting`.
+    """
     begin, end = _over_all(_begin(joint)), _over_all(_end(joint, sided))
-    passes = rubber.guarded([_over_all(_pass(law, joint)) for law in laws])
+    passes = rubber.guarded([_over_all(_pass(law, joint)) for law in rubber.ORDER])
 
     @inlined
-    def combined(w: Table, which: Any) -> None:
-        begin(w)
-        passes(w, which[0])
-        end(w)
+    def all_laws(w: Table, acting: int) -> None:
+        if acting:
+            begin(w)
+            passes(w, acting)
+            end(w)
 
-    return combined
+    return all_laws
 
 
-base_fibres, top_fibres = (rubber.chosen([_joint(laws, joint) for laws in rubber.VARIANTS]) for joint in range(2))
-sided_base_fibres = rubber.chosen([_joint(laws, 0, sided=True) for laws in rubber.VARIANTS])
+base_fibres, top_fibres = _joint(0), _joint(1)
+sided_base_fibres = _joint(0, sided=True)

@@ -29,9 +29,9 @@ class Rubber(NamedTuple):
     """(n, 2, `N_HIDDEN`, 16) at the start."""
     ended: Table
     """The same at the end, for the kernel to fill."""
-    base: Any
-    """The variant of `models.rubber.lanes` at the base."""
-    top: Any
+    base: int
+    """Which laws act at the base, as of `models.rubber.lanes.acting`."""
+    top: int
 
 
 @inlined
@@ -69,8 +69,8 @@ def lengths(w: Table, joint: int, i: int) -> None:
 
 
 @called
-def fibres_all(w: Table, base: Any, top: Any) -> None:
-    """The fibres of all lanes at the predictor of the coming step, with the variants of a `Rubber`."""
+def fibres_all(w: Table, base: int, top: int) -> None:
+    """The fibres of all lanes at the predictor of the coming step, with the laws of a `Rubber` that act."""
     for i in range(w.size // N_WORK_LAWS):
         predicted_strips(w, i)
     base_fibres(w, base)
@@ -79,7 +79,7 @@ def fibres_all(w: Table, base: Any, top: Any) -> None:
 
 
 @called
-def sided_fibres(w: Table, base: Any, top: Any) -> None:
+def sided_fibres(w: Table, base: int, top: int) -> None:
     """As `fibres_all` of lanes with effects, whose strips at the predictor are known."""
     sided_base_fibres(w, base)
     top_fibres(w, top)

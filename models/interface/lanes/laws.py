@@ -36,7 +36,7 @@ def given_laws(
             hidden[:, k] = rubber.hidden_table(laws, Fibres(wall, joint).relaxed(rest[:, 2 + k], angles[k]))
     if HISTORY in initial:
         hidden = np.ascontiguousarray(initial[HISTORY])
-    base, top = (rubber.variant_for(wall.laws_at(joint)) for joint in JOINTS)
+    base, top = (rubber.acting(wall.laws_at(joint)) for joint in JOINTS)
     return Rubber(numbers, hidden, hidden.copy(), base, top)
 
 

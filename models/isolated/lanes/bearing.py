@@ -8,8 +8,7 @@ same impulse and moment.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Callable
 
 from models.isolated.lanes import rows as r
 from models.isolated.lanes.rows import Table, W
@@ -24,7 +23,7 @@ from models.rubber.base import RubberLaw
 U, WHOLE, LAST, K, HIDDEN = (row * W for row in range(5))
 P_LAWS = HIDDEN + rubber.N_HIDDEN * W
 GOING = P_LAWS + rubber.N_NUMBERS * W
-"""What passes from law to law in a combination: u, its change, force beyond k u, slope."""
+"""What passes from law to law: u, its change, force beyond k u, slope."""
 N_SPRING = GOING + 4 * W
 PLACES = rubber.Places(HIDDEN, W, P_LAWS, W)
 
@@ -67,62 +66,40 @@ def close(s: Table, x: Table, p: Table, spring: Table, i: int) -> None:
     x[r.AMPLITUDE, i], x[r.CROSSINGS, i], x[r.WEAR, i] = reached, crossings, wear
 
 
-def _springs(laws: Sequence[RubberLaw]) -> Callable[..., None]:
-    """Compiled ``(spring, which)``: the springs' force of all lanes; the laws go on from one look to the next."""
-    if len(laws) > 1:
-        return _combined(laws)
-    numbers, respond = rubber.responding(laws, PLACES)
-
-    @inlined
-    def springs_all(spring: Table, which: Any) -> None:
-        for i in range(W):
-            u = spring[U + i]
-            k = spring[K + i]
-            spring[WHOLE + i] = k * u + respond(spring, i, u, u - spring[LAST + i], k, numbers(spring, i))[0]
-            spring[LAST + i] = u
-
-    return springs_all
-
-
-def _combined(laws: Sequence[RubberLaw]) -> Callable[..., None]:
-    """As `_springs`, each law in a pass of its own."""
-    passes = rubber.guarded([_pass(law) for law in laws])
-
-    @inlined
-    def springs_all(spring: Table, which: Any) -> None:
-        for i in range(W):
-            u = spring[U + i]
-            spring[GOING + i], spring[GOING + W + i] = u, u - spring[LAST + i]
-            spring[GOING + 2 * W + i], spring[GOING + 3 * W + i] = 0.0, 0.0
-            spring[LAST + i] = u
-        passes(spring, which[0])
-        for i in range(W):
-            spring[WHOLE + i] = spring[K + i] * spring[U + i] + spring[GOING + 2 * W + i]
-
-    return springs_all
-
-
 def _pass(law: RubberLaw) -> Callable[..., None]:
-    """Compiled ``(spring)``: one law of a combination in all lanes."""
+    """Compiled ``(spring)``: one law in all lanes."""
     numbers, go_on = rubber.passing(law, PLACES, GOING)
 
     @inlined
     def all_lanes(spring: Table) -> None:
         for i in range(W):
-            go_on(spring, i, spring[U + i], spring[K + i], numbers(spring, i))
+            go_on(spring, i, spring[K + i], numbers(spring, i))
 
     return all_lanes
 
 
-springs = rubber.chosen([_springs(laws) for laws in rubber.VARIANTS])
+_passes = rubber.guarded([_pass(law) for law in rubber.ORDER])
 
 
 @inlined
-def bearing_all(work: Lent, laws: Any, levels: int) -> None:
-    """The bearings of all lanes, their rubber by the variant ``laws`` of `models.rubber.lanes`."""
+def springs_all(spring: Table, acting: int) -> None:
+    """The springs' force of all lanes; the laws that act go on from one look to the next."""
+    for i in range(W):
+        u = spring[U + i]
+        spring[GOING + i], spring[GOING + W + i] = u, u - spring[LAST + i]
+        spring[GOING + 2 * W + i], spring[GOING + 3 * W + i] = 0.0, 0.0
+        spring[LAST + i] = u
+    _passes(spring, acting)
+    for i in range(W):
+        spring[WHOLE + i] = spring[K + i] * spring[U + i] + spring[GOING + 2 * W + i]
+
+
+@inlined
+def bearing_all(work: Lent, laws: int, levels: int) -> None:
+    """The bearings of all lanes with those ``laws`` that act, as of `models.rubber.lanes.acting`."""
     s, x, spring = work.scalars, work.memory, work.spring
     for i in range(W):
         predict(s, spring, work.new, work.gains, levels, i)
-    springs(spring, laws)
+    springs_all(spring, laws)
     for i in range(W):
         close(s, x, work.numbers, spring, i)

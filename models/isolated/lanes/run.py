@@ -146,7 +146,7 @@ class _Group:
         self.steps = advance(
             self.shaking.horizontal, self.shaking.time_step, self.shaking.horizontal.size - 1, self.per, first, last,
             period, given, records, not request.history, (None,) * self.size,
-            rubber.variant_for(laws) if chain.laws else None,
+            rubber.acting(laws) if chain.laws else None,
         )  # fmt: skip
         at_end, result = records.states, records.result
         at_end = np.concatenate([at_end[:, :levels], at_end[:, self.size : self.size + levels]], axis=1)

@@ -4,7 +4,7 @@
 
 an exponential rule: stiff storeys, however stiff, set no bound on the step, and with linear bearings the step has no
 error at all. ``size`` is a tuple as long as the (padded) chain, so that the compiler knows its length;
-``laws`` None: linear bearings, else the variant of `models.rubber.lanes`.
+``laws`` None: linear bearings, else which laws act (`models.rubber.lanes.acting`).
 """
 
 from __future__ import annotations

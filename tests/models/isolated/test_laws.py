@@ -159,8 +159,8 @@ def test_springs_of_the_kernel_carry_what_the_law_says(name: str) -> None:
 
     @numba.njit
     def look(table, which):
-        compiled.springs(table, which)
+        compiled.springs_all(table, which)
 
-    look(spring, rubber.variant_for(laws))
+    look(spring, rubber.acting(laws))
     carried = spring[compiled.WHOLE : compiled.WHOLE + W]
     np.testing.assert_allclose(carried, one.layer.stress(u, one.layer.relaxed(u)), rtol=1e-13)
