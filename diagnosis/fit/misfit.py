@@ -43,11 +43,10 @@ class Linear:
 
 @dataclass(frozen=True)
 class Reduced:
-    """The same, projected off the states; ``solve_states`` (W, S, M) gives the change -dx of the states."""
+    """The same, projected off the states."""
 
     residual: FloatArray
     by_unknown: FloatArray
-    solve_states: FloatArray
     basis: FloatArray
     """Orthonormal (W, M, S) directions that the states can reach."""
 
@@ -164,15 +163,11 @@ class Misfit:
 def reduce(linear: Linear) -> Reduced:
     """Project residuals and derivatives off the states, window by window."""
     if not linear.by_state.shape[-1]:
-        return Reduced(linear.residual, linear.by_unknown, np.swapaxes(linear.by_state, 1, 2), linear.by_state)
-    q, r = np.linalg.qr(linear.by_state)
-    diagonal = np.abs(np.diagonal(r, axis1=1, axis2=2))
-    tiny = 1e-9 * np.max(diagonal, axis=1, keepdims=True) + 1e-300
-    safe = r + np.where(diagonal < tiny, tiny, 0.0)[:, :, None] * np.eye(r.shape[-1])
-    solve = np.linalg.solve(safe, np.swapaxes(q, 1, 2))
+        return Reduced(linear.residual, linear.by_unknown, linear.by_state)
+    q = np.linalg.qr(linear.by_state)[0]
     along = np.einsum("wms,wm->ws", q, linear.residual)
     residual = linear.residual - np.einsum("wms,ws->wm", q, along)
-    return Reduced(residual, project(q, linear.by_unknown), solve, q)
+    return Reduced(residual, project(q, linear.by_unknown), q)
 
 
 def project(basis: FloatArray, columns: FloatArray) -> FloatArray:

@@ -150,12 +150,18 @@ class _Place:
         return self.misfit.level + change[self.u.size :]
 
     def shift(self, change: FloatArray) -> FloatArray:
-        """Of the states (W, S) that suits a change of the unknowns, within what the linear problem can tell."""
+        """Of the states (W, S) that suits a change of the unknowns: min |r + B x|^2 + |x/largest|^2, window by window.
+
+        A combination of states that the window does not tell stays where it is; cut one by one, those that belong
+        together would no longer fit each other.
+        """
         step = np.concatenate([self.moved(change) - self.u, change[self.u.size :]])
         ahead = self.linear.residual + self.linear.by_unknown @ step
         largest = np.maximum(np.abs(self.states), self.misfit.measured.state_size)
-        best = -np.einsum("wsm,wm->ws", self.reduced.solve_states, ahead)
-        return np.asarray(np.clip(best, -largest, largest))
+        columns = self.linear.by_state * largest[:, None, :]
+        hessian = np.swapaxes(columns, 1, 2) @ columns + np.eye(columns.shape[-1])
+        gradient = np.einsum("wms,wm->ws", columns, ahead)
+        return np.asarray(-largest * np.linalg.solve(hessian, gradient[..., None])[..., 0])
 
 
 def fit(misfit: Misfit, u: FloatArray, states: FloatArray, iterations: int = ITERATIONS) -> Fitted:

@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 
 from models.interface.declaration import CALM
-from models.interface.lanes.along import N_WORK_LAWS
 from models.interface.lanes.effects.begin import load_pitch, pitch_on, vacate
 from models.interface.lanes.effects.rows import X1
 from models.interface.lanes.effects.step import predict, step, strips_of_fibres
@@ -28,7 +27,6 @@ from models.interface.lanes.rows import (
     LOG_OVERTURNED,
     LOG_REST,
     LOG_UPLIFT,
-    N_WORK,
     Q_PERIOD,
     Q_STEPS,
     RA,
@@ -38,7 +36,7 @@ from models.interface.lanes.rows import (
     T2,
     W,
 )
-from models.interface.lanes.settle import HALF_TURN, at_rest, consistent, empty, finish, load, start
+from models.interface.lanes.settle import HALF_TURN, at_rest, consistent, empty, finish, load, start, table_for
 from models.interface.lanes.step import step_all
 from models.lanes.arrays import Counts, Record, Table, Tables
 from models.lanes.compiler import called, compiled
@@ -71,8 +69,8 @@ def advance(
     samples, time_step, shaken = record.samples, record.step, record.shaken
     result, trace, log, count = tables.result, tables.trace, tables.log, tables.length
     n = given.shape[0]
-    w = np.zeros((N_WORK if laws is None else N_WORK_LAWS, W))
-    # the fibres' rows are looked up by place
+    w = table_for(laws, more)
+    # the same by place: with constant places loops over the lanes become vector code
     flat = w.reshape(w.size)
     was = np.zeros((2, W))
     at, bound, of = np.zeros(W, np.int64), np.zeros(W, np.int64), np.full(W, -1)
@@ -82,7 +80,7 @@ def advance(
     for slot in range(W):
         empty(w, slot)
         if more is not None:
-            vacate(more, slot)
+            vacate(flat, slot)
     while True:
         # --- settle lanes at their boundaries, fill empty slots
         active = 0
@@ -105,10 +103,10 @@ def advance(
                     for k in range(8):
                         trace[lane, i - first[lane], k] = w[T1 + k, slot]
                         if more is not None:
-                            trace[lane, i - first[lane], 8 + k] = more.own[X1 + k, slot]
+                            trace[lane, i - first[lane], 8 + k] = flat[X1 + k * W + slot]
                 if i == shaken and i > first[lane]:
                     if more is not None:
-                        load_pitch(more, slot, samples, i, shaken, 1.0)
+                        load_pitch(flat, more, slot, samples, i, shaken, 1.0)
                     consistent(w, slot, 0.0, 0.0, mixed, laws, more)
                 ended = i >= last[lane]
                 if i >= shaken and i >= window[slot]:
@@ -122,14 +120,14 @@ def advance(
                     lane = -1
                     empty(w, slot)
                     if more is not None:
-                        vacate(more, slot)
+                        vacate(flat, slot)
                     continue
                 bound[slot] = min(last[lane], shaken if i < shaken else window[slot])
                 if sampled:
                     bound[slot] = i + 1
                 load(w, slot, samples, i, shaken, float(per[slot]))
                 if more is not None:
-                    load_pitch(more, slot, samples, i, shaken, float(per[slot]))
+                    load_pitch(flat, more, slot, samples, i, shaken, float(per[slot]))
                 break
             of[slot] = lane
             active += 1 if lane >= 0 else 0
@@ -156,14 +154,14 @@ def advance(
             if more is None:
                 if laws is not None:
                     fibres_all(flat, rubber.base, rubber.top)
-                flagged = step_all(w, mixed, laws)
+                flagged = step_all(flat, mixed, laws)
             else:
-                pitch_on(more)
-                predict(w, more)
+                pitch_on(flat, more)
+                predict(flat, more)
                 if laws is not None:
-                    strips_of_fibres(w, more)
+                    strips_of_fibres(flat)
                     sided_fibres(flat, rubber.base, rubber.top)
-                flagged = step(w, more, laws)
+                flagged = step(flat, more, laws)
             steps += active
             if flagged > 0:
                 for slot in range(W):
@@ -180,13 +178,13 @@ def advance(
                         of[slot] = -1
                         empty(w, slot)
                         if more is not None:
-                            vacate(more, slot)
+                            vacate(flat, slot)
                         settle = True
             # --- lanes that have come to a sample take up its growth, whatever becomes of the others
             for slot in range(W):
                 if sub[slot] == 0 and of[slot] >= 0 and at[slot] < bound[slot]:
                     load(w, slot, samples, at[slot], shaken, float(per[slot]))
                     if more is not None:
-                        load_pitch(more, slot, samples, at[slot], shaken, float(per[slot]))
+                        load_pitch(flat, more, slot, samples, at[slot], shaken, float(per[slot]))
             if settle:
                 break

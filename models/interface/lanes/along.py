@@ -127,8 +127,8 @@ def _over_all(four: Callable[..., None]) -> Callable[..., None]:
 
     @inlined
     def all_fibres(w: Table) -> None:
-        # a length read at run time: else the compiler unrolls the loops instead of making vector code
-        lanes = w.size // N_WORK_LAWS
+        # a length that the compiler does not know: else it unrolls the loops instead of making vector code
+        lanes = min(W, w.size)
         for f in range(0, COUNT, 4):
             for i in range(lanes):
                 four(w, f, i)

@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 
 from models.interface.fibres import COUNT
-from models.interface.lanes.along import APART, LAST, N_WORK_LAWS
+from models.interface.lanes.along import APART, LAST
 from models.interface.lanes.effects import rows as e
-from models.interface.lanes.effects.begin import load_pitch, pitch_on, vacate
+from models.interface.lanes.effects.begin import follow, load_pitch, pitch_on, vacate
 from models.interface.lanes.effects.step import predict, step, strips_of_fibres
 from models.interface.lanes.fibres import fibres_all, sided_fibres
-from models.interface.lanes.rows import GROWTH_A, GROWTH_V, N_RESULT, N_WORK, Q_STEPS, RA, RV, T1, V1, W
-from models.interface.lanes.settle import empty, load, start
+from models.interface.lanes.rows import GROWTH_A, GROWTH_V, N_RESULT, Q_STEPS, RA, RV, T1, W
+from models.interface.lanes.settle import empty, load, start, table_for
 from models.interface.lanes.step import step_all
 from models.lanes.arrays import Counts, Record, Table
 from models.lanes.compiler import compiled
@@ -39,14 +39,14 @@ def carry(
     """
     n, per = given.shape[0], int(given[0, Q_STEPS])
     result = np.zeros((n, N_RESULT))
-    w = np.zeros((N_WORK if laws is None else N_WORK_LAWS, W))
+    w = table_for(laws, more)
     flat = w.reshape(w.size)
     for begin in range(0, n, W):
         count = min(W, n - begin)
         for slot in range(W):
             empty(w, slot)
             if more is not None:
-                vacate(more, slot)
+                vacate(flat, slot)
             if slot < count:
                 lane = begin + slot
                 start(
@@ -70,17 +70,17 @@ def carry(
                 row = begin + slot if motion.shape[0] > 1 else 0
                 for k in range(held.size):
                     w[T1 + held[k], slot] = motion[row, i, k]
-                if more is not None and more.own[e.FREE_M, slot] == 0.0:
-                    more.own[e.TM, slot], more.own[e.VTM, slot] = w[T1, slot], w[V1, slot]
+                if more is not None:
+                    follow(flat, slot)
             while mark < marks.size and marks[mark] == i:
                 for slot in range(count):
                     for k in range(states.shape[2]):
                         states[begin + slot, mark, k] = w[T1 + k, slot]
                     if more is not None:
                         for k in range(8):
-                            others[begin + slot, mark, k] = more.own[e.X1 + k, slot]
+                            others[begin + slot, mark, k] = flat[e.X1 + k * W + slot]
                         for k in range(4):
-                            others[begin + slot, mark, 8 + k] = more.own[e.CLOSINGS + k, slot]
+                            others[begin + slot, mark, 8 + k] = flat[e.CLOSINGS + k * W + slot]
                     if laws is not None:
                         for joint in range(2):
                             for law in range(N_HIDDEN):
@@ -92,7 +92,7 @@ def carry(
                 at_sample = min(first[begin + slot] + i, record.shaken)
                 load(w, slot, record.samples, at_sample, record.shaken, float(per))
                 if more is not None:
-                    load_pitch(more, slot, record.samples, at_sample, record.shaken, float(per))
+                    load_pitch(flat, more, slot, record.samples, at_sample, record.shaken, float(per))
             for _ in range(per):
                 for slot in range(W):
                     w[RA, slot] += w[GROWTH_A, slot]
@@ -100,11 +100,11 @@ def carry(
                 if more is None:
                     if laws is not None:
                         fibres_all(flat, rubber.base, rubber.top)
-                    step_all(w, mixed, laws)
+                    step_all(flat, mixed, laws)
                 else:
-                    pitch_on(more)
-                    predict(w, more)
+                    pitch_on(flat, more)
+                    predict(flat, more)
                     if laws is not None:
-                        strips_of_fibres(w, more)
+                        strips_of_fibres(flat)
                         sided_fibres(flat, rubber.base, rubber.top)
-                    step(w, more, laws)
+                    step(flat, more, laws)

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from models.interface.fibres import COUNT, NODES
 from models.interface.lanes import rows as r
-from models.interface.lanes.along import APART, LAST, N_WORK_LAWS, P_LAWS, base_fibres, sided_base_fibres, top_fibres
+from models.interface.lanes.along import APART, LAST, P_LAWS, base_fibres, sided_base_fibres, top_fibres
 from models.interface.lanes.rows import W
 from models.lanes.arrays import Table
 from models.lanes.compiler import called, inlined
@@ -71,7 +71,7 @@ def lengths(w: Table, joint: int, i: int) -> None:
 @called
 def fibres_all(w: Table, base: int, top: int) -> None:
     """The fibres of all lanes at the predictor of the coming step, with the laws of a `Rubber` that act."""
-    for i in range(w.size // N_WORK_LAWS):
+    for i in range(min(W, w.size)):
         predicted_strips(w, i)
     base_fibres(w, base)
     top_fibres(w, top)
@@ -89,7 +89,7 @@ def sided_fibres(w: Table, base: int, top: int) -> None:
 @inlined
 def integrate(w: Table) -> None:
     """The sums over [-1, 1] of all lanes to integrals over the joints."""
-    for i in range(w.size // N_WORK_LAWS):
+    for i in range(min(W, w.size)):
         # no loop over the joints: it would not become vector code
         lengths(w, 0, i)
         lengths(w, 1, i)

@@ -14,7 +14,7 @@ from models.interface.declaration import STATES
 from models.interface.lanes import rows as r
 from models.interface.lanes.advance import advance
 from models.interface.lanes.effects.given import energy, given_effects
-from models.interface.lanes.effects.rows import CONSTANTS
+from models.interface.lanes.effects.rows import G_STATE
 from models.interface.lanes.laws import given_laws, stored_in_layers
 from models.interface.lanes.sense import SAME_TIME, agree, diverged, pressed
 from models.interface.layered import LayeredWall
@@ -139,7 +139,7 @@ def _advanced(wall: LayeredWall, request: Request, refinement: int, low_pass: fl
         if more is None:
             change = stored_in_layers(wall, first, hidden[0]) - stored_in_layers(wall, last, hidden[1])
         else:
-            began = more.given[:, len(CONSTANTS) :]
+            began = more.given[:, G_STATE:]
             change = energy(wall, first, began, hidden[0]) - energy(wall, last, more.ended, hidden[1])
         result[:, r.R_LOST_B : r.R_LOST_T + 1] += change
     return int(steps)

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from models.interface.lanes import rows as r
+from models.interface.lanes.along import N_WORK_LAWS
 from models.interface.lanes.effects import begin as effects
-from models.interface.lanes.effects.rows import TM, TOP_OFFSET
+from models.interface.lanes.effects.rows import N_TABLE, TM, TOP_OFFSET
 from models.interface.lanes.fibres import fibres_at_end, fibres_at_start
 from models.interface.lanes.rows import (
     A1,
@@ -60,6 +61,7 @@ from models.interface.lanes.rows import (
     WORK_T,
     Z1,
     Z2,
+    W,
 )  # fmt: skip
 from models.interface.lanes.step import AM, BETA, GAMMA, step_one
 from models.lanes.arrays import Table
@@ -67,6 +69,14 @@ from models.lanes.compiler import called, inlined
 
 HALF_TURN = 1.5707963267948966
 NEVER = 1e300
+
+
+@called
+def table_for(laws: Any, more: Any) -> Table:
+    """The table (rows, W) of the lanes under way, with rows for rubber laws and effects where there are any."""
+    if more is not None:
+        return np.zeros((N_TABLE, W))
+    return np.zeros((N_WORK if laws is None else N_WORK_LAWS, W))
 
 
 @called
@@ -85,7 +95,7 @@ def set_step(w: Table, slot: int, h: float) -> None:
 def consistent(w: Table, slot: int, a: float, v: float, mixed: Any, laws: Any, more: Any) -> None:
     """Give a lane the acceleration of its state under the record's values a and v, nothing else."""
     if more is not None:
-        effects.settle(w, more, slot, a, v, laws)
+        effects.settle(w.reshape(w.size), more, slot, a, v, laws)
         return
     kept = np.empty(N_WORK)
     for row in range(N_WORK):
@@ -95,7 +105,7 @@ def consistent(w: Table, slot: int, a: float, v: float, mixed: Any, laws: Any, m
         w[row, slot] = 0.0
     # a step of no length from no acceleration: (1 - am) M d = Q - n
     set_step(w, slot, 0.0)
-    step_one(w, slot, mixed, laws)
+    step_one(w.reshape(w.size), slot, mixed, laws)
     for row in range(A1, A1 + 4):
         kept[row] = (1.0 - AM) * w[row, slot]
     kept[r.POWER_B], kept[r.POWER_T] = w[r.POWER_B, slot], w[r.POWER_T, slot]
@@ -126,9 +136,9 @@ def start(
     w[CLOCK, slot] = sample * n
     upper = w[T1, slot]
     if more is not None:
-        effects.put(w, more, lane, slot)
-        effects.load_pitch(more, slot, record, sample, record.shape[1], 1.0)
-        upper = more.own[TM, slot]
+        effects.put(w.reshape(w.size), more, lane, slot)
+        effects.load_pitch(w.reshape(w.size), more, slot, record, sample, record.shape[1], 1.0)
+        upper = w[TM // W, slot]
     if laws is not None:
         fibres_at_start(w.reshape(w.size), rubber, lane, slot, more, upper)
     consistent(w, slot, record[0, sample], record[1, sample], mixed, laws, more)
@@ -204,7 +214,7 @@ def finish(result: Table, w: Table, lane: int, slot: int, fell: bool, laws: Any,
             result[lane, r.R_OVER_1] = time
         result[lane, r.R_OVER_2] = time
     else:
-        topple(result, w, lane, slot, time, 0.0 if more is None else more.own[TOP_OFFSET, slot])
+        topple(result, w, lane, slot, time, 0.0 if more is None else w[TOP_OFFSET // W, slot])
     result[lane, r.R_PEAK_1], result[lane, r.R_PEAK_2] = w[PEAK_1, slot], w[PEAK_2, slot]
     result[lane, r.R_UP_B], result[lane, r.R_UP_T] = h * w[UP_B, slot], h * w[UP_T, slot]
     result[lane, r.R_ONSET_B], result[lane, r.R_ONSET_T] = h * w[ONSET_B, slot], h * w[ONSET_T, slot]
@@ -221,7 +231,7 @@ def finish(result: Table, w: Table, lane: int, slot: int, fell: bool, laws: Any,
     if laws is not None:
         fibres_at_end(w.reshape(w.size), rubber, lane, slot)
     if more is not None:
-        effects.put_on_record(more, lane, slot)
+        effects.put_on_record(w.reshape(w.size), more, lane, slot)
 
 
 @inlined

@@ -34,28 +34,28 @@ BETA = 0.25 * (1.0 - AM) ** 2
 
 
 @inlined
-def step_one(w: Table, i: int, mixed: Any, laws: Any) -> bool:
+def step_one(t: Table, i: int, mixed: Any, laws: Any) -> bool:
     """One step of the lane in slot i; returns whether it needs attention."""
-    h = w[r.STEP, i]
+    h = t[r.STEP * W + i]
     # --- predictor and inputs at the end of the step
-    o1, o2, o3, o4 = w[r.A1, i], w[r.A2, i], w[r.AZ1, i], w[r.AZ2, i]
-    v1, v2, y1, y2 = w[r.V1, i], w[r.V2, i], w[r.Y1, i], w[r.Y2, i]
-    half, near, far = w[r.HALF, i], w[r.NEAR, i], w[r.FAR, i]
-    t1, t2 = w[r.T1, i] + h * v1 + half * o1, w[r.T2, i] + h * v2 + half * o2
-    z1, z2 = w[r.Z1, i] + h * y1 + half * o3, w[r.Z2, i] + h * y2 + half * o4
+    o1, o2, o3, o4 = t[r.A1 * W + i], t[r.A2 * W + i], t[r.AZ1 * W + i], t[r.AZ2 * W + i]
+    v1, v2, y1, y2 = t[r.V1 * W + i], t[r.V2 * W + i], t[r.Y1 * W + i], t[r.Y2 * W + i]
+    half, near, far = t[r.HALF * W + i], t[r.NEAR * W + i], t[r.FAR * W + i]
+    t1, t2 = t[r.T1 * W + i] + h * v1 + half * o1, t[r.T2 * W + i] + h * v2 + half * o2
+    z1, z2 = t[r.Z1 * W + i] + h * y1 + half * o3, t[r.Z2 * W + i] + h * y2 + half * o4
     v1, v2, y1, y2 = v1 + h * o1, v2 + h * o2, y1 + h * o3, y2 + h * o4
-    a = w[r.SCALE, i] * w[r.RA, i] + w[r.OFFSET, i]
-    g = w[r.GRAVITY, i] + w[r.VSCALE, i] * w[r.RV, i]
+    a = t[r.SCALE * W + i] * t[r.RA * W + i] + t[r.OFFSET * W + i]
+    g = t[r.GRAVITY * W + i] + t[r.VSCALE * W + i] * t[r.RV * W + i]
     # --- kinematics: columns A, B, (-s1, c1), (0, 1) of J_2 in the wall's frame
     s1, c1 = sine_cosine(t1)
     sr, cr = sine_cosine(t2 - t1)
     turn = v2 - v1
-    m1, m2, i1, i2 = w[r.M1, i], w[r.M2, i], w[r.I1, i], w[r.I2, i]
-    h1, h2 = w[r.H1, i], w[r.H2, i]
-    b1 = w[r.TOE_1, i] if s1 >= 0.0 else -w[r.TOE_1, i]
-    bt = w[r.TOE_T, i] if sr >= 0.0 else -w[r.TOE_T, i]
+    m1, m2, i1, i2 = t[r.M1 * W + i], t[r.M2 * W + i], t[r.I1 * W + i], t[r.I2 * W + i]
+    h1, h2 = t[r.H1 * W + i], t[r.H2 * W + i]
+    b1 = t[r.TOE_1 * W + i] if s1 >= 0.0 else -t[r.TOE_1 * W + i]
+    bt = t[r.TOE_T * W + i] if sr >= 0.0 else -t[r.TOE_T * W + i]
     xr, xr_d = bt - bt * cr, bt * sr
-    height = w[r.HEIGHT, i] + z2
+    height = t[r.HEIGHT * W + i] + z2
     level = height - xr_d
     roll = b1 * s1
     ax, az = level + roll * c1, roll * s1 - xr
@@ -64,7 +64,7 @@ def step_one(w: Table, i: int, mixed: Any, laws: Any) -> bool:
     free_b, free_t = 1.0, 1.0
     if mixed is not None:
         # the columns of what a bonded joint takes away vanish; theta2 moves with theta1
-        free_b, free_t = w[r.FREE_B, i], w[r.FREE_T, i]
+        free_b, free_t = t[r.FREE_B * W + i], t[r.FREE_T * W + i]
         ax, az = free_b * (ax + (1.0 - free_t) * bx), free_b * (az + (1.0 - free_t) * bz)
         jx, jz = free_b * jx, free_b * jz
         bx, bz = free_t * bx, free_t * bz
@@ -82,24 +82,24 @@ def step_one(w: Table, i: int, mixed: Any, laws: Any) -> bool:
     uz = m2 * (uz + az * o1 + bz * o2 + cz * o3 + free_t * o4)
     # --- strips
     rb, rt = c1 * v1, cr * turn
-    kb, kt, cb, ct, clip = w[r.KB, i], w[r.KT, i], w[r.CB, i], w[r.CT, i], w[r.CLIP, i]
+    kb, kt, cb, ct, clip = t[r.KB * W + i], t[r.KT * W + i], t[r.CB * W + i], t[r.CT * W + i], t[r.CLIP * W + i]
     slope_b, steep_b, lean_b = slopes(kb, cb, s1, rb)
     slope_t, steep_t, lean_t = slopes(kt, ct, sr, rt)
     below, above = lean_b * steep_b, lean_t * steep_t
     inverse = 1.0 / (below * above)
     nb, mb, d1b, d2b, d3b, share_b = resultants(
-        w[r.B1, i], clip, z1, kb * z1 + cb * y1, s1, slope_b, steep_b, lean_b, inverse * above,
-        w[r.STIFF_B, i],
+        t[r.B1 * W + i], clip, z1, kb * z1 + cb * y1, s1, slope_b, steep_b, lean_b, inverse * above,
+        t[r.STIFF_B * W + i],
     )  # fmt: skip
     nt, mt, d1t, d2t, d3t, share_t = resultants(
-        w[r.BT, i], clip, z2, kt * z2 + ct * y2, sr, slope_t, steep_t, lean_t, inverse * below,
-        w[r.STIFF_T, i],
+        t[r.BT * W + i], clip, z2, kt * z2 + ct * y2, sr, slope_t, steep_t, lean_t, inverse * below,
+        t[r.STIFF_T * W + i],
     )  # fmt: skip
-    w[r.SHARE_B, i] = min(w[r.SHARE_B, i], share_b)
-    w[r.SHARE_T, i] = min(w[r.SHARE_T, i], share_t)
+    t[r.SHARE_B * W + i] = min(t[r.SHARE_B * W + i], share_b)
+    t[r.SHARE_T * W + i] = min(t[r.SHARE_T * W + i], share_t)
     if laws is not None:
-        nb, mb = nb + w[r.FN_B, i], mb + w[r.FM_B, i]
-        nt, mt = nt + w[r.FN_T, i], mt + w[r.FM_T, i]
+        nb, mb = nb + t[r.FN_B * W + i], mb + t[r.FM_B * W + i]
+        nt, mt = nt + t[r.FN_T * W + i], mt + t[r.FM_T * W + i]
     # --- residual Q - n - M a, and the matrix (1 - am) M + gamma h C + beta h^2 K
     couple_b, couple_t = mb * c1, mt * cr
     f1 = free_b * couple_t - couple_b - i1 * o1 - px * jx - pz * jz - ux * ax - uz * az
@@ -107,11 +107,11 @@ def step_one(w: Table, i: int, mixed: Any, laws: Any) -> bool:
     f3 = nb - free_b * pz - ux * cx - uz * cz
     f4 = nt - free_t * uz
     if laws is not None:
-        d1b, d1t = d1b + near * w[r.F1_B, i], d1t + near * w[r.F1_T, i]
-        d2b, d2t = d2b + near * w[r.F2_B, i], d2t + near * w[r.F2_T, i]
-        d3b, d3t = d3b + near * w[r.F3_B, i], d3t + near * w[r.F3_T, i]
+        d1b, d1t = d1b + near * t[r.F1_B * W + i], d1t + near * t[r.F1_T * W + i]
+        d2b, d2t = d2b + near * t[r.F2_B * W + i], d2t + near * t[r.F2_T * W + i]
+        d3b, d3t = d3b + near * t[r.F3_B * W + i], d3t + near * t[r.F3_T * W + i]
     d2b, d3b, d2t, d3t = d2b * c1, d3b * c1 * c1, d2t * cr, d3t * cr * cr
-    n1, n2 = w[r.N1, i], w[r.N2, i]
+    n1, n2 = t[r.N1 * W + i], t[r.N2 * W + i]
     njx, njz = n1 * jx, n1 * jz
     nax, naz, nbx, nbz, ncx, ncz = n2 * ax, n2 * az, n2 * bx, n2 * bz, n2 * cx, n2 * cz
     k11 = (1.0 - AM) * i1 + njx * jx + njz * jz + nax * ax + naz * az
@@ -151,17 +151,17 @@ def step_one(w: Table, i: int, mixed: Any, laws: Any) -> bool:
     turned_1, turned_2 = near * d1, near * d2
     t1, t2, z1, z2 = t1 + turned_1, t2 + turned_2, z1 + near * d3, z2 + near * d4
     v1, v2, y1, y2 = v1 + far * d1, v2 + far * d2, y1 + far * d3, y2 + far * d4
-    w[r.T1, i], w[r.T2, i], w[r.Z1, i], w[r.Z2, i] = t1, t2, z1, z2
-    w[r.V1, i], w[r.V2, i], w[r.Y1, i], w[r.Y2, i] = v1, v2, y1, y2
-    w[r.A1, i], w[r.A2, i], w[r.AZ1, i], w[r.AZ2, i] = o1 + d1, o2 + d2, o3 + d3, o4 + d4
+    t[r.T1 * W + i], t[r.T2 * W + i], t[r.Z1 * W + i], t[r.Z2 * W + i] = t1, t2, z1, z2
+    t[r.V1 * W + i], t[r.V2 * W + i], t[r.Y1 * W + i], t[r.Y2 * W + i] = v1, v2, y1, y2
+    t[r.A1 * W + i], t[r.A2 * W + i], t[r.AZ1 * W + i], t[r.AZ2 * W + i] = o1 + d1, o2 + d2, o3 + d3, o4 + d4
     # --- what is read off it
     turn = v2 - v1
-    steady = read_joints(w, i, z1, z2, s1 + c1 * turned_1, sr + cr * (turned_2 - turned_1), y1, y2, c1 * v1, cr * turn)
+    steady = read_joints(t, i, z1, z2, s1 + c1 * turned_1, sr + cr * (turned_2 - turned_1), y1, y2, c1 * v1, cr * turn)
     # v M v, times 1 - am: only its ratio to its peak is looked at
     both_1 = k11 * v1 + 2.0 * (k12 * v2 + k13 * y1 + k14 * y2)
     both_2 = k22 * v2 + 2.0 * (w23 * y1 + k24 * y2)
     kinetic = both_1 * v1 + both_2 * v2 + ((n1 + n2) * y1 + 2.0 * w34 * y2) * y1 + n2 * y2 * y2
-    stands = read_bodies(w, i, t1, t2, kinetic)
+    stands = read_bodies(t, i, t1, t2, kinetic)
     # forces of the strips in the new state, by their tangent: they carry what lies above
     nb, nt = nb - d1b * d3 + d2b * d1, nt - d1t * d4 + d2t * (d2 - d1)
     couple_b, couple_t = couple_b - d2b * d3 + d3b * d1, couple_t - d2t * d4 + d3t * (d2 - d1)
@@ -170,16 +170,16 @@ def step_one(w: Table, i: int, mixed: Any, laws: Any) -> bool:
     if mixed is not None:
         across = nt if free_t > 0.0 else uz + naz * d1 + ncz * d3
     px += njx * d1 + ux * c1 + across * s1
-    account_joints(w, i, px, nb, ux, across, nb * y1 - couple_b * v1, nt * y2 - couple_t * turn)
+    account_joints(t, i, px, nb, ux, across, nb * y1 - couple_b * v1, nt * y2 - couple_t * turn)
     attention = not (stands & steady)
-    w[r.FLAG, i] = 1.0 if attention else 0.0
+    t[r.FLAG * W + i] = 1.0 if attention else 0.0
     return attention
 
 
 @inlined
-def step_all(w: Table, mixed: Any, laws: Any) -> int:
+def step_all(t: Table, mixed: Any, laws: Any) -> int:
     """One step of all lanes; returns how many need attention."""
     flagged = 0
     for i in range(W):
-        flagged += 1 if step_one(w, i, mixed, laws) else 0
+        flagged += 1 if step_one(t, i, mixed, laws) else 0
     return flagged

@@ -10,6 +10,7 @@ from models.interface.lanes import rows as r
 from models.interface.lanes.effects import rows as e
 from models.interface.lanes.effects.rows import More
 from models.interface.lanes.effects.solve import solve
+from models.interface.lanes.rows import W
 from models.lanes.arrays import Table
 from models.lanes.compiler import called
 
@@ -18,42 +19,46 @@ HUGE = 1e300
 
 
 @called
-def hold(w: Table, m: More) -> None:
-    """Find both forces and what they change of d; ``m.f`` is lent to them."""
-    own, joint, lanes = m.own, m.joint, m.q.shape[1]
+def hold(t: Table, m: More) -> None:
+    """Find both forces and what they change of d; the right hand side is lent to them."""
+    lanes = min(W, t.size)
     for which in range(2):
         for j in range(m.size):
             for i in range(lanes):
-                m.f[j, i] = 0.0
+                t[e.F + j * W + i] = 0.0
         for i in range(lanes):
             if which == 0:
-                m.f[0, i] = w[r.FREE_B, i]
+                t[e.F + i] = t[r.FREE_B * W + i]
             else:
-                m.f[4, i] = own[e.FREE_X1, i] * own[e.SLIDES, i]
+                t[e.F + 4 * W + i] = t[e.FREE_X1 + i] * t[e.SLIDES + i]
         if which == 0 or m.size > 4:
-            solve(m, m.f, m.held[which])
+            solve(t, m, e.F, e.HELD if which == 0 else e.HELD_BASE)
     for i in range(lanes):
-        joint[e.HELD_1, i], joint[e.HELD_X, i] = 0.0, 0.0
+        t[e.HELD_1 + i], t[e.HELD_X + i] = 0.0, 0.0
     slips = m.size > 4
     for _ in range(SWEEPS):
         for i in range(lanes):
-            far = w[r.FAR, i]
+            far = t[r.FAR * W + i]
             per = 1.0 / far if far > 0.0 else HUGE
-            couple, push = joint[e.HELD_1, i], joint[e.HELD_X, i]
-            answer, across = m.held[0, 0, i], m.held[1, 0, i] if slips else 0.0
-            rest = m.d[0, i] + across * push + min(max(m.v[0, i] * per, -HUGE), HUGE)
-            most = own[e.DRY, i]
-            couple = min(max(-rest / (answer + (1.0 - w[r.FREE_B, i])), -most), most)
-            joint[e.HELD_1, i] = couple
+            couple, push = t[e.HELD_1 + i], t[e.HELD_X + i]
+            answer, across = t[e.HELD + i], t[e.HELD_BASE + i] if slips else 0.0
+            rest = t[e.D + i] + across * push + min(max(t[e.V + i] * per, -HUGE), HUGE)
+            most = t[e.DRY + i]
+            couple = min(max(-rest / (answer + (1.0 - t[r.FREE_B * W + i])), -most), most)
+            t[e.HELD_1 + i] = couple
             if slips:
-                d0, d2 = m.d[0, i] + answer * couple + across * push, m.d[2, i]
-                d2 += m.held[0, 2, i] * couple + m.held[1, 2, i] * push
-                normal = joint[e.N_B, i] - joint[e.D1_B, i] * d2 + joint[e.D2_B, i] * joint[e.C1, i] * d0
-                most = own[e.SLIDES, i] * own[e.FRICTION, i] * max(normal, 0.0)
-                rest = m.d[4, i] + m.held[0, 4, i] * couple + min(max(m.v[4, i] * per, -HUGE), HUGE)
-                joint[e.HELD_X, i] = min(max(-rest / (m.held[1, 4, i] + 1.0 - own[e.SLIDES, i]), -most), most)
+                d0, d2 = t[e.D + i] + answer * couple + across * push, t[e.D + 2 * W + i]
+                d2 += t[e.HELD + 2 * W + i] * couple + t[e.HELD_BASE + 2 * W + i] * push
+                normal = t[e.N_B + i] - t[e.D1_B + i] * d2 + t[e.D2_B + i] * t[e.C1 + i] * d0
+                most = t[e.SLIDES + i] * t[e.FRICTION + i] * max(normal, 0.0)
+                rest = (
+                    t[e.D + 4 * W + i]
+                    + t[e.HELD + 4 * W + i] * couple
+                    + min(max(t[e.V + 4 * W + i] * per, -HUGE), HUGE)
+                )
+                t[e.HELD_X + i] = min(max(-rest / (t[e.HELD_BASE + 4 * W + i] + 1.0 - t[e.SLIDES + i]), -most), most)
     for j in range(m.size):
         for i in range(lanes):
-            m.d[j, i] += m.held[0, j, i] * joint[e.HELD_1, i]
+            t[e.D + j * W + i] += t[e.HELD + j * W + i] * t[e.HELD_1 + i]
             if slips:
-                m.d[j, i] += m.held[1, j, i] * joint[e.HELD_X, i]
+                t[e.D + j * W + i] += t[e.HELD_BASE + j * W + i] * t[e.HELD_X + i]

@@ -53,7 +53,7 @@ def given_effects(
         e.PER_OPENING_T: 1.0 / (FROZEN_OVER * compressions[1]), e.LENGTH: wall.height_1, e.HALF_MASS: mass[0],
         e.HALF_INERTIA: inertia[0],
     }  # fmt: skip
-    table = filled(wall.size, e.N_GIVEN, {row - e.PITCH: values for row, values in constants.items()})
+    table = filled(wall.size, e.N_GIVEN, {(row - e.PITCH) // W: values for row, values in constants.items()})
     lower = rest[:, 0]
     at_rest = {**dict(zip(STATES, rest[:, 4:].T, strict=False)), "bend": rest[:, 6] - lower, "rotation_1": lower}
     for k, name in enumerate(STATES):
@@ -67,14 +67,7 @@ def given_effects(
     for part in effects.parts:
         acts |= ACTS.get(part, 0)
 
-    def bench(*shape: int) -> FloatArray:
-        return np.zeros((*shape, W))
-
-    return More(
-        table, np.zeros((wall.size, e.N_ENDED)), acts, effects.coordinates, own=bench(e.N_OWN), joint=bench(e.N_JOINT),
-        q=bench(e.SIZE), v=bench(e.SIZE), o=bench(e.SIZE), d=bench(e.SIZE), f=bench(e.SIZE), shape=bench(9, e.SIZE),
-        pull=bench(9), weight=bench(9), matrix=bench(e.SIZE, e.SIZE), held=bench(2, e.SIZE),
-    )  # fmt: skip
+    return More(table, np.zeros((wall.size, e.N_ENDED)), acts, effects.coordinates)
 
 
 def energy(wall: LayeredWall, q: FloatArray, states: FloatArray, hidden: FloatArray | None) -> FloatArray:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from models.interface.lanes import rows as r
 from models.interface.lanes.effects import rows as e
-from models.interface.lanes.effects.rows import More
+from models.interface.lanes.rows import W
 from models.interface.lanes.strip import TINY, resultants, slopes
 from models.lanes.arrays import Table
 from models.lanes.compiler import called, inlined
@@ -59,10 +59,10 @@ def plus(one: Sums, share: float, other: Sums) -> Sums:
 
 
 @inlined
-def keep(joint: Table, which: int, i: int, found: Sums) -> None:
-    joint[e.N_B + which, i], joint[e.M_B + which, i] = found[0], found[1]
-    joint[e.D1_B + which, i], joint[e.D2_B + which, i], joint[e.D3_B + which, i] = found[2], found[3], found[4]
-    joint[e.LENGTH_B + which, i] = found[5]
+def keep(t: Table, which: int, i: int, found: Sums) -> None:
+    t[e.N_B + which * W + i], t[e.M_B + which * W + i] = found[0], found[1]
+    t[e.D1_B + which * W + i], t[e.D2_B + which * W + i], t[e.D3_B + which * W + i] = found[2], found[3], found[4]
+    t[e.LENGTH_B + which * W + i] = found[5]
 
 
 @inlined
@@ -73,110 +73,119 @@ def frozen_share(opening: float, per_opening: float) -> float:
 
 
 @inlined
-def tears(own: Table, i: int, b: float, z: float, s: float) -> tuple[float, float]:
+def tears(t: Table, i: int, b: float, z: float, s: float) -> tuple[float, float]:
     """Ends of what is bonded still at z, S."""
-    front = (z - own[e.TEARING, i]) / (s + TINY if s >= 0.0 else s - TINY)
-    left, right = own[e.TORN_LEFT, i], own[e.TORN_RIGHT, i]
+    front = (z - t[e.TEARING + i]) / (s + TINY if s >= 0.0 else s - TINY)
+    left, right = t[e.TORN_LEFT + i], t[e.TORN_RIGHT + i]
     left = max(left, min(front, b)) if s > 0.0 else left
     return left, min(right, max(front, -b)) if s < 0.0 else right
 
 
 @called
-def base_by_halves(w: Table, m: More) -> None:
-    own, joint, lanes = m.own, m.joint, m.q.shape[1]
+def base_by_halves(t: Table) -> None:
+    lanes = min(W, t.size)
     for i in range(lanes):
-        c, clip, s = w[r.CB, i], w[r.CLIP, i], joint[e.S1, i]
-        near, far, half = w[r.NEAR, i], w[r.FAR, i], 0.5 * w[r.B1, i]
-        wear = 1.0 - own[e.LOSS, i] * (1.0 - exponential_decay(own[e.CLOSINGS, i] * own[e.PER_CLOSING, i]))
-        w[r.FACTOR_L, i], w[r.FACTOR_R, i] = wear * own[e.LEFT, i], wear * own[e.RIGHT, i]
-        left, right = w[r.KB, i] * w[r.FACTOR_L, i], w[r.KB, i] * w[r.FACTOR_R, i]
-        motion = (m.q[2, i], m.v[2, i], s, joint[e.C1, i] * m.v[0, i])
+        c, clip, s = t[r.CB * W + i], t[r.CLIP * W + i], t[e.S1 + i]
+        near, far, half = t[r.NEAR * W + i], t[r.FAR * W + i], 0.5 * t[r.B1 * W + i]
+        wear = 1.0 - t[e.LOSS + i] * (1.0 - exponential_decay(t[e.CLOSINGS + i] * t[e.PER_CLOSING + i]))
+        t[r.FACTOR_L * W + i], t[r.FACTOR_R * W + i] = wear * t[e.LEFT + i], wear * t[e.RIGHT + i]
+        left, right = t[r.KB * W + i] * t[r.FACTOR_L * W + i], t[r.KB * W + i] * t[r.FACTOR_R * W + i]
+        motion = (t[e.Q + 2 * W + i], t[e.V + 2 * W + i], s, t[e.C1 + i] * t[e.V + i])
         one = piece(-half, half, clip, motion, left, c, far * c + near * left)
         other = piece(half, half, clip, motion, right, c, far * c + near * right)
-        keep(joint, 0, i, plus((*one[:5], one[5] + other[5]), 1.0, other))
+        keep(t, 0, i, plus((*one[:5], one[5] + other[5]), 1.0, other))
 
 
 @called
-def bonds(w: Table, m: More) -> None:
+def bonds(t: Table) -> None:
     """What is bonded still, on either half."""
-    own, joint, lanes = m.own, m.joint, m.q.shape[1]
+    lanes = min(W, t.size)
     for i in range(lanes):
-        b, c, clip, s = w[r.B1, i], w[r.CB, i], w[r.CLIP, i], joint[e.S1, i]
-        motion = (m.q[2, i], m.v[2, i], s, joint[e.C1, i] * m.v[0, i])
-        ends = tears(own, i, b, m.q[2, i], s)
-        found = sums(joint, i)
+        b, c, clip, s = t[r.B1 * W + i], t[r.CB * W + i], t[r.CLIP * W + i], t[e.S1 + i]
+        motion = (t[e.Q + 2 * W + i], t[e.V + 2 * W + i], s, t[e.C1 + i] * t[e.V + i])
+        ends = tears(t, i, b, t[e.Q + 2 * W + i], s)
+        found = sums(t, i)
         for side in range(2):
-            k = w[r.KB, i] * w[r.FACTOR_L + side, i]
-            stiff = w[r.FAR, i] * c + w[r.NEAR, i] * k
+            k = t[r.KB * W + i] * t[(r.FACTOR_L + side) * W + i]
+            stiff = t[r.FAR * W + i] * c + t[r.NEAR * W + i] * k
             low, high = (side - 1.0) * b, side * b
             first, last = min(max(ends[0], low), high), min(max(ends[1], low), high)
             half, middle = 0.5 * max(last - first, 0.0), 0.5 * (first + last)
             found = plus(found, 1.0, whole(middle, half, motion, k, c, stiff))
             found = plus(found, -1.0, piece(middle, half, clip, motion, k, c, stiff))
-        keep(joint, 0, i, found)
+        keep(t, 0, i, found)
 
 
 @inlined
-def sums(joint: Table, i: int) -> Sums:
+def sums(t: Table, i: int) -> Sums:
     return (
-        joint[e.N_B, i], joint[e.M_B, i], joint[e.D1_B, i], joint[e.D2_B, i], joint[e.D3_B, i], joint[e.LENGTH_B, i],
+        t[e.N_B + i], t[e.M_B + i], t[e.D1_B + i], t[e.D2_B + i], t[e.D3_B + i], t[e.LENGTH_B + i],
     )  # fmt: skip
 
 
 @called
-def top_strip(w: Table, m: More) -> None:
-    joint, lanes = m.joint, m.q.shape[1]
+def top_strip(t: Table) -> None:
+    lanes = min(W, t.size)
     for i in range(lanes):
-        k, c = w[r.KT, i], w[r.CT, i]
-        motion = (m.q[3, i], m.v[3, i], joint[e.SR, i], joint[e.CR, i] * (m.v[1, i] - m.v[6, i]))
-        found = piece(0.0, w[r.BT, i], w[r.CLIP, i], motion, k, c, w[r.FAR, i] * c + w[r.NEAR, i] * k)
-        keep(joint, 1, i, found)
+        k, c = t[r.KT * W + i], t[r.CT * W + i]
+        motion = (
+            t[e.Q + 3 * W + i],
+            t[e.V + 3 * W + i],
+            t[e.SR + i],
+            t[e.CR + i] * (t[e.V + W + i] - t[e.V + 6 * W + i]),
+        )
+        found = piece(
+            0.0, t[r.BT * W + i], t[r.CLIP * W + i], motion, k, c, t[r.FAR * W + i] * c + t[r.NEAR * W + i] * k
+        )
+        keep(t, 1, i, found)
 
 
 @called
-def base_strip(w: Table, m: More) -> None:
-    joint, lanes = m.joint, m.q.shape[1]
+def base_strip(t: Table) -> None:
+    lanes = min(W, t.size)
     for i in range(lanes):
-        k, c = w[r.KB, i], w[r.CB, i]
-        motion = (m.q[2, i], m.v[2, i], joint[e.S1, i], joint[e.C1, i] * m.v[0, i])
-        found = piece(0.0, w[r.B1, i], w[r.CLIP, i], motion, k, c, w[r.FAR, i] * c + w[r.NEAR, i] * k)
-        keep(joint, 0, i, found)
+        k, c = t[r.KB * W + i], t[r.CB * W + i]
+        motion = (t[e.Q + 2 * W + i], t[e.V + 2 * W + i], t[e.S1 + i], t[e.C1 + i] * t[e.V + i])
+        found = piece(
+            0.0, t[r.B1 * W + i], t[r.CLIP * W + i], motion, k, c, t[r.FAR * W + i] * c + t[r.NEAR * W + i] * k
+        )
+        keep(t, 0, i, found)
 
 
 @called
-def add_laws(w: Table, m: More) -> None:
+def add_laws(t: Table) -> None:
     """What the fibres add."""
-    joint, lanes = m.joint, m.q.shape[1]
+    lanes = min(W, t.size)
     for which in range(2):
         for i in range(lanes):
-            near = w[r.NEAR, i]
-            joint[e.N_B + which, i] += w[r.FN_B + which, i]
-            joint[e.M_B + which, i] += w[r.FM_B + which, i]
-            joint[e.D1_B + which, i] += near * w[r.F1_B + which, i]
-            joint[e.D2_B + which, i] += near * w[r.F2_B + which, i]
-            joint[e.D3_B + which, i] += near * w[r.F3_B + which, i]
+            near = t[r.NEAR * W + i]
+            t[e.N_B + which * W + i] += t[(r.FN_B + which) * W + i]
+            t[e.M_B + which * W + i] += t[(r.FM_B + which) * W + i]
+            t[e.D1_B + which * W + i] += near * t[(r.F1_B + which) * W + i]
+            t[e.D2_B + which * W + i] += near * t[(r.F2_B + which) * W + i]
+            t[e.D3_B + which * W + i] += near * t[(r.F3_B + which) * W + i]
 
 
 @called
-def freeze(w: Table, m: More) -> None:
+def freeze(t: Table) -> None:
     """Mix the forces with those of contacts frozen at half."""
-    own, joint, lanes = m.own, m.joint, m.q.shape[1]
+    lanes = min(W, t.size)
     for which in range(2):
         for i in range(lanes):
-            b, c, s = w[r.B1 + which, i], w[r.CB + which, i], joint[e.S1 if which == 0 else e.SR, i]
-            rate = joint[e.C1, i] * m.v[0, i] if which == 0 else joint[e.CR, i] * (m.v[1, i] - m.v[6, i])
-            motion = (m.q[2 + which, i], m.v[2 + which, i], s, rate)
-            share = frozen_share(motion[0] + b * abs(s), own[e.PER_OPENING_B + which, i])
-            phi = own[e.FROZEN_B + which, i]
+            b, c, s = t[(r.B1 + which) * W + i], t[(r.CB + which) * W + i], t[(e.S1 if which == 0 else e.SR) + i]
+            rate = t[e.C1 + i] * t[e.V + i] if which == 0 else t[e.CR + i] * (t[e.V + W + i] - t[e.V + 6 * W + i])
+            motion = (t[e.Q + (2 + which) * W + i], t[e.V + (2 + which) * W + i], s, rate)
+            share = frozen_share(motion[0] + b * abs(s), t[e.PER_OPENING_B + which * W + i])
+            phi = t[e.FROZEN_B + which * W + i]
             for row in (e.N_B, e.M_B, e.D1_B, e.D2_B, e.D3_B):
-                joint[row + which, i] *= 1.0 - phi
+                t[row + which * W + i] *= 1.0 - phi
             for side in range(2):
-                k = w[r.KB + which, i] * (w[r.FACTOR_L + side, i] if which == 0 else 1.0)
-                stiff = w[r.FAR, i] * c + w[r.NEAR, i] * k
+                k = t[(r.KB + which) * W + i] * (t[(r.FACTOR_L + side) * W + i] if which == 0 else 1.0)
+                stiff = t[r.FAR * W + i] * c + t[r.NEAR * W + i] * k
                 half = whole((side - 0.5) * b, 0.5 * b, motion, k, c, stiff)
                 part = phi * (1.0 if (s >= 0.0) == (side == 1) else share)
-                joint[e.N_B + which, i] += part * half[0]
-                joint[e.M_B + which, i] += part * half[1]
-                joint[e.D1_B + which, i] += part * half[2]
-                joint[e.D2_B + which, i] += part * half[3]
-                joint[e.D3_B + which, i] += part * half[4]
+                t[e.N_B + which * W + i] += part * half[0]
+                t[e.M_B + which * W + i] += part * half[1]
+                t[e.D1_B + which * W + i] += part * half[2]
+                t[e.D2_B + which * W + i] += part * half[3]
+                t[e.D3_B + which * W + i] += part * half[4]

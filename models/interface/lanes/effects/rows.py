@@ -1,17 +1,29 @@
-"""Names of the rows of the tables that lanes with effects have beside those of the plain kernel."""
+"""Places of the rows that lanes with effects have in the kernel's flat table, behind those of the rubber laws.
+
+Row k of lane i lies at place + i, as in `models.interface.lanes.along`: one table with constant places, so that loops
+over the lanes become vector code.
+"""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
+from models.interface.lanes.along import N_WORK_LAWS
+from models.interface.lanes.rows import W
 from models.lanes.arrays import Table
 
 UNBOUNDED = 1e300
 SIZE = 8
 """Coordinates; see `models.interface.chain`."""
 
+
+def _places(first: int, count: int) -> range:
+    return range(first * W, (first + count) * W, W)
+
+
 # --- own: coordinates beyond the plain ones, their rates, accelerations of the step rule; the pitch of the base at
 # the end of the coming step and its growth; memory
+N_OWN = 47
 (
     X1, X2, TM, ZM, VX1, VX2, VTM, VZM, AX1, AX2, ATM, AZM,
     PSI, PSI_SECOND, GROWTH_PSI, GROWTH_SECOND,
@@ -20,32 +32,45 @@ SIZE = 8
     PITCH, TOP_OFFSET, COUPLE_K, COUPLE_GAP, COUPLE_C, DRY, LEFT, RIGHT, FROZEN_B, FROZEN_T, LOSS, PER_CLOSING, TEARING,
     SHEAR_B, SHEAR_T, FRICTION, SLIDES, BEND, AXIAL, FREE_X1, FREE_X2, FREE_M, PER_OPENING_B, PER_OPENING_T,
     LENGTH, HALF_MASS, HALF_INERTIA,
-) = range(47)  # fmt: skip
-N_OWN = 47
-CONSTANTS = tuple(range(PITCH, HALF_INERTIA + 1))
+) = _places(N_WORK_LAWS, N_OWN)  # fmt: skip
+OWN, N_CONSTANTS = X1, (HALF_INERTIA - PITCH) // W + 1
 """LENGTH: height of the wall; PER_OPENING: one over the opening that freezes a contact at half."""
 
-# --- given: constants in this order, then coordinates, rates and memory at the start
-G_STATE = len(CONSTANTS)
+# --- joints at the predictor: sines and cosines; forces, moments, integrals of the stiffness, pressing lengths; what
+# dry friction adds to theta1 and x1
+_JOINTS = N_WORK_LAWS + N_OWN
+(
+    S1, C1, SM, CM, SR, CR, N_B, N_T, M_B, M_T, D1_B, D1_T, D2_B, D2_T, D3_B, D3_T, LENGTH_B, LENGTH_T,
+    HELD_1, HELD_X,
+) = _places(_JOINTS, 20)  # fmt: skip
+
+# --- bodies at the predictor: x and z of the lower half (L), the upper half (U) and the block (B) over theta1, theta2,
+# thetam, z2, x2, and of the last two over zm; over the others they are 0 or 1. Their accelerations, then forces of
+# inertia, and those of rotation that the base brings along
+_BODIES = _JOINTS + 20
+(
+    XL_1, ZL_1, XU_1, ZU_1, XB_1, ZB_1, XB_2, ZB_2, XU_M, ZU_M, XB_M, ZB_M, XB_Z2, ZB_Z2, XB_X2, ZB_X2, X_ZM, Z_ZM,
+    P_XL, P_ZL, P_XU, P_ZU, P_XB, P_ZB, P_TURN,
+) = _places(_BODIES, 25)  # fmt: skip
+
+# --- equations, 8 rows each: q, q' at the predictor, accelerations before, their change, right hand side; answers to a
+# couple on the wall and to a force along the base; then the matrix, 8 rows of 8
+_EQUATIONS = _BODIES + 25
+Q, V, ACC, D, F, HELD, HELD_BASE, MATRIX = _places(_EQUATIONS, 8 * SIZE)[::SIZE]
+N_TABLE = _EQUATIONS + 7 * SIZE + SIZE**2
+
+# --- given: constants in the order above, then coordinates, rates and memory at the start
+G_STATE = N_CONSTANTS
 G_MEMORY = G_STATE + 8
 N_GIVEN = G_MEMORY + 4
 N_ENDED = 12
 
-# --- joints at the predictor: sines and cosines; forces, moments, integrals of the stiffness, pressing lengths; what
-# dry friction adds to theta1 and x1
-(
-    S1, C1, SM, CM, SR, CR, N_B, N_T, M_B, M_T, D1_B, D1_T, D2_B, D2_T, D3_B, D3_T, LENGTH_B, LENGTH_T,
-    HELD_1, HELD_X,
-) = range(20)  # fmt: skip
-N_JOINT = 20
-
 # --- bits of what acts
-PITCHES, HALVES, BONDS, FREEZES, WEARS, DRIES, LEANS = (1 << k for k in range(7))
-"""LEANS: rubber laws have to know the sides of the base or the angle of the upper half."""
+PITCHES, HALVES, BONDS, FREEZES, WEARS, DRIES = (1 << k for k in range(6))
 
 
 class More(NamedTuple):
-    """What a kernel is given of walls with effects: for n lanes, and tables of the W lanes under way to work in."""
+    """What a kernel is given of n walls with effects."""
 
     given: Table
     """(n, `N_GIVEN`)."""
@@ -55,23 +80,3 @@ class More(NamedTuple):
     """Sum of the bits of what acts."""
     size: int
     """Coordinates that move: 4, 6 or 8."""
-    own: Table
-    """(`N_OWN`, W)."""
-    joint: Table
-    """(`N_JOINT`, W)."""
-    q: Table
-    """(8, W) at the predictor, as v; o: accelerations before; d: their change; f: right hand side."""
-    v: Table
-    o: Table
-    d: Table
-    f: Table
-    shape: Table
-    """(9, 8, W): x and z of the lower half, the upper half, the block, then the rotations of the three, over q."""
-    pull: Table
-    """(9, W): accelerations of these, then forces."""
-    weight: Table
-    """(9, W): masses and inertias."""
-    matrix: Table
-    """(8, 8, W)."""
-    held: Table
-    """(2, 8, W): answers to a couple on the wall, to a force along the base."""

@@ -15,146 +15,183 @@ from models.interface.lanes.effects import dry, joints, kinematics, solve
 from models.interface.lanes.effects import rows as e
 from models.interface.lanes.effects.rows import More
 from models.interface.lanes.reading import account_joints, read_bodies, read_joints
+from models.interface.lanes.rows import W
 from models.interface.lanes.step import AM
 from models.lanes.arrays import Table
-from models.lanes.compiler import called
+from models.lanes.compiler import called, inlined
 
 
 @called
-def predict(w: Table, m: More) -> None:
+def predict(t: Table, m: More) -> None:
     """Everything at the predictor that the layers' laws want to know."""
-    kinematics.predict(w, m)
-    kinematics.chain(w, m)
+    kinematics.predict(t)
+    kinematics.chain(t)
     if m.acts & e.HALVES:
-        joints.base_by_halves(w, m)
+        joints.base_by_halves(t)
 
 
 @called
-def strips_of_fibres(w: Table, m: More) -> None:
+def strips_of_fibres(t: Table) -> None:
     """z, b S, c z', c b S' of both strips, and the least stress, for the fibres of the laws."""
-    joint, lanes = m.joint, m.q.shape[1]
-    for which in range(2):
-        for i in range(lanes):
-            c, b = w[r.CB + which, i], w[r.B1 + which, i]
-            rate = joint[e.C1, i] * m.v[0, i] if which == 0 else joint[e.CR, i] * (m.v[1, i] - m.v[6, i])
-            w[r.FZ_B + which, i], w[r.FY_B + which, i] = m.q[2 + which, i], c * m.v[2 + which, i]
-            w[r.FS_B + which, i] = b * joint[e.S1 if which == 0 else e.SR, i]
-            w[r.FR_B + which, i] = c * b * rate
+    lanes = min(W, t.size)
     for i in range(lanes):
-        w[r.FLOOR, i] = 0.0 if w[r.CLIP, i] > 0.0 else -e.UNBOUNDED
-        for row in range(10):
-            w[r.FN_B + row, i] = 0.0
+        c, b = t[r.CB * W + i], t[r.B1 * W + i]
+        t[r.FZ_B * W + i], t[r.FY_B * W + i] = t[e.Q + 2 * W + i], c * t[e.V + 2 * W + i]
+        t[r.FS_B * W + i], t[r.FR_B * W + i] = b * t[e.S1 + i], c * b * t[e.C1 + i] * t[e.V + i]
+        c, b = t[r.CT * W + i], t[r.BT * W + i]
+        rate = t[e.CR + i] * (t[e.V + W + i] - t[e.V + 6 * W + i])
+        t[r.FZ_T * W + i], t[r.FY_T * W + i] = t[e.Q + 3 * W + i], c * t[e.V + 3 * W + i]
+        t[r.FS_T * W + i], t[r.FR_T * W + i] = b * t[e.SR + i], c * b * rate
+        t[r.FLOOR * W + i] = 0.0 if t[r.CLIP * W + i] > 0.0 else -e.UNBOUNDED
+    for row in range(r.FN_B, r.FN_B + 10):
+        for i in range(lanes):
+            t[row * W + i] = 0.0
 
 
 @called
-def step(w: Table, m: More, laws: Any) -> int:
+def step(t: Table, m: More, laws: Any) -> int:
     """One step from the predictor on; returns how many lanes need attention."""
-    own, joint, lanes = m.own, m.joint, m.q.shape[1]
     if not m.acts & e.HALVES:
-        joints.base_strip(w, m)
+        joints.base_strip(t)
     if m.acts & e.BONDS:
-        joints.bonds(w, m)
-    joints.top_strip(w, m)
-    for i in range(lanes):
-        w[r.SHARE_B, i] = min(w[r.SHARE_B, i], joint[e.LENGTH_B, i])
-        w[r.SHARE_T, i] = min(w[r.SHARE_T, i], joint[e.LENGTH_T, i])
+        joints.bonds(t)
+    joints.top_strip(t)
+    pressing(t)
     if laws is not None:
-        joints.add_laws(w, m)
+        joints.add_laws(t)
     if m.acts & e.FREEZES:
-        joints.freeze(w, m)
-    solve.inertia(m, 1.0 - AM)
-    solve.forces(w, m)
-    solve.factor(m)
-    solve.solve(m, m.f, m.d)
+        joints.freeze(t)
+    solve.inertia(t)
+    solve.forces(t)
+    solve.factor(t, m)
+    solve.solve(t, m, e.F, e.D)
     if m.acts & e.DRIES:
-        dry.hold(w, m)
-    go_on(w, m)
-    flagged = read(w, m)
-    for i in range(lanes):
-        if m.acts & e.BONDS:
-            z, s = w[r.Z1, i], w[r.LEAN, i]
-            own[e.TORN_LEFT, i], own[e.TORN_RIGHT, i] = joints.tears(own, i, w[r.B1, i], z, s)
-        if m.acts & e.WEARS:
-            share, is_open = joint[e.LENGTH_B, i], own[e.OPEN, i] > 0.0
-            closes = is_open & (share > CLOSED * 2.0 * w[r.B1, i])
-            own[e.CLOSINGS, i] += 1.0 if closes else 0.0
-            opens = share < OPENED * 2.0 * w[r.B1, i]
-            own[e.OPEN, i] = 1.0 if (is_open | opens) & (not closes) else 0.0
+        dry.hold(t, m)
+    go_on(t)
+    flagged = read(t)
+    if m.acts & e.BONDS:
+        tear(t)
+    if m.acts & e.WEARS:
+        wear(t)
     return flagged
 
 
 @called
-def go_on(w: Table, m: More) -> None:
-    """The state at the end of the step; what a bonded joint or a stiff wall ties together stays so."""
-    own, lanes = m.own, m.q.shape[1]
-    for k in range(8):
-        for i in range(lanes):
-            d = m.d[k, i] if k < m.size else 0.0
-            q, v, o = m.q[k, i] + w[r.NEAR, i] * d, m.v[k, i] + w[r.FAR, i] * d, m.o[k, i] + d
-            if k < 4:
-                w[r.T1 + k, i], w[r.V1 + k, i], w[r.A1 + k, i] = q, v, o
-            else:
-                own[e.X1 + k - 4, i], own[e.VX1 + k - 4, i], own[e.AX1 + k - 4, i] = q, v, o
+def pressing(t: Table) -> None:
+    """The least length of both joints that pressed so far."""
+    lanes = min(W, t.size)
     for i in range(lanes):
-        bends = own[e.FREE_M, i] > 0.0
-        own[e.TM, i] = own[e.TM, i] if bends else w[r.T1, i]
-        own[e.VTM, i] = own[e.VTM, i] if bends else w[r.V1, i]
-        own[e.ATM, i] = own[e.ATM, i] if bends else w[r.A1, i]
-        turns = w[r.FREE_T, i] > 0.0
-        w[r.T2, i] = w[r.T2, i] if turns else own[e.TM, i]
-        w[r.V2, i] = w[r.V2, i] if turns else own[e.VTM, i]
-        w[r.A2, i] = w[r.A2, i] if turns else own[e.ATM, i]
+        t[r.SHARE_B * W + i] = min(t[r.SHARE_B * W + i], t[e.LENGTH_B + i])
+        t[r.SHARE_T * W + i] = min(t[r.SHARE_T * W + i], t[e.LENGTH_T + i])
 
 
 @called
-def read(w: Table, m: More) -> int:
-    """What is read off the new state; returns how many lanes need attention."""
-    own, joint, shape, pull, lanes = m.own, m.joint, m.shape, m.pull, m.q.shape[1]
-    flagged = 0
-    # forces of inertia along x at the end of the step, and twice the kinetic energy
-    for row in range(9):
-        for j in range(m.size):
-            for i in range(lanes):
-                pull[row, i] += (1.0 - AM) * m.weight[row, i] * shape[row, j, i] * m.d[j, i]
+def go_on(t: Table) -> None:
+    """The state at the end of the step; what a bonded joint or a stiff wall ties together stays so."""
+    lanes = min(W, t.size)
+    for k in range(4):
+        for i in range(lanes):
+            near, far, j = t[r.NEAR * W + i], t[r.FAR * W + i], k * W + i
+            d, more = t[e.D + j], t[e.D + 4 * W + j]
+            t[r.T1 * W + j], t[r.V1 * W + j] = t[e.Q + j] + near * d, t[e.V + j] + far * d
+            t[e.X1 + j], t[e.VX1 + j] = t[e.Q + 4 * W + j] + near * more, t[e.V + 4 * W + j] + far * more
+            t[r.A1 * W + j], t[e.AX1 + j] = t[e.ACC + j] + d, t[e.ACC + 4 * W + j] + more
     for i in range(lanes):
-        kinetic = 0.0
-        for row in range(9):
-            speed = 0.0
-            for j in range(4):
-                speed += shape[row, j, i] * w[r.V1 + j, i]
-            for j in range(4):
-                speed += shape[row, 4 + j, i] * own[e.VX1 + j, i]
-            kinetic += m.weight[row, i] * speed * speed
-        v1, vm, v2, y1, y2 = w[r.V1, i], own[e.VTM, i], w[r.V2, i], w[r.Y1, i], w[r.Y2, i]
-        c1, cr, near = joint[e.C1, i], joint[e.CR, i], w[r.NEAR, i]
-        d1, d2, d3, d4 = m.d[0, i], m.d[1, i], m.d[2, i], m.d[3, i]
-        turned = own[e.TM, i] - m.q[6, i]
-        lean = joint[e.S1, i] + c1 * near * d1
-        w[r.LEAN, i] = lean
-        z1, z2, rate = w[r.Z1, i], w[r.Z2, i], v2 - vm
-        angle = joint[e.SR, i] + cr * (w[r.T2, i] - m.q[1, i] - turned)
-        steady = read_joints(w, i, z1, z2, lean, angle, y1, y2, c1 * v1, cr * rate)
-        stands = read_bodies(w, i, w[r.T1, i], w[r.T2, i], kinetic)
-        dm = m.d[6, i] if own[e.FREE_M, i] > 0.0 else d1
+        bends, turns = t[e.FREE_M + i] > 0.0, t[r.FREE_T * W + i] > 0.0
+        tm = t[e.TM + i] if bends else t[r.T1 * W + i]
+        vm = t[e.VTM + i] if bends else t[r.V1 * W + i]
+        am = t[e.ATM + i] if bends else t[r.A1 * W + i]
+        t[e.TM + i], t[e.VTM + i], t[e.ATM + i] = tm, vm, am
+        t[r.T2 * W + i] = t[r.T2 * W + i] if turns else tm
+        t[r.V2 * W + i] = t[r.V2 * W + i] if turns else vm
+        t[r.A2 * W + i] = t[r.A2 * W + i] if turns else am
+
+
+@inlined
+def kinetic_energy(t: Table, i: int) -> float:
+    """Twice that of the bodies (J) at the end of the step."""
+    free_b, free_t, free_m = t[r.FREE_B * W + i], t[r.FREE_T * W + i], t[e.FREE_M + i]
+    v1, v2, y1, y2 = t[r.V1 * W + i], t[r.V2 * W + i], t[r.Y1 * W + i], t[r.Y2 * W + i]
+    slip, slip_2, vm, ym = t[e.VX1 + i], t[e.VX2 + i], t[e.VTM + i], t[e.VZM + i]
+    stiff, base_x, base_z = (1.0 - free_m) * free_b, t[e.FREE_X1 + i] * slip, free_b * y1
+    rise_x, rise_z = t[e.X_ZM + i] * ym + base_x, t[e.Z_ZM + i] * ym + base_z
+    xl, zl = t[e.XL_1 + i] * v1 + base_x, t[e.ZL_1 + i] * v1 + base_z
+    xu, zu = t[e.XU_1 + i] * v1 + t[e.XU_M + i] * vm + rise_x, t[e.ZU_1 + i] * v1 + t[e.ZU_M + i] * vm + rise_z
+    xb = t[e.XB_1 + i] * v1 + t[e.XB_2 + i] * v2 + t[e.XB_Z2 + i] * y2 + t[e.XB_X2 + i] * slip_2
+    zb = t[e.ZB_1 + i] * v1 + t[e.ZB_2 + i] * v2 + t[e.ZB_Z2 + i] * y2 + t[e.ZB_X2 + i] * slip_2
+    xb, zb = xb + t[e.XB_M + i] * vm + rise_x, zb + t[e.ZB_M + i] * vm + rise_z
+    upper, block = stiff * v1 + free_m * vm, (1.0 - free_t) * (stiff * v1 + free_m * vm) + free_t * v2
+    lower = free_b * v1
+    halves = t[e.HALF_MASS + i] * (xl * xl + zl * zl + xu * xu + zu * zu)
+    halves += t[e.HALF_INERTIA + i] * (lower * lower + upper * upper)
+    return float(halves + t[r.M2 * W + i] * (xb * xb + zb * zb) + t[r.I2 * W + i] * block * block)
+
+
+@called
+def read(t: Table) -> int:
+    """What is read off the new state; returns how many lanes need attention."""
+    lanes = min(W, t.size)
+    flagged = 0
+    for i in range(lanes):
+        v1, vm, v2, y1, y2 = t[r.V1 * W + i], t[e.VTM + i], t[r.V2 * W + i], t[r.Y1 * W + i], t[r.Y2 * W + i]
+        c1, cr, near = t[e.C1 + i], t[e.CR + i], t[r.NEAR * W + i]
+        d1, d2, d3, d4 = t[e.D + i], t[e.D + W + i], t[e.D + 2 * W + i], t[e.D + 3 * W + i]
+        d5, d6, d7, d8 = t[e.D + 4 * W + i], t[e.D + 5 * W + i], t[e.D + 6 * W + i], t[e.D + 7 * W + i]
+        turned = t[e.TM + i] - t[e.Q + 6 * W + i]
+        lean = t[e.S1 + i] + c1 * near * d1
+        t[r.LEAN * W + i] = lean
+        z1, z2, rate = t[r.Z1 * W + i], t[r.Z2 * W + i], v2 - vm
+        angle = t[e.SR + i] + cr * (t[r.T2 * W + i] - t[e.Q + W + i] - turned)
+        steady = read_joints(t, i, z1, z2, lean, angle, y1, y2, c1 * v1, cr * rate)
+        stands = read_bodies(t, i, t[r.T1 * W + i], t[r.T2 * W + i], kinetic_energy(t, i))
+        dm = d7 if t[e.FREE_M + i] > 0.0 else d1
         dr = d2 - dm
-        nb = joint[e.N_B, i] - joint[e.D1_B, i] * d3 + joint[e.D2_B, i] * c1 * d1
-        nt = joint[e.N_T, i] - joint[e.D1_T, i] * d4 + joint[e.D2_T, i] * cr * dr
-        couple_b = c1 * (joint[e.M_B, i] - joint[e.D2_B, i] * d3 + joint[e.D3_B, i] * c1 * d1)
-        couple_t = cr * (joint[e.M_T, i] - joint[e.D2_T, i] * d4 + joint[e.D3_T, i] * cr * dr)
-        over = max(abs(w[r.T1, i]) - own[e.COUPLE_GAP, i], 0.0)
-        couple = own[e.COUPLE_K, i] * (over if w[r.T1, i] >= 0.0 else -over) + own[e.COUPLE_C, i] * v1
-        power_b = nb * y1 - (couple_b + couple) * v1
+        nb = t[e.N_B + i] - t[e.D1_B + i] * d3 + t[e.D2_B + i] * c1 * d1
+        nt = t[e.N_T + i] - t[e.D1_T + i] * d4 + t[e.D2_T + i] * cr * dr
+        couple_b = c1 * (t[e.M_B + i] - t[e.D2_B + i] * d3 + t[e.D3_B + i] * c1 * d1)
+        couple_t = cr * (t[e.M_T + i] - t[e.D2_T + i] * d4 + t[e.D3_T + i] * cr * dr)
+        over = max(abs(t[r.T1 * W + i]) - t[e.COUPLE_GAP + i], 0.0)
+        couple = t[e.COUPLE_K + i] * (over if t[r.T1 * W + i] >= 0.0 else -over) + t[e.COUPLE_C + i] * v1
+        slip, slip_2 = t[e.VX1 + i], t[e.VX2 + i]
+        power_b = nb * y1 - (couple_b + couple) * v1 + t[e.HELD_1 + i] * v1 + t[e.HELD_X + i] * slip
         power_t = nt * y2 - couple_t * rate
-        if m.acts & e.DRIES:
-            power_b += joint[e.HELD_1, i] * v1 + joint[e.HELD_X, i] * own[e.VX1, i]
-        if m.size > 4:
-            along = own[e.SHEAR_B, i] * joint[e.LENGTH_B, i] * own[e.VX1, i]
-            power_b -= along * (w[r.KB, i] * own[e.X1, i] + w[r.CB, i] * own[e.VX1, i])
-            along = own[e.SHEAR_T, i] * joint[e.LENGTH_T, i] * own[e.VX2, i]
-            power_t -= along * (w[r.KT, i] * own[e.X2, i] + w[r.CT, i] * own[e.VX2, i])
-        push = pull[4, i] * joint[e.CM, i] - pull[5, i] * joint[e.SM, i]
-        account_joints(w, i, pull[0, i] + pull[2, i] + pull[4, i], nb, push, nt, power_b, power_t)
+        along, along_2 = t[e.SHEAR_B + i] * t[e.LENGTH_B + i], t[e.SHEAR_T + i] * t[e.LENGTH_T + i]
+        power_b -= along * slip * (t[r.KB * W + i] * t[e.X1 + i] + t[r.CB * W + i] * slip)
+        power_t -= along_2 * slip_2 * (t[r.KT * W + i] * t[e.X2 + i] + t[r.CT * W + i] * slip_2)
+        # forces of inertia at the end of the step: along x of all, along and across the top joint of the block
+        m, m2, base = (1.0 - AM) * t[e.HALF_MASS + i], (1.0 - AM) * t[r.M2 * W + i], t[e.FREE_X1 + i] * d5
+        lower = m * (t[e.XL_1 + i] * d1 + base)
+        upper = m * (t[e.XU_1 + i] * d1 + t[e.XU_M + i] * d7 + t[e.X_ZM + i] * d8 + base)
+        x = t[e.XB_1 + i] * d1 + t[e.XB_2 + i] * d2 + t[e.XB_Z2 + i] * d4 + t[e.XB_X2 + i] * d6
+        z = t[e.ZB_1 + i] * d1 + t[e.ZB_2 + i] * d2 + t[e.ZB_Z2 + i] * d4 + t[e.ZB_X2 + i] * d6
+        x += t[e.XB_M + i] * d7 + t[e.X_ZM + i] * d8 + base
+        z += t[e.ZB_M + i] * d7 + t[e.Z_ZM + i] * d8 + t[r.FREE_B * W + i] * d3
+        x, z = t[e.P_XB + i] + m2 * x, t[e.P_ZB + i] + m2 * z
+        whole = t[e.P_XL + i] + lower + t[e.P_XU + i] + upper + x
+        push = x * t[e.CM + i] - z * t[e.SM + i]
+        account_joints(t, i, whole, nb, push, nt, power_b, power_t)
         attention = not (stands & steady)
-        w[r.FLAG, i] = 1.0 if attention else 0.0
+        t[r.FLAG * W + i] = 1.0 if attention else 0.0
         flagged += 1 if attention else 0
     return flagged
+
+
+@called
+def tear(t: Table) -> None:
+    """What is bonded still."""
+    lanes = min(W, t.size)
+    for i in range(lanes):
+        left, right = joints.tears(t, i, t[r.B1 * W + i], t[r.Z1 * W + i], t[r.LEAN * W + i])
+        t[e.TORN_LEFT + i], t[e.TORN_RIGHT + i] = left, right
+
+
+@called
+def wear(t: Table) -> None:
+    """Closings of the base, which its stiffness falls with."""
+    lanes = min(W, t.size)
+    for i in range(lanes):
+        share, is_open = t[e.LENGTH_B + i], t[e.OPEN + i] > 0.0
+        closes = is_open & (share > CLOSED * 2.0 * t[r.B1 * W + i])
+        t[e.CLOSINGS + i] += 1.0 if closes else 0.0
+        opens = share < OPENED * 2.0 * t[r.B1 * W + i]
+        t[e.OPEN + i] = 1.0 if (is_open | opens) & (not closes) else 0.0
