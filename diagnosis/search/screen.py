@@ -69,13 +69,15 @@ def _score_one(screen: Linearisation, base: Point, candidate: Candidate) -> Scor
     begin = DONE.steps
     near = [null.copy(), null.copy()]
     near[0][0], near[1][0] = min(max(null[0] - STEP, low), null[0]), min(max(null[0] + STEP, low), high)
-    off, _ = screen.reduced(misfit.residuals([at(base, candidate, u) for u in near]))
+    trials = list(candidate.grid())
+    off, _ = screen.reduced(misfit.residuals([at(base, candidate, u) for u in (*near, *trials)]))
     derivative = (off[1] - off[0]) / (near[1][0] - near[0][0])
-    information = screen.product(derivative, derivative)
-    trials = list(candidate.grid(by_threshold=information <= 1e-12))
-    off, _ = screen.reduced(misfit.residuals([at(base, candidate, u) for u in trials]))
+    off, information = off[2:], screen.product(derivative, derivative)
     best, start = 0.0, null
-    if information > 1e-12:
+    if information <= 1e-12:
+        trials = list(candidate.grid(by_threshold=True))
+        off, _ = screen.reduced(misfit.residuals([at(base, candidate, u) for u in trials]))
+    else:
         step = -screen.scores_with_residual(derivative) / information
         if null[0] < high if step > 0.0 else null[0] > low:
             best = step**2 * information
