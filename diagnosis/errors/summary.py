@@ -139,7 +139,7 @@ def _spectrum(errors: Errors, channel: int, scale: float) -> Spectrum:
         found += 2.0 * spacing * np.abs(wave @ (taper * (values - np.mean(values)))) ** 2 / np.sum(taper**2)
         count += 1.0
         white = whitened(piece, errors.theta)[own]
-        for lag in range(LAGS):
+        for lag in range(min(LAGS, white.size)):
             products[lag] += float(white[lag:] @ white[: white.size - lag])
             pairs[lag] += white.size - lag
     correlation = products / np.maximum(products[0], 1e-300) * (pairs[0] / np.maximum(pairs, 1.0))

@@ -19,10 +19,14 @@ MOST_POINTS = 10_000_000
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """Points of a sensitivity analysis: its kind of axis, and the shares ``(n, parameters)`` of the distributions."""
+    """Points of a sensitivity analysis: its kind of axis, and the shares ``(n, parameters)`` of the distributions.
+
+    ``choices``: how many words each parameter has to choose from, 0 of numbers.
+    """
 
     kind: str
     shares: NDArray[np.float64]
+    choices: tuple[int, ...]
 
 
 @dataclass(frozen=True, eq=False)

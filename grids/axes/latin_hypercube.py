@@ -5,16 +5,17 @@ McKay, Beckman, Conover (Technometrics 21, 1979).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from grids.axes.base import Axis, AxisKind, Request
 from grids.axes.sample import BESIDE, read_sample
 
 
-def _draw(dimensions: int, count: int, seed: int) -> Any:
+def _draw(choices: Sequence[int], count: int, seed: int) -> Any:
     from scipy.stats import qmc
 
-    return qmc.LatinHypercube(dimensions, seed=seed).random(count)
+    return qmc.LatinHypercube(len(choices), seed=seed).random(count)
 
 
 def _read(request: Request) -> Axis:

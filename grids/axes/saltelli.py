@@ -6,6 +6,8 @@ base points a scrambled Sobol sequence; doubling the count keeps the points that
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from grids.axes.base import Axis, AxisKind, Request
 from grids.axes.distributions import Shares
 from grids.axes.sample import BESIDE, read_sample
@@ -13,10 +15,11 @@ from grids.axes.sobol import check_power_of_two
 from models.errors import InputError
 
 
-def draw(dimensions: int, count: int, seed: int) -> Shares:
-    """Points ``(count (2 dimensions + 2), dimensions)``, in the order that SALib takes them in."""
+def draw(choices: Sequence[int], count: int, seed: int) -> Shares:
+    """Points ``(count (2 D + 2), D)`` of D parameters, in the order that SALib takes them in."""
     import SALib.sample.sobol
 
+    dimensions = len(choices)
     problem = {"num_vars": dimensions, "names": [str(k) for k in range(dimensions)], "bounds": [[0, 1]] * dimensions}
     points: Shares = SALib.sample.sobol.sample(problem, count, calc_second_order=True, seed=seed)
     return points

@@ -7,7 +7,7 @@ stand in `grids.axes.distributions`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,11 +17,13 @@ from grids.axes.distributions import Shares, read_distribution
 from models.errors import InputError
 
 BESIDE = ("seed", "parameters")
-Draw = Callable[[int, int, int], Shares]
+Draw = Callable[[Sequence[int], int, int], Shares]
 
 
 def read_sample(request: Request, key: str, draw: Draw, *, least: int = 1, design: bool = False) -> Axis:
-    """The axis of ``draw(dimensions, count, seed)`` -> points ``(n, dimensions)`` in [0, 1].
+    """The axis of ``draw(choices, count, seed)`` -> points ``(n, parameters)`` in [0, 1].
+
+    ``choices``: how many words each parameter has to choose from, 0 of numbers.
 
     ``design``: the points are those of a sensitivity analysis, which finds them again in `Axis.design`.
     """
@@ -35,13 +37,14 @@ def read_sample(request: Request, key: str, draw: Draw, *, least: int = 1, desig
     table = request.table.get("parameters")
     if not isinstance(table, dict) or not table:
         raise InputError(f"{request.where}: give parameters = {{ name = [low, high], ... }} to sample.")
-    quantiles = {
-        name: read_distribution(request, name, entry) for name, entry in request.targets.flatten(table).items()
-    }
-    shares = draw(len(quantiles), size, seed)
+    entries = request.targets.flatten(table)
+    quantiles = {name: read_distribution(request, name, entry) for name, entry in entries.items()}
+    found = [(request.targets.find(name, request.where), entry) for name, entry in entries.items()]
+    choices = [len(entry) if target.words and isinstance(entry, list) else 0 for target, entry in found]
+    shares = draw(choices, size, seed)
     points: dict[str, NDArray[np.generic]] = {
         name: quantile(shares[:, column]) for column, (name, quantile) in enumerate(quantiles.items())
     }
-    plan = Design(key, shares) if design else None
+    plan = Design(key, shares, tuple(choices)) if design else None
     long_name = f"{key.replace('_', ' ')} sample"
     return Axis(request.own_name(), np.arange(shares.shape[0]), "1", long_name, points, plan)

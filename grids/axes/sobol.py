@@ -5,6 +5,7 @@ Sobol (USSR Comput. Math. Math. Phys. 7, 1967), scrambled after Owen.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from grids.axes.base import Axis, AxisKind, Request, count
@@ -12,10 +13,10 @@ from grids.axes.sample import BESIDE, read_sample
 from models.errors import InputError
 
 
-def _draw(dimensions: int, count: int, seed: int) -> Any:
+def _draw(choices: Sequence[int], count: int, seed: int) -> Any:
     from scipy.stats import qmc
 
-    return qmc.Sobol(dimensions, scramble=True, seed=seed).random(count)
+    return qmc.Sobol(len(choices), scramble=True, seed=seed).random(count)
 
 
 def check_power_of_two(request: Request, key: str) -> None:

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from grids.axes import Design
-from grids.axes.morris import LEVELS
+from grids.axes.morris import levels
 from models.base import FloatArray
 
 RESAMPLES = 200
@@ -53,7 +53,7 @@ def indices(design: Design, values: FloatArray, *, confidence: float = 0.95, see
     problem = {"num_vars": dimensions, "names": [str(k) for k in range(dimensions)], "bounds": [[0, 1]] * dimensions}
     if design.kind == SOBOL:
         return _sobol(problem, kept, confidence, seed)
-    return _morris(problem, shares, kept, confidence, seed)
+    return _morris(problem, shares, levels(design.choices), kept, confidence, seed)
 
 
 BOUNDED = ("first", "total", "mu_star")
@@ -73,13 +73,13 @@ def _sobol(problem: Mapping[str, Any], values: FloatArray, confidence: float, se
 
 
 def _morris(
-    problem: Mapping[str, Any], shares: FloatArray, values: FloatArray, confidence: float, seed: int
+    problem: Mapping[str, Any], shares: FloatArray, steps: int, values: FloatArray, confidence: float, seed: int
 ) -> dict[str, NDArray[Any]]:
     import SALib.analyze.morris
 
-    levels = np.rint(shares * LEVELS - 0.5) / (LEVELS - 1)
+    points = np.rint(shares * steps - 0.5) / (steps - 1)
     found = SALib.analyze.morris.analyze(
-        problem, levels, values, num_levels=LEVELS, num_resamples=RESAMPLES, conf_level=confidence, seed=seed
+        problem, points, values, num_levels=steps, num_resamples=RESAMPLES, conf_level=confidence, seed=seed
     )
     named = {"mu_star": found["mu_star"], "mu": found["mu"], "sigma": found["sigma"]}
     return _with_interval({k: np.asarray(v, dtype=float) for k, v in named.items()}, {"mu_star": found["mu_star_conf"]})

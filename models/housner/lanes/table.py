@@ -1,6 +1,7 @@
 """A law in a table in the kernel: sums of hat functions, without branches; compiled in for integer ``general`` only.
 
-A table has KNOTS values from zero to its reach on either side of zero, may jump there, and goes on along the last two beyond.
+A table has KNOTS values from zero to its reach on either side of zero, may jump there, and goes on beyond as
+between the last two.
 Columns of a lane: one over the spacing of rotation, rate and base acceleration, then the terms in the order of
 `models.mechanisms.table_force.TERMS`, the values below zero first.
 """
@@ -35,7 +36,7 @@ def of_work(w: Table, first: int, at: int, slot: int, x: float, side: float) -> 
     beyond, low, high = max(side * x - LAST, 0.0), first + at + KNOTS - 1, first + at + LENGTH - 1
     below += beyond * (w[low, slot] - w[low - 1, slot])
     above += beyond * (w[high, slot] - w[high - 1, slot])
-    return above if side > 0.0 else below
+    return float(above if side > 0.0 else below)
 
 
 @inlined
@@ -47,7 +48,7 @@ def of_given(given: Table, first: int, at: int, lane: int, x: float) -> float:
     for k in range(KNOTS):
         value += max(0.0, 1.0 - abs(size - k)) * given[lane, start + k]
     last = start + KNOTS - 1
-    return value + max(abs(x) - LAST, 0.0) * (given[lane, last] - given[lane, last - 1])
+    return float(value + max(abs(x) - LAST, 0.0) * (given[lane, last] - given[lane, last - 1]))
 
 
 @inlined

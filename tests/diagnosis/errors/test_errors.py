@@ -159,3 +159,11 @@ def test_an_offset_without_drift_keeps_its_name() -> None:
     estimate = found.best.fitted.values["offset.offset_over_peak"]
     assert estimate == pytest.approx(0.03, abs=0.012)
     assert evidence(found)[0] > 15.0
+
+
+def test_windows_shorter_than_the_lags_of_the_figure_are_summed_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    _, on, errors = about("white")
+    lags = min(piece.time.size for piece in errors.pieces) + 12
+    monkeypatch.setattr("diagnosis.errors.summary.LAGS", lags)
+    correlation = summary(errors, on.measured).channels[0].spectrum.correlation
+    assert len(correlation) == lags and np.all(np.isfinite(correlation))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,6 +15,10 @@ from study.sensitivity.indices import at_the_ends, indices
 
 A, B = 7.0, 0.1
 WEIGHTS = np.array([0.0, 1.0, 4.5, 9.0, 99.0])
+
+
+def designed(kind: Any, choices: tuple[int, ...], count: int, seed: int) -> Design:
+    return Design(kind.KIND.key, kind.draw(choices, count, seed), choices)
 
 
 def ishigami(u: FloatArray) -> FloatArray:
@@ -50,7 +55,7 @@ def test_known_indices_lie_within_their_intervals(
     dimensions, held, tried = exact[0].size, 0, 0
     means = []
     for seed in range(30):
-        design = Design("saltelli", saltelli.draw(dimensions, 128, seed))
+        design = designed(saltelli, (0,) * dimensions, 128, seed)
         found = indices(design, function(design.shares), seed=seed + 1)
         for name, truth in zip(("first", "total"), exact, strict=True):
             large = truth > 0.01
@@ -64,7 +69,7 @@ def test_known_indices_lie_within_their_intervals(
 
 def test_interactions_of_ishigami() -> None:
     """Parameters 1 and 3 interact, no other pair does."""
-    design = Design("saltelli", saltelli.draw(3, 1024, 1))
+    design = designed(saltelli, (0,) * 3, 1024, 1)
     second = indices(design, ishigami(design.shares))["second"]
     _, total = ishigami_indices()
     assert second[0, 2] == second[2, 0] == pytest.approx(total[2], abs=0.05)
@@ -74,7 +79,7 @@ def test_interactions_of_ishigami() -> None:
 
 def test_screening_ranks_as_the_total_indices() -> None:
     """mu* of Sobol's g falls with the weights; a parameter that does nothing has none."""
-    design = Design("morris", morris.draw(5, 64, 3))
+    design = designed(morris, (0,) * 5, 64, 3)
     found = indices(design, sobol_g(design.shares))
     assert np.all(np.diff(found["mu_star"][:4]) < 0.0)
     assert found["mu_star"][4] < 0.02 * found["mu_star"][0]
@@ -83,14 +88,27 @@ def test_screening_ranks_as_the_total_indices() -> None:
 
 def test_screening_of_a_line_is_exact() -> None:
     """Of 3 u1 - u2 every elementary effect is the slope over the range between the outer levels."""
-    design = Design("morris", morris.draw(2, 8, 1))
+    design = designed(morris, (0,) * 2, 8, 1)
     found = indices(design, 3 * design.shares[:, 0] - design.shares[:, 1])
     np.testing.assert_allclose(found["mu"], np.array([3.0, -1.0]) * 0.75)
     np.testing.assert_allclose(found["sigma"], 0.0, atol=1e-12)
 
 
+@pytest.mark.parametrize("counts", [(0, 5), (3, 2), (4, 0), (5, 3)])
+def test_screening_draws_every_word_as_often(counts: tuple[int, int]) -> None:
+    """On four levels the third of five words was never drawn, and what matters under it alone mattered nothing."""
+    design = designed(morris, counts, 400, 2)
+    for column, count in enumerate(counts):
+        if count:
+            drawn = np.bincount((design.shares[:, column] * count).astype(int), minlength=count)
+            assert np.all(np.abs(drawn / drawn.sum() - 1.0 / count) < 0.06), drawn
+    design = designed(morris, (0, 5), 64, 2)
+    third = (design.shares[:, 1] * 5).astype(int) == 2
+    assert indices(design, np.where(third, design.shares[:, 0], 0.0))["mu_star_low"][0] > 0.05
+
+
 def test_unknown_points_cost_their_group_and_no_more() -> None:
-    design = Design("saltelli", saltelli.draw(3, 256, 5))
+    design = designed(saltelli, (0,) * 3, 256, 5)
     values = ishigami(design.shares)
     whole = indices(design, values)
     values[[8, 100, 101]] = np.nan
@@ -102,7 +120,7 @@ def test_unknown_points_cost_their_group_and_no_more() -> None:
 
 def test_means_at_the_ends() -> None:
     """Of 10 u the mean over the lowest fifth is 1, over the highest 9."""
-    design = Design("saltelli", saltelli.draw(2, 512, 7))
+    design = designed(saltelli, (0,) * 2, 512, 7)
     low, high = at_the_ends(design, 10 * design.shares[:, 0])
     assert (low[0], high[0]) == pytest.approx((1.0, 9.0), abs=0.05)
     assert (low[1], high[1]) == pytest.approx((5.0, 5.0), abs=0.3)
