@@ -26,9 +26,9 @@ def plot_indices(found: xr.Dataset, output: str, motions: str | None = None, *, 
         ax.errorbar(value, rows + shift, xerr=ends, fmt="o", color=colour, markersize=4, label=words[name])
     if "sigma" in one:
         ax.plot(one["sigma"].values, rows, "x", color=COLOURS[1], label="σ")
-        ax.set_xlabel(f"elementary effect on {_words(output)} over the whole range")
+        ax.set_xlabel(f"elementary effect on {_words(output)} over the whole range", loc="right")
     else:
-        ax.set_xlabel(f"share of the variance of {_words(output)}")
+        ax.set_xlabel(f"share of the variance of {_words(output)}", loc="right")
     ax.set_xlim(left=min(0.0, ax.get_xlim()[0]))
     ax.axvline(0.0, color="0.6", linewidth=0.8)
     ax.legend(fontsize="small", loc="lower right")
@@ -42,8 +42,9 @@ def plot_tornado(found: xr.Dataset, output: str, motions: str | None = None, *, 
     ax = _frame(ax, names)
     rows = np.arange(len(names))[::-1]
     mean = float(one["mean"])
-    for name, colour, text in (("at_low", COLOURS[5], "lowest fifth"), ("at_high", COLOURS[1], "highest fifth")):
-        ax.barh(rows, one[name].values - mean, left=mean, color=colour, height=0.6, label=text)
+    ends = (("at_low", 0.17, COLOURS[5], "lowest fifth"), ("at_high", -0.17, COLOURS[1], "highest fifth"))
+    for name, shift, colour, text in ends:  # side by side: both may lie on one side of the mean
+        ax.barh(rows + shift, one[name].values - mean, left=mean, color=colour, height=0.34, label=text)
     ax.axvline(mean, color="black", linewidth=0.8)
     ax.set_xlabel(f"mean of {_words(output)}")
     ax.legend(fontsize="small", loc="lower right", title="of the parameter")
