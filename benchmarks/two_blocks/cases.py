@@ -140,8 +140,8 @@ def operations(law: str) -> int:
     if law == "linear":
         return count_operations(step_all, ("mixed", "laws"))
     once = sum(count_operations(part, ("mixed",)) for part in (step_all, fibres.predicted_strips, fibres.lengths))
-    four = along._alone(LAWS[law], 0, False)
-    return once + 2 * (COUNT // 4) * count_operations(four, ())
+    four = sum(count_operations(f, ()) for f in (along._begin(0), along._pass(LAWS[law], 0), along._end(0, False)))
+    return once + 2 * (COUNT // 4) * four
 
 
 def layers_plan(model: str, moduli: int, softest: float = 1.0, numbers: dict[str, float] | None = None) -> str:

@@ -66,7 +66,7 @@ MECHANISM = Mechanism(
         ),
     ),
     equation="couple I_O [f_1(theta) + f_2(theta') + f_3(theta) theta' + f_4(theta) sign theta' + f_5(a) "
-    "+ f_6(a) theta'], e times 1 + f_7(theta'); f linear between rows, and beyond the last as between the last two",
+    "+ f_6(a) theta'], e times 1 + f_7(theta'); f linear between rows, constant beyond the last",
     signature="wherever it was found",
     sentence="a law in a table acts",
     acts={"housner": on_housner},

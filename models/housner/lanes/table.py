@@ -1,7 +1,6 @@
 """A law in a table in the kernel: sums of hat functions, without branches; compiled in for integer ``general`` only.
 
-A table has KNOTS values from zero to its reach on either side of zero, may jump there, and goes on beyond as
-between the last two.
+A table has KNOTS values from zero to its reach on either side of zero, may jump there, and is constant beyond.
 Columns of a lane: one over the spacing of rotation, rate and base acceleration, then the terms in the order of
 `models.mechanisms.table_force.TERMS`, the values below zero first.
 """
@@ -33,10 +32,7 @@ def of_work(w: Table, first: int, at: int, slot: int, x: float, side: float) -> 
         hat = max(0.0, 1.0 - abs(size - k))
         below += hat * w[first + at + k, slot]
         above += hat * w[first + at + KNOTS + k, slot]
-    beyond, low, high = max(side * x - LAST, 0.0), first + at + KNOTS - 1, first + at + LENGTH - 1
-    below += beyond * (w[low, slot] - w[low - 1, slot])
-    above += beyond * (w[high, slot] - w[high - 1, slot])
-    return float(above if side > 0.0 else below)
+    return above if side > 0.0 else below
 
 
 @inlined
@@ -47,8 +43,7 @@ def of_given(given: Table, first: int, at: int, lane: int, x: float) -> float:
     value = 0.0
     for k in range(KNOTS):
         value += max(0.0, 1.0 - abs(size - k)) * given[lane, start + k]
-    last = start + KNOTS - 1
-    return float(value + max(abs(x) - LAST, 0.0) * (given[lane, last] - given[lane, last - 1]))
+    return value
 
 
 @inlined

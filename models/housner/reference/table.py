@@ -1,4 +1,4 @@
-"""A law in a table, read plainly: linear between rows and beyond the last, a jump at zero allowed."""
+"""A law in a table, read plainly: linear between rows, constant beyond the last, a jump at zero allowed."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ class LawInTable:
 
     def _at(self, term: int, variable: int, x: float, side: float) -> float:
         rows = self.values[term, 1 if side > 0.0 else 0]
-        size, reach = max(0.0, math.copysign(1.0, side) * x), self.reach[variable]
-        beyond = max(0.0, size - reach) * (KNOTS - 1) / reach
-        return float(np.interp(size, np.linspace(0.0, reach, KNOTS), rows) + beyond * (rows[-1] - rows[-2]))
+        return float(
+            np.interp(max(0.0, math.copysign(1.0, side) * x), np.linspace(0.0, self.reach[variable], KNOTS), rows)
+        )
 
     def acceleration(self, theta: float, rate: float, base: float, side: float, direction: float) -> float:
         """Angular acceleration (rad s-2); ``side`` and ``direction`` are the signs of theta and theta'."""
