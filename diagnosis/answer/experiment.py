@@ -23,7 +23,7 @@ from diagnosis.fit.solver import fit
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.found import Search
 from diagnosis.search.refit import Explanation
-from grids.recordings.base import REQUIRED, SHARE, Recording
+from grids.recordings.base import CHANNELS, REQUIRED, SHARE, Recording
 from models.errors import InputError
 from models.kinematics import Place
 
@@ -70,16 +70,21 @@ def _sensor(
 ) -> Mapping[str, Any] | None:
     """The channel that is not recorded yet and would add most evidence, on the same runs."""
     measured = best.measured
-    free = [q.name for q in measured.model.observables if q.name not in measured.channels and q.unit != SHARE]
-    free += [name for name, place in planned.items() if place.body <= measured.model.bodies and name not in free]
     gains = {}
-    for name in (name for name in free if name not in measured.channels):
+    for name in unrecorded(measured, planned):
         made = [_made(best, r, 1.0, (*measured.channels, name), planned) for r in measured.recordings]
         gains[name] = sum(_expected(best, other, m, errors) for m in made if m is not None)
     if not gains:
         return None
     name, expected = max(gains.items(), key=lambda item: item[1])
     return {"channel": name, "noise": f"{NEW_SENSOR_NOISE:.0%} of its peak", "expected_evidence": expected}
+
+
+def unrecorded(measured: Measured, planned: Mapping[str, Place]) -> list[str]:
+    """The channels that a recording could hold besides those compared: standard ones of the model, and ``planned``."""
+    names = [q.name for q in measured.model.observables if q.name in CHANNELS and q.unit != SHARE]
+    names += [name for name, place in planned.items() if place.body <= measured.model.bodies]
+    return [name for name in dict.fromkeys(names) if name not in measured.channels]
 
 
 def _made(

@@ -9,6 +9,7 @@ import numpy as np
 
 import models
 from diagnosis import calibrate
+from diagnosis.answer.experiment import unrecorded
 from diagnosis.data.measured import Measured
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.misfit import Misfit
@@ -22,7 +23,7 @@ from diagnosis.forces.action import action
 from diagnosis.search.candidates import candidates
 from diagnosis.search.refit import Explanation, extend
 from diagnosis.search.screen import score
-from grids.recordings.base import Recording
+from grids.recordings.base import CHANNELS, Recording
 from grids.specimen import Specimen
 from tests.diagnosis.made import TIME_STEP, motion
 
@@ -86,6 +87,12 @@ def test_a_fit_works_with_the_slope_under_load_and_gives_the_unstressed_stiffnes
     rigid = models.get("interface").derive(hard.values)
     soft = models.get("interface").derive(plain.values)
     assert abs(rigid["frequency_1"][0] / soft["frequency_1"][0] - 1.0) < 1e-2
+
+
+def test_a_new_sensor_is_one_that_a_recording_can_hold() -> None:
+    """How far the layers are compressed is known to the model, and no standard channel."""
+    found = unrecorded(measure(WALL, [recorded(1)]), {})
+    assert "displacement_2_x" in found and set(found) <= set(CHANNELS) and "rotation_1" not in found
 
 
 def test_whole_numbers_are_held_at_values_that_are_tried() -> None:
