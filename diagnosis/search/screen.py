@@ -71,6 +71,7 @@ def _score_one(screen: Linearisation, base: Point, candidate: Candidate) -> Scor
     near[0][0], near[1][0] = min(max(null[0] - STEP, low), null[0]), min(max(null[0] + STEP, low), high)
     trials = list(candidate.grid())
     off, _ = screen.reduced(misfit.residuals([at(base, candidate, u) for u in (*near, *trials)]))
+    work = (DONE.steps - begin) / len(off)
     derivative = (off[1] - off[0]) / (near[1][0] - near[0][0])
     off, information = off[2:], screen.product(derivative, derivative)
     best, start = 0.0, null
@@ -89,7 +90,6 @@ def _score_one(screen: Linearisation, base: Point, candidate: Candidate) -> Scor
     if best > 0.0:
         starts.insert(0 if not gains.size or best * 0.8 > gains[order[0]] else 1, start)
     statistic = max(best if np.isfinite(best) else 0.0, float(gains.max(initial=0.0)))
-    work = (DONE.steps - begin) / (2 + len(trials))
     if information > 1e-12 or not order.size:
         side = 0 if not candidate.one_sided else 1 if null[0] < high else -1
         return Score(candidate, statistic, tuple(starts[:2]), derivative, True, side, work)
