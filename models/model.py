@@ -260,7 +260,7 @@ class Model(Placing, ABC, Generic[C]):
     def carry(
         self,
         values: Values,
-        shaking: Shaking,
+        shaking: Shaking | Sequence[Shaking],
         motion: Mapping[str, FloatArray],
         marks: NDArray[np.int64],
         *,
@@ -271,20 +271,23 @@ class Model(Placing, ABC, Generic[C]):
         """What ``initial`` of `trajectories` needs beside ``motion``, arrays ``(n, k, ...)`` at samples ``marks`` (k,).
 
         Lane k runs along ``motion``, states ``(1 or n, samples)`` by name, from sample ``first[k]`` of the shaking, at
-        rest or from ``initial``; ``marks`` are counted from there, in order. What cannot stand is nan.
+        rest or from ``initial``; ``marks`` are counted from there, in order. What cannot stand is nan. ``shaking``: of
+        all lanes, or one of each, alike but for what they hold.
         """
         n = first.size
-        coefficients = self._shaken(values, options, shaking, n, "lanes")
+        shakings = [shaking] * n if isinstance(shaking, Shaking) else shaking
+        coefficients = self._shaken(values, options, shakings[0], n, "lanes")
         given = {name: by_lane(v, n) for name, v in (initial or {}).items()}
         unable = _any_of(self.cannot_stand(coefficients))
         if not np.any(unable):
-            return self.carry_lanes(coefficients, shaking, motion, marks, first, given)
+            return self.carry_lanes(coefficients, shakings, motion, marks, first, given)
         able = np.flatnonzero(~unable)
         if not able.size:
             return {}
         some = {name: x if len(x) == 1 else x[able] for name, x in motion.items()}
         started = {name: x[able] for name, x in given.items()}
-        found = self.carry_lanes(coefficients.take(able), shaking, some, marks, first[able], started)
+        stand = [shakings[k] for k in able]
+        found = self.carry_lanes(coefficients.take(able), stand, some, marks, first[able], started)
         whole = {name: np.full((n, *x.shape[1:]), np.nan) for name, x in found.items()}
         for name, x in found.items():
             whole[name][able] = x
@@ -304,10 +307,10 @@ class Model(Placing, ABC, Generic[C]):
         return {}
 
     def carry_lanes(
-        self, coefficients: C, shaking: Shaking, motion: Mapping[str, FloatArray], marks: NDArray[np.int64],
-        first: NDArray[np.int64], initial: Mapping[str, FloatArray],
+        self, coefficients: C, shakings: Sequence[Shaking], motion: Mapping[str, FloatArray],
+        marks: NDArray[np.int64], first: NDArray[np.int64], initial: Mapping[str, FloatArray],
     ) -> dict[str, FloatArray]:  # fmt: skip
-        """`carry` of walls that all stand; default: nothing has to be carried."""
+        """`carry` of walls that all stand, each under its own shaking; default: nothing has to be carried."""
         return {}
 
     def simulate(

@@ -24,7 +24,7 @@ from grids.instruments.staged import Sets, recorded_in_stages
 from grids.instruments.windowed import recorded_in_windows
 from grids.recordings.base import REQUIRED, Recording
 from models.base import FloatArray
-from models.identification import NARROWEST
+from models.identification import NARROWEST, State
 from models.piecewise import Part, begun_at
 from models.shaking import Shaking
 
@@ -36,8 +36,9 @@ ROUNDS = 3
 
 @dataclass(frozen=True)
 class Setting:
-    """The wall's values from sample to sample of a recording, and the instruments likewise."""
+    """The base as it moved along a recording, the wall's values from sample to sample, and the instruments likewise."""
 
+    shaking: Shaking
     parts: Sequence[Part]
     sets: Sets
 
@@ -51,35 +52,42 @@ class Setting:
         return wall, instruments
 
 
+Kept = OrderedDict[tuple[Any, ...], tuple[Recording, dict[str, FloatArray]]]
+"""Arrays by name, with the recording: else its id could become another's."""
+
+
 class Carrying:
     """Carried states, kept by the recording and the setting that they belong to."""
 
     def __init__(self) -> None:
-        self.kept: OrderedDict[tuple[Any, ...], tuple[Recording, dict[str, FloatArray]]] = OrderedDict()
+        self.kept: Kept = OrderedDict()
+        self.motions: Kept = OrderedDict()
 
     def at(
         self,
         marks: NDArray[np.int64],
         measured: Measured,
         recording: Recording,
-        shaking: Shaking,
         settings: Sequence[Setting],
         options: Mapping[str, str],
     ) -> dict[str, FloatArray]:
-        """Carried states (P, k, ...) by name of P settings that share the ``shaking``, at samples ``marks`` (k,)."""
+        """Carried states (P, k, ...) by name of P settings, at samples ``marks`` (k,)."""
         keys = [(id(recording), marks.tobytes(), *setting.key) for setting in settings]
         new = {key: one for key, one in zip(keys, settings, strict=True) if key not in self.kept}
-        if new:
-            found = carried(marks, measured, recording, shaking, list(new.values()), options)
-            for k, key in enumerate(new):
-                # with the recording: else its id could become another's
+        together: dict[tuple[float, int], list[tuple[Any, ...]]] = {}
+        for key, one in new.items():
+            together.setdefault((one.shaking.time_step, one.shaking.horizontal.size), []).append(key)
+        for alike in together.values():
+            found = carried(marks, measured, recording, [new[key] for key in alike], options, self.motions)
+            for k, key in enumerate(alike):
                 self.kept[key] = recording, {name: x[k] for name, x in found.items()}
         each = []
         for key in keys:
             self.kept.move_to_end(key)
             each.append(self.kept[key][1])
-        while len(self.kept) > KEPT:
-            self.kept.popitem(last=False)
+        for kept in (self.kept, self.motions):
+            while len(kept) > KEPT:
+                kept.popitem(last=False)
         whole = max(each, key=len)
         # what cannot stand carries nothing
         return {name: np.stack([one.get(name, np.full(x.shape, np.nan)) for one in each]) for name, x in whole.items()}
@@ -89,13 +97,13 @@ def carried(
     marks: NDArray[np.int64],
     measured: Measured,
     recording: Recording,
-    shaking: Shaking,
     settings: Sequence[Setting],
     options: Mapping[str, str],
+    motions: Kept,
 ) -> dict[str, FloatArray]:
-    """The same, run."""
+    """The same of settings whose bases move over the same samples, run."""
     lanes = len(settings)
-    motion = _motion(measured, recording, shaking.time_step, [setting.sets for setting in settings])
+    motion = _motion(measured, recording, settings, motions)
     at, back = np.unique(marks, return_inverse=True)
     firsts = [part.first for part in settings[0].parts]
     found: dict[str, list[FloatArray]] = {}
@@ -107,8 +115,10 @@ def carried(
         if not wanted.size:
             break
         values = {name: np.array([s.parts[j].values[name] for s in settings]) for name in settings[0].parts[j].values}
+        begun = {id(s.shaking): begun_at(s.shaking, begin) for s in settings}
+        ahead = {name: x[:, begin:] for name, x in motion.items()}
         ran = measured.model.carry(
-            values, begun_at(shaking, begin), {name: x[:, begin:] for name, x in motion.items()}, wanted - begin,
+            values, [begun[id(s.shaking)] for s in settings], ahead, wanted - begin,
             first=np.zeros(lanes, np.int64), initial=initial, options=options,
         )  # fmt: skip
         initial = {} if last else {name: x[:, -1] for name, x in ran.items()}
@@ -118,21 +128,41 @@ def carried(
 
 
 def _motion(
-    measured: Measured, recording: Recording, time_step: float, sets: Sequence[Sets]
+    measured: Measured, recording: Recording, settings: Sequence[Setting], motions: Kept
 ) -> dict[str, FloatArray]:  # fmt: skip
     """The free states along a recording, (1, samples) where all settings share them, else (P, samples)."""
-    each = [_freed(measured, recording, one) for one in (sets if any(one != sets[0] for one in sets) else sets[:1])]
+    keys = [(id(recording), setting.key[1]) for setting in settings]
+    for key, one in zip(keys, settings, strict=True):
+        if key not in motions:
+            motions[key] = recording, _smoothed(measured, recording, one.sets)
+        motions.move_to_end(key)
+    each = [motions[key][1] for key in (keys if len(set(keys)) > 1 else keys[:1])]
+    # per sample of the recording: the clock of the responses may run on another step
+    quicker = recording.time_step / settings[0].shaking.time_step
+    found = {}
+    for state in measured.identification.free:
+        if state.name in measured.free:
+            rows = np.stack([states[state.name] for states in each])
+            found[state.name] = rows * quicker if _slope(state, recording) else rows
+    return found | {name: found[of] for name, of in measured.alike.items() if name not in found}
+
+
+def _slope(state: State, recording: Recording) -> bool:
+    """Whether a state is the slope of a channel."""
+    return state.rate and state.name not in recording.channels
+
+
+def _smoothed(measured: Measured, recording: Recording, sets: Sets) -> dict[str, FloatArray]:
+    """The free states (samples,) by name, per s of the recording's clock."""
+    channels = _freed(measured, recording, sets)
     width = measured.lengths.carrying if measured.lengths else NARROWEST
     found = {}
     for state in measured.identification.free:
-        if state.name not in measured.free:
-            continue
-        slope = state.rate and state.name not in recording.channels
-        name = state.channel if slope or not state.rate else state.name
-        rows = [smooth(channels[name], recording.time_step, width, slope) for channels in each]
-        # per sample of the recording: the clock of the responses may run on another step
-        found[state.name] = np.stack(rows) * (recording.time_step / time_step if slope else 1.0)
-    return found | {name: found[of] for name, of in measured.alike.items() if name not in found}
+        if state.name in measured.free:
+            slope = _slope(state, recording)
+            name = state.channel if slope or not state.rate else state.name
+            found[state.name] = smooth(channels[name], recording.time_step, width, slope)
+    return found
 
 
 def _freed(measured: Measured, recording: Recording, sets: Sets) -> dict[str, FloatArray]:

@@ -31,7 +31,7 @@ STATE_STEP = 2e-3
 
 @dataclass(frozen=True)
 class Linear:
-    """A point's residuals (W, M) and derivatives (W, M, k), (W, M, S) by central differences.
+    """A point's residuals (W, M) and derivatives (W, M, k), (W, M, S) by differences.
 
     The errors that windows share come after the unknowns among the k.
     """
@@ -130,29 +130,32 @@ class Misfit:
     def loss(self, u: FloatArray, states: FloatArray) -> float:
         return float(self.losses(self.residuals([self.point(u, states)])).sum()) + self.prior(u)
 
-    def linearise(self, u: FloatArray, states: FloatArray) -> Linear:
-        """Residuals and derivatives at a point; steps that would leave the bounds are one-sided."""
-        m = self.measured
-        points, widths = [self.point(u, states)], []
+    def linearise(self, u: FloatArray, states: FloatArray, one_sided: bool = False) -> Linear:
+        """Residuals and derivatives at a point; ``one_sided`` by unknowns for the steps of a fit."""
+        here = self.point(u, states)
+        ends, widths = [], []
         for i, unknown in enumerate(self.unknowns):
             low, high = unknown.bounds
             down, up = u.copy(), u.copy()
-            down[i], up[i] = max(u[i] - STEP, low), min(u[i] + STEP, high)
-            points += [self.point(down, states), self.point(up, states)]
+            up[i] = min(u[i] + STEP, high)
+            down[i] = u[i] if one_sided and up[i] > u[i] else max(u[i] - STEP, low)
+            ends.append([here if x[i] == u[i] else self.point(x, states) for x in (down, up)])
             widths.append(up[i] - down[i])
-        for s in range(states.shape[1]):
-            for sign in (-1.0, 1.0):
-                moved = states.copy()
-                moved[:, s] += sign * STATE_STEP * m.state_size[s]
-                points.append(self.point(u, moved))
-            widths.append(2.0 * STATE_STEP * m.state_size[s])
-        r = self.residuals(points)
-        columns = np.stack([(r[2 + 2 * i] - r[1 + 2 * i]) / width for i, width in enumerate(widths)], axis=-1)
+        for s, size in enumerate(STATE_STEP * self.measured.state_size):
+            down, up = states.copy(), states.copy()
+            down[:, s] -= size
+            up[:, s] += size
+            ends.append([self.point(u, down), self.point(u, up)])
+            widths.append(2.0 * size)
+        moved = [point for pair in ends for point in pair if point is not here]
+        r = dict(zip(map(id, [here, *moved]), self.residuals([here, *moved]), strict=True))
+        differences = [(r[id(up)] - r[id(down)]) / width for (down, up), width in zip(ends, widths, strict=True)]
+        columns = np.stack(differences, axis=-1)
         k = len(self.unknowns)
         by_unknown = columns[..., :k]
         if self.whitening.shared is not None:
             by_unknown = np.concatenate([by_unknown, self.whitening.shared], axis=-1)
-        return Linear(r[0], by_unknown, columns[..., k:])
+        return Linear(r[id(here)], by_unknown, columns[..., k:])
 
     def weights(self, residual: FloatArray) -> FloatArray:
         """Weight of each window (W,) in the least squares that has the loss's gradient."""

@@ -84,16 +84,17 @@ class Predictor:
             windows = np.flatnonzero((m.recording_of == r) & (True if only is None else only))
             if not windows.size:
                 continue
-            for members in groups.values():
-                sets = self.sets(instruments[members[0]], recording)
-                if m.stretches is not None:
-                    plain = (m.shakings if shakings is None else shakings)[r]
+            alike = [(members, self.sets(instruments[members[0]], recording)) for members in groups.values()]
+            if m.stretches is not None:
+                plain = (m.shakings if shakings is None else shakings)[r]
+                for members, sets in alike:
                     self._through(r, members, windows, moved_in_stages(plain, sets), complete, instruments, out)
-                    continue
-                shaking = ground = moved_in_stages(m.shakings[r], sets, moved_in_windows)
-                carried = self._carried(members, windows, shaking, complete, recording, instruments)
-                if shakings is not None:
-                    shaking = moved_in_stages(shakings[r], sets, moved_in_windows)
+                continue
+            grounds = [moved_in_stages(m.shakings[r], sets, moved_in_windows) for _, sets in alike]
+            bases = {p: ground for (members, _), ground in zip(alike, grounds, strict=True) for p in members}
+            carried = self._carried(bases, windows, complete, recording, instruments)
+            for (members, sets), ground in zip(alike, grounds, strict=True):
+                shaking = ground if shakings is None else moved_in_stages(shakings[r], sets, moved_in_windows)
                 # probes of the base are disturbances of the model: accelerometers are on the base as it moves
                 around = m.disturbed(shaking, r), ground
                 self._run(points, members, windows, around, complete, recording, instruments, carried, out)
@@ -123,7 +124,7 @@ class Predictor:
             own = np.flatnonzero(m.recording_of == r)
             if own.size:
                 shaking = moved_in_stages(m.shakings[r], self.sets(instruments, recording), moved_in_windows)
-                for name, x in self._carried([0], own, shaking, [values], recording, [instruments]).items():
+                for name, x in self._carried({0: shaking}, own, [values], recording, [instruments]).items():
                     found.setdefault(name, np.zeros((len(m.windows), *x.shape[2:])))[own] = x[0]
         return found
 
@@ -147,19 +148,21 @@ class Predictor:
 
     def _carried(
         self,
-        members: Sequence[int],
+        bases: Mapping[int, Shaking],
         windows: NDArray[np.intp],
-        shaking: Shaking,
         complete: Sequence[Mapping[str, float]],
         recording: Recording,
         instruments: Sequence[Switched],
     ) -> dict[str, FloatArray]:
-        """What the model carries to the starts of the windows (P, n, ...), under the base as measured."""
+        """What the model carries to the starts of the windows (P, n, ...), under the ``bases`` of all P points."""
         m = self.measured
         if not m.identification.carrying:
             return {}
-        settings = [Setting(self.parts(complete[p], recording), self.sets(instruments[p], recording)) for p in members]
-        return self.carrying.at(m.first[windows], m, recording, shaking, settings, self.options)
+        settings = [
+            Setting(bases[p], self.parts(complete[p], recording), self.sets(instruments[p], recording))
+            for p in range(len(complete))
+        ]
+        return self.carrying.at(m.first[windows], m, recording, settings, self.options)
 
     def _run(
         self,
@@ -185,7 +188,7 @@ class Predictor:
         initial = {s: states[:, :, k].ravel() for k, s in enumerate(m.free)}
         initial |= {s: initial[of] for s, of in m.alike.items() if s not in initial}
         initial |= {k: np.tile(v[windows], count) for k, v in m.memory.items()}
-        initial |= {k: v.reshape(n * count, *v.shape[2:]) for k, v in carried.items()}
+        initial |= {k: v[members].reshape(n * count, *v.shape[2:]) for k, v in carried.items()}
         first = np.tile(m.first[windows], count)
         ran = trajectories(
             m.model, parts, instants, shaking, first=first, samples=samples, initial=initial, options=self.options

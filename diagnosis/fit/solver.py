@@ -116,7 +116,7 @@ class _Place:
 
     @classmethod
     def at(cls, misfit: Misfit, u: FloatArray, states: FloatArray) -> _Place:
-        linear = misfit.linearise(u, states)
+        linear = misfit.linearise(u, states, one_sided=True)
         window = misfit.losses(linear.residual)
         return cls(misfit, u, states, linear, window, float(window.sum()) + misfit.prior(u))
 

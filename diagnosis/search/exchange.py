@@ -23,7 +23,7 @@ def exchanged(found: Search, progress: Progress) -> None:
     """Exchange effects until none gets better; once where what stands explains everything."""
     held: set[frozenset[Candidate]] = set()
     for _ in range(ROUNDS):
-        _drop(found)
+        drop(found)
         if found.best is None or len(found.best.candidates) < 2:
             return
         held.add(frozenset(found.best.candidates))
@@ -70,8 +70,8 @@ def _everywhere(before: Explanation, after: Explanation) -> bool:
     return total > max([float(gains.max()), *(recordings if len(recordings) > 1 else [])])
 
 
-def _drop(found: Search) -> None:
-    """Drop what is no longer needed."""
+def drop(found: Search) -> None:
+    """Drop what is not needed, or no longer."""
     dropping = True
     while dropping and found.best is not None and len(found.best.candidates) > 1:
         dropping = False

@@ -16,7 +16,7 @@ from diagnosis.progress import Progress
 from diagnosis.search.beside import POOL_SHARE, THOROUGH, extended, seconds, starts_of, worth_a_refit
 from diagnosis.search.budget import FURTHER
 from diagnosis.search.candidates import Candidate
-from diagnosis.search.exchange import exchanged
+from diagnosis.search.exchange import drop, exchanged
 from diagnosis.search.found import GAP, MISSING, Search, adequate, adjusted, survives
 from diagnosis.search.hidden import take_hidden
 from diagnosis.search.null import null_distribution
@@ -86,6 +86,7 @@ def further_effects(found: Search, progress: Progress) -> Iterator[Search]:
         found.best = with_memory(again(found.best))
         if found.best.candidates != found.weighed:
             found.errors = estimate(found.best.fitted, found.errors.base, found.errors)
+        drop(found)  # errors estimated with both, and fits taken further, may ask for one only
     yield found
 
 

@@ -86,12 +86,12 @@ class Interface(Model[LayeredWall]):
         return unstressed(self.build(values, options), values, names)
 
     def carry_lanes(
-        self, coefficients: LayeredWall, shaking: Shaking, motion: Mapping[str, FloatArray], marks: NDArray[np.int64],
-        first: NDArray[np.int64], initial: Mapping[str, FloatArray],
+        self, coefficients: LayeredWall, shakings: Sequence[Shaking], motion: Mapping[str, FloatArray],
+        marks: NDArray[np.int64], first: NDArray[np.int64], initial: Mapping[str, FloatArray],
     ) -> dict[str, FloatArray]:  # fmt: skip
         from models.interface.lanes.carried import carry
 
-        return carry(coefficients, shaking, motion, marks, first, initial)
+        return carry(coefficients, shakings, motion, marks, first, initial)
 
     def observe(self, coefficients: LayeredWall, samples: FloatArray) -> Mapping[str, FloatArray]:
         return observe(coefficients, samples)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.base import FloatArray
 from models.errors import InputError
@@ -37,3 +38,12 @@ def recorded(shaking: Shaking, per_sample: int, tail: float, more: Sequence[Floa
         if channel is not None:
             samples[row, : shaken + 1] = np.interp(fine, np.arange(channel.size), channel)
     return Record(samples, extremes(samples[:-1]), step, shaken, end)
+
+
+def end_to_end(records: Sequence[Record]) -> tuple[Record, NDArray[np.int64]]:
+    """Records of one step after one another, for lanes of which each stays within its own; where each begins."""
+    samples = np.concatenate([record.samples for record in records], axis=1)
+    begins = np.cumsum([0, *(record.samples.shape[1] for record in records[:-1])])
+    last = records[-1]
+    joined = Record(samples, extremes(samples[:-1]), last.step, int(begins[-1]) + last.shaken, samples.shape[1] - 2)
+    return joined, begins.astype(np.int64)

@@ -17,6 +17,8 @@ import numpy as np
 from models.base import FloatArray
 from models.rubber.base import Numbers, Role, RubberLaw
 
+ROUNDS, CLOSE = 60, 2.0 * np.finfo(float).eps
+"""Of the search for a compression: rounds at most, and the share of it at which it ends."""
 Hidden = Sequence[FloatArray]
 """The hidden states of a layer's laws, one array for each of them, whether it has one or not."""
 
@@ -89,7 +91,7 @@ class Layer:
         return [law.relaxed(u, p) for law, p in self.laws]
 
     def static_compression(self, load: FloatArray, most: FloatArray) -> FloatArray:
-        """u (m) at which the relaxed layer carries ``load``, by bisection up to ``most``; nan if it does not."""
+        """u (m) at which the relaxed layer carries ``load``, up to ``most``; nan if it does not."""
         return _reaching(load, lambda u: self.stress(u, self.relaxed(u)), most)
 
     def edge_at_uplift(self, load: FloatArray, rest: FloatArray) -> FloatArray:
@@ -109,11 +111,28 @@ class Layer:
 
 
 def _reaching(load: FloatArray, carried: Callable[[FloatArray], FloatArray], most: FloatArray) -> FloatArray:
-    """u up to ``most`` at which a growing ``carried(u)`` reaches ``load``; nan where it does not."""
-    low, high = np.zeros_like(load), np.asarray(most, dtype=np.float64).copy()
-    held = carried(high) >= load
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        short = carried(middle) < load
-        low, high = np.where(short, middle, low), np.where(short, high, middle)
-    return np.where(held, 0.5 * (low + high), np.nan)
+    """u up to ``most`` at which a growing ``carried(u)`` reaches ``load``; nan where it does not.
+
+    By T. R. Chandrupatla's rule (Advances in Engineering Software 28, 1997): inverse quadratic interpolation where it
+    holds, halves elsewhere. c, fc: the end of the bracket [a, b] that was left last.
+    """
+    a, b = np.asarray(most, dtype=np.float64).copy(), np.zeros_like(load)
+    fa, fb = carried(a) - load, -np.asarray(load, dtype=np.float64)
+    held, share = fa >= 0.0, np.full_like(b, 0.5)
+    for _ in range(ROUNDS):
+        x = a + share * (b - a)
+        fx = carried(x) - load
+        beyond = (fx >= 0.0) == (fa >= 0.0)
+        c, fc = np.where(beyond, a, b), np.where(beyond, fa, fb)
+        b, fb = np.where(beyond, b, a), np.where(beyond, fb, fa)
+        a, fa = x, fx
+        width, least = np.abs(b - a), 2.0 * CLOSE * np.abs(a)
+        if not np.any(held & (width > least) & (fa != 0.0)):
+            break
+        with np.errstate(divide="ignore", invalid="ignore"):
+            inside, up = (a - b) / (c - b), (fa - fb) / (fc - fb)
+            smooth = (up**2 < inside) & ((1.0 - up) ** 2 < 1.0 - inside)
+            share = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
+            edge = least / (2.0 * width)
+        share = np.clip(np.where(smooth, share, 0.5), edge, 1.0 - edge)
+    return np.where(held, np.where(np.abs(fa) <= np.abs(fb), a, b), np.nan)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,14 +19,14 @@ from models.interface.lanes.effects.rows import N_ENDED
 from models.interface.lanes.laws import HISTORY, given_laws, some
 from models.interface.lanes.run import given_table, low_passes, pitching, substeps
 from models.interface.layered import LayeredWall
-from models.lanes.record import recorded
+from models.lanes.record import end_to_end, recorded
 from models.lanes.tables import groups
 from models.shaking import Shaking
 
 
 def carry(
     wall: LayeredWall,
-    shaking: Shaking,
+    shakings: Sequence[Shaking],
     motion: Mapping[str, FloatArray],
     marks: NDArray[np.int64],
     first: NDArray[np.int64],
@@ -36,24 +36,28 @@ def carry(
 
     As `models.model.Model.carry`.
     """
-    at_rest, effects = resting.at_rest(wall), wall.effects
+    at_rest, effects, time_step = resting.at_rest(wall), wall.effects, shakings[0].time_step
     rest = at_rest[:, :4]
     begun = {**initial, **{name: x[:, 0] for name, x in motion.items()}}
     given = given_table(wall, np.ones(wall.size), begun, rest)
-    steps = substeps(wall, modes.at_rest(wall).squares, shaking.time_step)
+    steps = substeps(wall, modes.at_rest(wall).squares, time_step)
     given[:, r.Q_STEPS] = steps
-    laws = given_laws(wall, at_rest, shaking.time_step / steps, initial)
+    laws = given_laws(wall, at_rest, time_step / steps, initial)
     held = np.array([k for k, name in enumerate(STATES) if name in motion], np.int64)
     prescribed = np.stack([motion[STATES[k]] for k in held], axis=-1)
     states = np.zeros((wall.size, marks.size, len(STATES)))
     others = np.zeros((wall.size, marks.size, N_ENDED))
     history = np.zeros((wall.size, marks.size, *(() if laws is None else laws.hidden.shape[1:])))
+    distinct = {id(shaking): shaking for shaking in shakings}
+    own = np.array([list(distinct).index(id(shaking)) for shaking in shakings])
     for (_, corner), lanes in groups(steps, low_passes(wall)):
         part = wall if lanes.size == wall.size else wall.take(lanes)
         moved, past, more_moved = (np.zeros((lanes.size, *whole.shape[1:])) for whole in (states, history, others))
         more = None if effects is None else given_effects(part, part.effects, _of(begun, lanes), at_rest[lanes])
+        records = [recorded(shaking, 1, 0.0, pitching(wall, shaking, corner)) for shaking in distinct.values()]
+        record, begins = end_to_end(records)
         advance(
-            recorded(shaking, 1, 0.0, pitching(wall, shaking, corner)), first[lanes], given[lanes],
+            record, first[lanes] + begins[own[lanes]], given[lanes],
             prescribed if prescribed.shape[0] == 1 else prescribed[lanes], held, marks,
             moved, past, more_moved,
             None if wall.joints == "both" or more is not None else True, None if laws is None else True,

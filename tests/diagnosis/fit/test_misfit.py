@@ -133,7 +133,7 @@ def test_a_fit_with_nothing_ahead_ends_at_its_first_linearisation(problem, monke
     _measured, fitted = problem
     settled = fit(fitted.misfit, fitted.u, fitted.states)
     linearise, points = Misfit.linearise, []
-    monkeypatch.setattr(Misfit, "linearise", lambda *given: points.append(given) or linearise(*given))
+    monkeypatch.setattr(Misfit, "linearise", lambda *given, **more: points.append(given) or linearise(*given, **more))
     again = fit(settled.misfit, settled.u, settled.states)
     assert len(points) == 1
     assert again.loss == pytest.approx(settled.loss, abs=1e-9)
