@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 from matplotlib import colormaps
 from matplotlib.axes import Axes
+from scipy.stats import norm
 
 from study.figures.style import COLOURS, MAP_COLOURS, literal, new_axes, set_title
 from study.sensitivity.analysis import LEADING
@@ -53,16 +54,21 @@ def plot_tornado(found: xr.Dataset, output: str, motions: str | None = None, *, 
 
 
 def plot_interactions(found: xr.Dataset, output: str, motions: str | None = None, *, ax: Axes | None = None) -> Axes:
-    """Draw second-order Sobol indices: the share of the variance that two parameters explain together only."""
+    """Draw second-order Sobol indices: the share of the variance that two parameters explain together only.
+
+    Pairs are left grey whose interval does not lie above zero: intervals so wide that all of them hold at once with the
+    stated confidence (Bonferroni).
+    """
     one, names = _ordered(found, output, motions)
     order = [found["parameter"].values.tolist().index(name) for name in one["parameter"].values]
-    values = one["second"].values[:, order]
+    half, beyond = one["second"] - one["second_low"], 1.0 - found.attrs["confidence"]
+    pairs = len(names) * (len(names) - 1) / 2
+    wider = norm.isf(beyond / (2.0 * pairs)) / norm.isf(beyond / 2.0)
+    values = one["second"].where(one["second"] > wider * half).values[:, order]
     ax = new_axes(ax, 1.6 + 0.5 * len(names), 1.2 + 0.45 * len(names))
-    largest = max(float(np.nanmax(values, initial=0.0)), 0.01)
-    drawn = ax.imshow(
-        np.clip(values, 0.0, None), cmap=colormaps[MAP_COLOURS].with_extremes(bad="0.9"), vmin=0.0, vmax=largest
-    )
-    ax.figure.colorbar(drawn, ax=ax).set_label(f"share of the variance of {_words(output)}")
+    largest = max(float(np.max(values, initial=0.0, where=np.isfinite(values))), 0.01)
+    drawn = ax.imshow(values, cmap=colormaps[MAP_COLOURS].with_extremes(bad="0.9"), vmin=0.0, vmax=largest)
+    ax.figure.colorbar(drawn, ax=ax).set_label(f"share of the variance of {_words(output)} (grey: none beyond chance)")
     for axis in (ax.xaxis, ax.yaxis):
         axis.set_ticks(np.arange(len(names)), names)
     plt.setp(ax.get_xticklabels(), rotation=40, ha="right")

@@ -35,7 +35,7 @@ def group_size(design: Design) -> int:
 
 
 def indices(design: Design, values: FloatArray, *, confidence: float = 0.95, seed: int = 1) -> dict[str, NDArray[Any]]:
-    """Indices ``(parameters,)`` by name with ``_low`` and ``_high``, `second` ``(parameters, parameters)``.
+    """Indices ``(parameters,)`` by name, `second` ``(parameters, parameters)``, with ``_low`` and ``_high``.
 
     A group of points with an unknown (nan) value is left out. Everything is nan where fewer than 8 groups are left or
     where the output does not vary.
@@ -49,7 +49,8 @@ def indices(design: Design, values: FloatArray, *, confidence: float = 0.95, see
     nothing = {name: np.full(dimensions, np.nan) for name in names}
     if known.sum() < FEWEST or not np.ptp(kept) > 0.0:
         found = _with_interval(nothing, {name: nothing[name] for name in names if name in BOUNDED})
-        return found | ({"second": np.full((dimensions, dimensions), np.nan)} if design.kind == SOBOL else {})
+        pairs = {"second": np.full((dimensions, dimensions), np.nan)}
+        return found | (_with_interval(pairs, pairs) if design.kind == SOBOL else {})
     problem = {"num_vars": dimensions, "names": [str(k) for k in range(dimensions)], "bounds": [[0, 1]] * dimensions}
     if design.kind == SOBOL:
         return _sobol(problem, kept, confidence, seed)
@@ -66,10 +67,11 @@ def _sobol(problem: Mapping[str, Any], values: FloatArray, confidence: float, se
     found = SALib.analyze.sobol.analyze(
         problem, values, calc_second_order=True, num_resamples=RESAMPLES, conf_level=confidence, seed=seed
     )
-    second = np.asarray(found["S2"])
     named = {"first": np.asarray(found["S1"]), "total": np.asarray(found["ST"])}
     halves = {"first": np.asarray(found["S1_conf"]), "total": np.asarray(found["ST_conf"])}
-    return _with_interval(named, halves) | {"second": np.where(np.isnan(second), second.T, second)}
+    second, half = (np.asarray(found[name], dtype=float) for name in ("S2", "S2_conf"))
+    pairs = _with_interval({"second": second}, {"second": half})
+    return _with_interval(named, halves) | {name: np.where(np.isnan(x), x.T, x) for name, x in pairs.items()}
 
 
 def _morris(

@@ -118,6 +118,16 @@ def test_table_and_figures(found: xr.Dataset) -> None:
     plt.close("all")
 
 
+def test_interactions_within_chance_are_left_grey(found: xr.Dataset) -> None:
+    """Of all pairs at once: with many pairs some single interval always lies above zero."""
+    one = found.sel(output=["overturned"]).isel(motions=[0])
+    wide = one.assign(second_low=one["second"] - abs(one["second"]) / 1.1)
+    narrow = one.assign(second_low=one["second"] - 1e-6)
+    grey = [np.ma.masked_invalid(plot_interactions(x, "overturned").images[0].get_array()) for x in (wide, narrow)]
+    assert grey[0].count() == 0 < grey[1].count()
+    plt.close("all")
+
+
 def test_screening_agrees_with_the_indices(home: Path, found: xr.Dataset) -> None:
     plan = small_wall("morris", 32)
     cube = open_study(run(plan, results=home, scheduler="synchronous").folder)
