@@ -10,7 +10,7 @@ from diagnosis.answer.result import Diagnosis, Effect, Extrapolated, Fit, Locate
 from diagnosis.answer.when import held_text, when_text
 from diagnosis.data.measured import identification_of
 from diagnosis.fit.unknowns import effects
-from diagnosis.forces.constancy import FOR_A_WHILE, Constancy
+from diagnosis.forces.constancy import BLOW, FOR_A_WHILE, Constancy
 from diagnosis.search.budget import ENDED
 from diagnosis.search.found import MISSING
 from diagnosis.search.null import LEAST_P
@@ -179,6 +179,8 @@ def _distinct(found: Sequence[Constancy]) -> list[Constancy]:
 
 
 def _flag(found: Constancy, declared: Identification) -> str:
+    if found.parameter == BLOW:
+        return f"Something acts on it for a moment, {found.stronger}: a blow, or a sensor that was knocked."
     meaning = next(kind.meaning for kind in declared.forces if kind.name == found.parameter)
     what = f"What acts is a {meaning}"
     stronger = f", stronger {found.stronger}" if found.stronger else ""

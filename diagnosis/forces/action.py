@@ -1,7 +1,7 @@
 """What an effect does along the fitted motion, from sample to sample: where it acts, whatever it is.
 
-From every sample of a window the model *without* the effect starts in the state of the motion *with* it and runs
-to the next sample. What it then lacks,
+From every sample of a window the model starts in the state of the motion *with* the effect and runs to the next
+sample, with it and without it. What it then lacks,
 
     impulse(t) = rate(t + dt) with the effect - rate(t + dt) without it,
 
@@ -66,10 +66,12 @@ def action(predictor: Predictor, point: Point, effect: str) -> Action:
     if instrument is not None and "base" not in instrument.acts:
         return Action(effect, "error", _errors(predictor, point, effect, states), _events(predictor, motion), motion)
     amount = np.zeros(m.values.shape)
-    ahead = _one_step(predictor, _without(predictor, point, effect), states, _carried(predictor, point, states))
+    # from the same states both: those that a model carries are not quite those of its run through the window
+    carried = _carried(predictor, point, states)
+    ahead, less = (_one_step(predictor, at, states, carried) for at in (point, _without(predictor, point, effect)))
     both = inside[:, :-1] & inside[:, 1:]
     for state in rates:
-        lacking = np.where(both, states[state.name][:, 1:] - ahead[state.name], 0.0)
+        lacking = np.where(both, ahead[state.name] - less[state.name], 0.0)
         amount[:, m.standing_for(state.channel), :-1] += np.where(np.isfinite(lacking), lacking, 0.0)
     return Action(effect, "force", amount, _events(predictor, motion), motion)
 

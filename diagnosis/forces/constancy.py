@@ -24,6 +24,8 @@ FLAG = 15.0
 SCAN_FLAG = 25.0
 """The scan over time tries many intervals."""
 FOR_A_WHILE = "a limited time"
+BLOW = "blow"
+"""A force that is there for a moment: what it is along the motion cannot be told."""
 AMPLITUDE = "amplitude of the motion"
 TIME = "time"
 STRONGEST = 6

@@ -9,6 +9,9 @@ in which the recordings ask for the effect (`diagnosis.search.asked`), in turn; 
 Many runs are searched, so a spell has a price: how much more of the largest statistic chance brings (its 5 % level,
 from noise drawn under the estimated errors) with runs than without. It is taken off the gain, so that an effect in a
 spell is named by chance as rarely as one that always acts, and an effect always acting is preferred to it.
+
+What acts for a moment, less than the shortest window, is no mechanism at work but a blow: many mechanisms make one up,
+and none can be told by it. It is said, with its instants, and nothing is named.
 """
 
 from __future__ import annotations
@@ -19,10 +22,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis.data.measured import Measured
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.solver import fit
 from diagnosis.forces.columns import forces
-from diagnosis.forces.constancy import flags, tests
+from diagnosis.forces.constancy import BLOW, FOR_A_WHILE, Constancy, flags, tests
 from diagnosis.progress import Progress
 from diagnosis.search.asked import asked_for
 from diagnosis.search.beside import seconds
@@ -85,7 +89,24 @@ def _begun(found: Search, start: Explanation) -> Search | None:
     if through or len(found.measured.windows) < FEWEST_WINDOWS:
         return None
     fits = _in_spells(found, start)
-    return _weighed(found, fits) if fits and _needed(found, start, fits[0]) else None
+    weighed = _weighed(found, fits) if fits and _needed(found, start, fits[0]) else None
+    if weighed is None or weighed.best is None:
+        return None
+    for candidate in weighed.best.candidates:
+        if candidate.spell is not None and _brief(found.measured, candidate.spell):
+            gain = weighed.gain(weighed.best) - (0.0 if found.best is None else found.gain(found.best))
+            where = found.measured.recordings[candidate.spell.first].name
+            when = f"from {candidate.spell.begins:.2f} s to {candidate.spell.ends:.2f} s of {where}"
+            found.blow = Constancy(BLOW, FOR_A_WHILE, gain, when)
+            return None
+    return weighed
+
+
+def _brief(measured: Measured, spell: Spell) -> bool:
+    """Whether it begins, and ends before the shortest window that tells one motion from another is over."""
+    if measured.lengths is None or spell.begins is None or spell.ends is None or spell.first != spell.last:
+        return False
+    return spell.ends - spell.begins < measured.lengths.shortest
 
 
 def _in_spells(found: Search, start: Explanation) -> list[Explanation]:

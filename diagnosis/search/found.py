@@ -65,6 +65,8 @@ class Search:
     budget: Budget = field(default_factory=Budget)
     outside: Constancy | None = None
     """A force outside the library that explains what the best single leaves."""
+    blow: Constancy | None = None
+    """A force that acts for a moment, too short to say which."""
     begun: Search | None = None
     """This search with one effect that begins or ends, that leaves something unexplained."""
     about: Forces | None = None

@@ -48,9 +48,15 @@ def made(name: str, seed: int, changes: Sequence[tuple[float, Mapping[str, float
     return Recording(name, TIME_STEP, time, {"base_acceleration_x": base, "rotation_1": seen})
 
 
-def searched(recordings: Sequence[Recording]) -> tuple[Search, list[Search]]:
-    """What an ordinary search that found nothing goes on with, and what the search for beginnings yields."""
+def searched(recordings: Sequence[Recording], shortest: float | None = None) -> tuple[Search, list[Search]]:
+    """What an ordinary search that found nothing goes on with, and what the search for beginnings yields.
+
+    ``shortest`` (s): of a spell that is no blow.
+    """
     measured = measure(SPECIMEN, recordings)
+    if shortest is not None:
+        assert measured.lengths is not None
+        measured = replace(measured, lengths=replace(measured.lengths, shortest=shortest))
     fitted, errors = calibrated(SPECIMEN, measured)
     some = tuple(c for c in candidates(measured, SPECIMEN) if c.name in FEW)
     found = Search(Explanation((), fitted), some, errors)
@@ -93,6 +99,20 @@ def test_a_law_of_impacts_that_changes_is_found_where_the_base_bends_to_the_mean
     assert spell is not None and (spell.first, spell.last, spell.ends) == (1, 1, None)
     assert spell.begins == pytest.approx(instant, abs=0.7)
     assert best.fitted.values["restitution.factor_on_housner"] == pytest.approx(factor, abs=0.015)
+
+
+def test_what_acts_for_too_short_a_time_is_said_and_not_named() -> None:
+    recordings = [
+        made("a", 13, []),
+        made("b", 6, [(4.0, {"viscous_damping.rate": 1.5}), (7.0, {"viscous_damping.rate": 0.0})]),
+    ]
+    found, yielded = searched(recordings)
+    assert found.blow is None and yielded[-1].best is not None
+    spell = yielded[-1].best.candidates[0].spell
+    assert spell is not None and spell.begins is not None and spell.ends is not None
+    found, yielded = searched(recordings, shortest=spell.ends - spell.begins + 1.0)
+    assert yielded == [] and found.best is None and found.blow is not None
+    assert found.blow.stronger == f"from {spell.begins:.2f} s to {spell.ends:.2f} s of b" and found.blow.evidence > 20.0
 
 
 def test_nothing_begins_where_nothing_is_missing() -> None:
