@@ -11,7 +11,7 @@ alone the share of wrong cells is estimated, so that its interval is that of a p
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 
@@ -25,6 +25,8 @@ Labels = NDArray[np.int8]
 
 NOT_COMPUTED = -1
 ABSENT, PENDING, CLOSED, SPLIT = range(4)
+AT_ONCE = 1 << 20
+"""Cells of boxes that are looked at together."""
 
 
 @dataclass(frozen=True)
@@ -66,6 +68,7 @@ class Refinement:
         self._complete = True
         self._estimate: Estimate | None = None
         self._expected: Labels = np.empty(0, dtype=np.int8)
+        self._told: Cells = np.empty(0, dtype=np.int64)
 
     def ask(self) -> Cells:
         """The cells to compute next, in ascending order; none when all is done."""
@@ -93,6 +96,7 @@ class Refinement:
     def tell(self, cells: Cells, labels: Labels) -> None:
         """The outcomes of the cells that were asked for."""
         self.values[cells] = labels
+        self._told = np.concatenate([self._told, cells])
         if self._phase == "guard":
             found = int(np.count_nonzero(labels != self._expected))
             self._phase = "refine" if found else "audit"
@@ -167,13 +171,19 @@ class Refinement:
         return np.unique(np.concatenate(parts))
 
     def _settle(self) -> None:
-        """Close or cut every pending box whose corners are known, open closed ones that a computed cell contradicts."""
-        changed = True
-        while changed:
-            judged = sum(self._judge(level) for level in range(len(self._strides)))
-            changed = judged + sum(self._contradicted(level) for level in range(len(self._strides))) > 0
+        """Close or cut every pending box whose corners are known, open closed ones that a computed cell contradicts.
 
-    def _judge(self, level: int) -> bool:
+        Only cells told since the last time are held against boxes closed before, and all cells against new ones.
+        """
+        levels, changed = range(len(self._strides)), True
+        while changed:
+            judged, closed = zip(*(self._judge(level) for level in levels), strict=True)
+            told = [self._holding(level, self._told) for level in levels]
+            opened = [self._reopened(level, np.concatenate([told[level], closed[level]])) for level in levels]
+            self._told, changed = self._told[:0], any(judged) or any(opened)
+
+    def _judge(self, level: int) -> tuple[bool, Cells]:
+        """Whether pending boxes could be judged, and those (m, d) that were closed."""
         state, label, stride = self._state[level], self._label[level], self._strides[level]
         boxes = np.argwhere(state == PENDING)
         values = self.values[self._corners(boxes, stride)]
@@ -183,7 +193,7 @@ class Refinement:
         agree = (values == values[:, :1]).all(axis=1)
         state[tuple(boxes[agree].T)] = CLOSED
         self._cut(level, boxes[~agree])
-        return bool(boxes.size)
+        return bool(boxes.size), boxes[agree]
 
     def _cut(self, level: int, boxes: Cells) -> None:
         self._state[level][tuple(boxes.T)] = SPLIT
@@ -195,30 +205,32 @@ class Refinement:
             children = children[(children < np.array(finer.shape)).all(axis=1)]
             finer[tuple(children.T)] = PENDING
 
-    def _contradicted(self, level: int) -> bool:
-        """Cut the closed boxes of a level that hold a computed cell of another outcome, their faces included."""
-        state, label = self._state[level], self._label[level]
-        cells = np.flatnonzero(self.values != NOT_COMPUTED)
-        values = self.values[cells]
-        found = False
-        for inside, boxes in self._holders(cells, level):
-            at = tuple(boxes.T)
-            differs = (state[at] == CLOSED) & (label[at] != values[inside])
-            if differs.any():
-                found = True
-                self._cut(level, np.unique(boxes[differs], axis=0))
-        return found
+    def _reopened(self, level: int, boxes: Cells) -> bool:
+        """Cut those of the boxes (m, d) that are closed and hold a cell of another outcome, their faces included."""
+        state, label, stride = self._state[level], self._label[level], self._strides[level]
+        boxes = np.unique(boxes[state[tuple(boxes.T)] == CLOSED], axis=0)
+        offsets, last = np.array(list(product(range(stride + 1), repeat=len(self.shape)))), np.array(self.shape) - 1
+        differs = np.zeros(len(boxes), bool)
+        for part in range(0, len(boxes), max(AT_ONCE // len(offsets), 1)):
+            some = boxes[part : part + max(AT_ONCE // len(offsets), 1)]
+            places = np.minimum(some[:, None, :] * stride + offsets, last)
+            values = self.values[np.ravel_multi_index(tuple(np.moveaxis(places, -1, 0)), self.shape)]
+            other = (values != NOT_COMPUTED) & (values != label[tuple(some.T)][:, None])
+            differs[part : part + len(some)] = other.any(axis=1)
+        self._cut(level, boxes[differs])
+        return bool(differs.any())
 
-    def _holders(self, cells: Cells, level: int) -> Iterator[tuple[NDArray[np.bool_], Cells]]:
-        """Boxes ``(m, d)`` of a level that hold cells, one set for each side of the faces that cells may lie on."""
+    def _holding(self, level: int, cells: Cells) -> Cells:
+        """The boxes ``(m, d)`` of a level that hold cells, on their faces too."""
         stride, count = self._strides[level], np.array(self._state[level].shape)
         places = self._places(cells)
-        base = places // stride
+        found = []
         for offset in product((0, 1), repeat=len(self.shape)):
             back = np.array(offset)
-            boxes = base - back
+            boxes = places // stride - back
             inside = ((boxes >= 0) & (boxes < count) & ((back == 0) | (places % stride == 0))).all(axis=1)
-            yield inside, boxes[inside]
+            found.append(boxes[inside])
+        return np.concatenate(found)
 
 
 def _coarse(shape: Sequence[int], most: int) -> int:
