@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from string import Formatter
 
-from diagnosis.answer.phases import words_of
+from diagnosis.answer.phases import EVERYWHERE, words_of
 from diagnosis.answer.result import Diagnosis, Effect, Extrapolated, Fit, Located
 from diagnosis.answer.when import held_text, when_text
 from diagnosis.data.measured import identification_of
@@ -53,7 +53,7 @@ def statement(found: Diagnosis, model: Model) -> str:
     parts += _another(found)
     if found.effects and not any(effect.stages for effect in found.effects):
         parts += _by_recording(found.provenance.get("gain_by_recording", {}))
-    parts += _acts(found.located, words_of(declared))
+    parts += _acts(found.located, words_of(declared), {effect.name for effect in found.effects if effect.stages})
     if found.verdict == "not_in_library" and not found.unexplained:
         parts.append("That does not settle it: what is missing is not in the library of mechanisms.")
         parts += _left_out(found)
@@ -202,8 +202,8 @@ def _shows(places: Sequence[Located], words: Mapping[str, str]) -> list[str]:
     ]
 
 
-def _acts(places: Sequence[Located], words: Mapping[str, str]) -> list[str]:
-    """Where each effect acts, or, without a name, where something must be added."""
+def _acts(places: Sequence[Located], words: Mapping[str, str], staged: Collection[str] = ()) -> list[str]:
+    """Where each effect acts, or, without a name, where something must be added; ``staged`` ones begin or end."""
     said = []
     for name in dict.fromkeys(place.effect for place in places):
         own = [place for place in places if place.effect == name]
@@ -211,7 +211,8 @@ def _acts(places: Sequence[Located], words: Mapping[str, str]) -> list[str]:
         where = [
             _in_recording(r, [p for p in own if p.recording == r]) for r in dict.fromkeys(p.recording for p in own)
         ]
-        said.append(f"{what} {_phases(own[0], words)}: {' and '.join(where)}.")
+        phases = "" if name in staged and own[0].where == (EVERYWHERE,) else f" {_phases(own[0], words)}"
+        said.append(f"{what}{phases}: {' and '.join(where)}.")
     return said
 
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import models
-from diagnosis.answer.result import Diagnosis, Effect, Fit, Undecided, Verdict
+from diagnosis.answer.result import Diagnosis, Effect, EffectStage, Fit, Located, Undecided, Verdict
 from diagnosis.answer.statement import effect_text, statement
 from diagnosis.fit.intervals import Estimate
-from diagnosis.forces.constancy import Constancy
+from diagnosis.forces.constancy import BLOW, FOR_A_WHILE, Constancy
 from diagnosis.report import diagnosis_json
 from diagnosis.report.page import headline
 from diagnosis.search.budget import ENDED
@@ -141,3 +142,17 @@ def test_what_the_budget_did_not_reach_is_said_where_the_library_did_not_suffice
     text = said("not_in_library", not_tried=left)
     assert "ended before it had tried: tilt, a second effect beside gain." in text and "vertical" not in text
     assert "budget" not in said("not_in_library", not_tried={}) + said("missing", not_tried=left)
+
+
+def test_a_blow_is_said_with_its_instants() -> None:
+    blow = Constancy(BLOW, FOR_A_WHILE, 84.0, "from 2.52 s to 2.64 s of shake_2")
+    text = said("not_in_library", constancy=(blow,))
+    assert "Something acts on it for a moment, from 2.52 s to 2.64 s of shake_2" in text
+
+
+def test_what_begins_is_not_said_to_act_throughout() -> None:
+    place = Located("shake_1", "rotation_1", 2.0, 6.0, ("everywhere",), 1.0, "tilt", 0.1, "rad s-2")
+    tilt = Effect("tilt", "tilt", {"tilt": Estimate(0.01, 0.009, 0.011, "rad")}, 80.0, 1e-6)
+    begins = replace(tilt, stages=(EffectStage("shake_1", 2.0, np.inf),))
+    assert "Tilt acts throughout: in shake_1" in said(located=(place,), effects=(tilt,))
+    assert "Tilt acts: in shake_1 from 2.0 s to 6.0 s" in said(located=(place,), effects=(begins,))
