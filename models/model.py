@@ -286,7 +286,7 @@ class Model(Placing, ABC, Generic[C]):
             return {}
         some = {name: x if len(x) == 1 else x[able] for name, x in motion.items()}
         started = {name: x[able] for name, x in given.items()}
-        stand = [shakings[k] for k in able]
+        stand = [shakings[k] for k in able.tolist()]
         found = self.carry_lanes(coefficients.take(able), stand, some, marks, first[able], started)
         whole = {name: np.full((n, *x.shape[1:]), np.nan) for name, x in found.items()}
         for name, x in found.items():
