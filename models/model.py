@@ -270,9 +270,8 @@ class Model(Placing, ABC, Generic[C]):
     ) -> dict[str, FloatArray]:
         """What ``initial`` of `trajectories` needs beside ``motion``, arrays ``(n, k, ...)`` at samples ``marks`` (k,).
 
-        Lane k runs along ``motion``, states ``(1 or n, samples)`` by name, from sample ``first[k]`` of the shaking, at
-        rest or from ``initial``; ``marks`` are counted from there, in order. What cannot stand is nan. ``shaking``: of
-        all lanes, or one of each, alike but for what they hold.
+        Lane k runs along ``motion``, states ``(1 or n, samples)`` by name, from sample ``first[k]`` of its own
+        shaking or that of all, at rest or from ``initial``; ``marks`` count from there, in order. What cannot stand: nan.
         """
         n = first.size
         shakings = [shaking] * n if isinstance(shaking, Shaking) else shaking
@@ -281,13 +280,11 @@ class Model(Placing, ABC, Generic[C]):
         unable = _any_of(self.cannot_stand(coefficients))
         if not np.any(unable):
             return self.carry_lanes(coefficients, shakings, motion, marks, first, given)
-        able = np.flatnonzero(~unable)
-        if not able.size:
+        if not (able := np.flatnonzero(~unable)).size:
             return {}
-        some = {name: x if len(x) == 1 else x[able] for name, x in motion.items()}
-        started = {name: x[able] for name, x in given.items()}
-        stand = [shakings[k] for k in able.tolist()]
-        found = self.carry_lanes(coefficients.take(able), stand, some, marks, first[able], started)
+        motion = {name: x if len(x) == 1 else x[able] for name, x in motion.items()}
+        given, own = {name: x[able] for name, x in given.items()}, [shakings[k] for k in able.tolist()]
+        found = self.carry_lanes(coefficients.take(able), own, motion, marks, first[able], given)
         whole = {name: np.full((n, *x.shape[1:]), np.nan) for name, x in found.items()}
         for name, x in found.items():
             whole[name][able] = x
