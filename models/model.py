@@ -271,7 +271,7 @@ class Model(Placing, ABC, Generic[C]):
         """What ``initial`` of `trajectories` needs beside ``motion``, arrays ``(n, k, ...)`` at samples ``marks`` (k,).
 
         Lane k runs along ``motion``, states ``(1 or n, samples)`` by name, from sample ``first[k]`` of its own
-        shaking or that of all, at rest or from ``initial``; ``marks`` count from there, in order. What cannot stand: nan.
+        shaking or that of all, at rest or from ``initial``; ``marks`` count from there, in order. nan: cannot stand.
         """
         n = first.size
         shakings = [shaking] * n if isinstance(shaking, Shaking) else shaking
