@@ -36,7 +36,7 @@ from diagnosis.search import bootstrap as bootstrapping
 from diagnosis.search.beginnings import alone, beside
 from diagnosis.search.budget import Budget
 from diagnosis.search.candidates import absent, candidates
-from diagnosis.search.found import Search, explains_all, misfit_per_sample, rivals
+from diagnosis.search.found import Search, misfit_per_sample, rivals
 from diagnosis.search.ladder import Climbed, climb, rungs
 from diagnosis.search.law import Law, estimate
 from diagnosis.search.refit import Explanation, gain_by_window
@@ -127,7 +127,7 @@ def _assemble(
         flagged = () if unexplained else flags(about, tested, found.more)
     if found.outside is not None:
         flagged = (found.outside, *(f for f in flagged if f.parameter != found.outside.parameter))
-    if found.blow is not None and not explains_all(found.chosen):
+    if found.blow is not None:
         flagged = (found.blow, *flagged)
     near = rivals(found)
     progress("stating the errors", 0.87)

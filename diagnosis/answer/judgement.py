@@ -10,7 +10,7 @@ from diagnosis.answer.heldout import Shown
 from diagnosis.answer.result import Undecided, Verdict
 from diagnosis.errors.adequacy import Inadequacy
 from diagnosis.search.candidates import Candidate
-from diagnosis.search.found import MISSING, Search, adjusted, explains_all, price
+from diagnosis.search.found import MISSING, Search, adjusted, price
 from diagnosis.search.null import LEAST_P
 from diagnosis.search.refit import Explanation, gain_by_window
 
@@ -55,10 +55,10 @@ def p_of_effects(found: Search, gains: Sequence[float]) -> list[float]:
 def p_of_missing(found: Search, gains: Sequence[float], left: Inadequacy, finished: bool) -> float | None:
     """p-value of "something is missing"; None if a search was stopped early.
 
-    Of the strongest effect, else of the strongest suspect, or where the model's own error is large, of that.
+    Of the strongest effect, else of the strongest suspect; of the model's own large error, or a blow, if less.
     """
     least = [max(left.p_value, LEAST_P)] if left.large else []
-    if found.blow is not None and not explains_all(found.chosen):
+    if found.blow is not None:
         least.append(p_value(found, found.blow.evidence))
     if gains:
         return min([*p_of_effects(found, gains), *least])

@@ -202,7 +202,7 @@ def _shows(places: Sequence[Located], words: Mapping[str, str]) -> list[str]:
     ]
 
 
-def _acts(places: Sequence[Located], words: Mapping[str, str], staged: Collection[str] = ()) -> list[str]:
+def _acts(places: Sequence[Located], words: Mapping[str, str], staged: Collection[str]) -> list[str]:
     """Where each effect acts, or, without a name, where something must be added; ``staged`` ones begin or end."""
     said = []
     for name in dict.fromkeys(place.effect for place in places):

@@ -97,7 +97,7 @@ def _begun(found: Search, start: Explanation) -> Search | None:
             gain = weighed.gain(weighed.best) - (0.0 if found.best is None else found.gain(found.best))
             where = found.measured.recordings[candidate.spell.first].name
             when = f"from {candidate.spell.begins:.2f} s to {candidate.spell.ends:.2f} s of {where}"
-            found.blow = Constancy(BLOW, FOR_A_WHILE, gain, when)
+            found.struck = Constancy(BLOW, FOR_A_WHILE, gain, when)
             return None
     return weighed
 

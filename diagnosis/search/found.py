@@ -65,8 +65,8 @@ class Search:
     budget: Budget = field(default_factory=Budget)
     outside: Constancy | None = None
     """A force outside the library that explains what the best single leaves."""
-    blow: Constancy | None = None
-    """A force that acts for a moment, too short to say which."""
+    struck: Constancy | None = None
+    """A force that acts for a moment, too short to say which, seen when the search had not ended (`blow`)."""
     begun: Search | None = None
     """This search with one effect that begins or ends, that leaves something unexplained."""
     about: Forces | None = None
@@ -89,6 +89,11 @@ class Search:
     def more(self) -> float:
         """What a further effect, or a departure from constancy, must bring."""
         return MISSING + min(DETAIL * max(self.gain(self.chosen), 0.0), MISSING)
+
+    @property
+    def blow(self) -> Constancy | None:
+        """A force that acts for a moment, unless what stands explains every window without one."""
+        return None if self.struck is None or explains_all(self.chosen) else self.struck
 
     def affordable(self, *names: str) -> bool:
         """Whether the budget lasts; if not, that these mechanisms or stages were not tried (further) is noted."""

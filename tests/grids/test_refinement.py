@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.stats import binomtest
 
 from grids.plan import parse_plan
-from grids.refinement import Labels, Refinement
+from grids.refinement import CLOSED, NOT_COMPUTED, Labels, Refinement
 from models.errors import InputError
 from tests.study.plans import plan_text
 
@@ -56,6 +56,24 @@ def test_the_stated_share_of_wrong_cells_holds() -> None:
         wrong.append(share)
     assert binomtest(held, 25).proportion_ci(0.99).high >= 0.95, held
     assert np.mean(wrong) < 0.005
+
+
+def test_no_closed_box_holds_a_computed_cell_of_another_outcome() -> None:
+    """Whichever came first, on a map of specks: a box may close about a cell that was computed long before."""
+    random = np.random.default_rng(2)
+    truth = np.where(random.random(96 * 96) < 0.02, 1, 0).astype(np.int8) + rough_map(96, 1)
+    policy, closed = Refinement((96, 96), budget=0.6, guard=150), 0
+    while (cells := policy.ask()).size:
+        policy.tell(cells, truth[cells])
+        last = cells
+    policy.values[last] = NOT_COMPUTED  # the audit opens nothing
+    values = policy.values.reshape(96, 96)
+    for stride, state, label in zip(policy._strides, policy._state, policy._label, strict=True):
+        for i, j in np.argwhere(state == CLOSED):
+            box = values[i * stride : (i + 1) * stride + 1, j * stride : (j + 1) * stride + 1]
+            assert np.all((box == NOT_COMPUTED) | (box == label[i, j]))
+            closed += 1
+    assert closed > 100
 
 
 def test_islands_and_thin_bands_of_a_large_map() -> None:

@@ -19,7 +19,7 @@ from diagnosis.fit.solver import fit
 from diagnosis.fit.starts import start_of
 from diagnosis.fit.unknowns import fixed_values, of_specimen
 from diagnosis.fit.whitening import sensor_noise_only
-from diagnosis.forces.action import action
+from diagnosis.forces.action import _carried, _one_step, action, states_along
 from diagnosis.search.candidates import candidates
 from diagnosis.search.refit import Explanation, extend
 from diagnosis.search.screen import score
@@ -124,6 +124,11 @@ def test_what_a_law_does_along_the_motion_starts_from_what_the_layers_remember_t
     point = one.predictor.declared([replace(point, values={**point.values, **MAXWELL})])[0]
     off = replace(point, values={**point.values, "maxwell.arm_stiffness_ratio": 0.0})
     acting, nothing = (action(one.predictor, p, "maxwell") for p in (point, off))
-    assert acting.kind == "force"
-    # without the effect the run to the next sample is that of the motion itself: nothing was lost on the way
-    assert np.max(np.abs(nothing.amount)) < 0.02 * np.max(np.abs(acting.amount))
+    assert acting.kind == "force" and np.max(np.abs(acting.amount)) > 0.0
+    assert np.all(nothing.amount == 0.0)  # what is not there does nothing
+    # the run to the next sample is that of the motion itself: nothing was lost on the way
+    states = states_along(one.predictor, point)
+    ahead = _one_step(one.predictor, point, states, _carried(one.predictor, point, states))
+    for rate in ("rotation_rate_1", "rotation_rate_2"):
+        lost = np.where(measured.mask[:, 0, 1:], ahead[rate] - states[rate][:, 1:], 0.0)
+        assert np.max(np.abs(lost)) < 0.02 * np.max(np.abs(acting.amount))

@@ -9,6 +9,7 @@ import pytest
 from diagnosis.errors.model import disturbance_about, estimate
 from diagnosis.fit.setup import base_fit, measure
 from diagnosis.progress import silent
+from diagnosis.search import select
 from diagnosis.search.candidates import candidates
 from diagnosis.search.exchange import exchanged
 from diagnosis.search.found import Search, adjusted
@@ -60,6 +61,18 @@ def test_an_effect_gives_way_to_one_that_explains_more_beside_the_other(found: S
     assert set(best.names) == set(TRUE)
     assert best.fitted.values["restitution.factor_on_housner"] == pytest.approx(0.9, abs=0.01)
     assert best.fitted.values["tilt.tilt"] == pytest.approx(0.01, abs=0.001)
+
+
+def test_no_effect_is_named_that_the_last_errors_do_not_ask_for(found: Search, monkeypatch: pytest.MonkeyPatch) -> None:
+    """However it came in: searches for more are left out here."""
+    for more in ("_pairs", "_more", "settle_ties"):
+        monkeypatch.setattr(select, more, lambda *_: None)
+    spare = next(one for one in found.candidates if one.name == OTHERS[1])
+    best = extend(taken(found, *TRUE), spare, spare.null)
+    search = replace(found, best=best, weighed=best.candidates)
+    for _ in select.further_effects(search, silent):
+        pass
+    assert search.best is not None and set(search.best.names) == set(TRUE)
 
 
 def test_an_effect_that_is_no_longer_needed_is_dropped(found: Search) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -86,6 +87,19 @@ def test_lanes_do_not_depend_on_one_another_and_what_cannot_stand_carries_nothin
         assert np.all(np.isnan(together[1]))
         for k in (0, 2):
             np.testing.assert_array_equal(together[k], carried({**WALL, "base_stiffness": soft[k]}, motion)[name][0])
+
+
+def test_walls_on_bases_that_move_apart_are_carried_as_each_alone() -> None:
+    values = WALL | MAXWELL
+    channels = MODEL.simulate(values, shaking()).channels
+    motion = {name: channels[name][None] for name in HELD}
+    bases = [shaking(), replace(shaking(), horizontal=1.1 * shaking().horizontal)]
+    together = MODEL.carry(values, [bases[0], bases[1], bases[0]], motion, MARKS, first=np.zeros(3, np.int64))
+    each = [MODEL.carry(values, base, motion, MARKS, first=np.zeros(1, np.int64)) for base in bases]
+    for name, x in together.items():
+        for k, base in enumerate((0, 1, 0)):
+            np.testing.assert_array_equal(x[k], each[base][name][0])
+    assert any(np.any(x[0] != x[1]) for x in together.values())
 
 
 def test_a_run_cut_in_two_carries_what_the_whole_one_does() -> None:
