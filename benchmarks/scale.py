@@ -72,7 +72,7 @@ Found = dict[str, Any]
 
 
 def plan_text(model: str, cells: int) -> str:
-    """Blocks on rigid ground, or the rubber study over the same ranges with other numbers of points."""
+    """Blocks on rigid ground, or the walls of the rubber study over ranges of the benchmark's own."""
     points = AXES[model][cells]
     if model == "housner":
         axes = BLOCKS.format(*points)
