@@ -1,6 +1,7 @@
 # make study   set up everything and run the main job: walls on rubber layers, plan to maps
 # make test    set up everything, then lint, types and tests
 # make quick   the same without the slow tests
+# make proofs  longer tests, of each of which make test runs a reduced version
 PYTHON ?= python3
 BIN := .venv/bin
 READY := .venv/.ready
@@ -8,7 +9,7 @@ OLDEST := .venv-oldest
 STUDY := results/rubber_interface
 HEAVY := --select "top_mass=5 t" --select damping_ratio=0.0544
 
-.PHONY: study quick test lint types bench independent faults long fuzz verify processors audit test-oldest agreement diagnosis-bench laboratory-bench beginnings-bench bases-bench bench-refine bench-scale gallery docs clean
+.PHONY: study quick test proofs lint types bench independent faults long fuzz verify processors audit test-oldest agreement diagnosis-bench laboratory-bench beginnings-bench bases-bench bench-refine bench-scale gallery docs clean
 
 study: $(READY)
 	$(BIN)/rocking run studies/rubber_interface.toml
@@ -17,10 +18,13 @@ study: $(READY)
 	$(BIN)/rocking slices $(STUDY) uplift_duration --x layer_modulus --select "pga=0.315 g" $(HEAVY)
 
 quick: $(READY) lint types
-	$(BIN)/python -m pytest -n 2 --dist loadfile -m "not slow"
+	$(BIN)/python -m pytest -n 2 --dist loadfile -m "not slow and not proof"
 
 test: $(READY) lint types
-	$(BIN)/python -m pytest -n 2 --dist loadfile
+	$(BIN)/python -m pytest -n 2 --dist loadfile -m "not proof"
+
+proofs: $(READY)
+	$(BIN)/python -m pytest -n 2 --dist loadfile -m proof
 
 lint: $(READY)
 	$(BIN)/ruff check .
@@ -61,7 +65,7 @@ test-oldest:
 	test -x $(OLDEST)/bin/python || $(PYTHON) -m venv $(OLDEST)
 	$(PYTHON) -c "import tomllib; print(*(d.replace('>=', '==') for d in tomllib.load(open('pyproject.toml', 'rb'))['project']['dependencies']), 'pandas<3', sep='\n')" > $(OLDEST)/oldest.txt
 	$(OLDEST)/bin/python -m pip install --quiet --disable-pip-version-check -c $(OLDEST)/oldest.txt -e . pytest hypothesis
-	$(OLDEST)/bin/python -m pytest -q -m "not slow" -W ignore::DeprecationWarning -W "ignore:numpy.ndarray size changed" -W "ignore:unique with argument:FutureWarning" tests/grids tests/study
+	$(OLDEST)/bin/python -m pytest -q -m "not slow and not proof" -W ignore::DeprecationWarning -W "ignore:numpy.ndarray size changed" -W "ignore:unique with argument:FutureWarning" tests/grids tests/study
 
 agreement: $(READY)
 	$(BIN)/python -m benchmarks.agreement

@@ -1,4 +1,8 @@
-"""Which tests are slow: ``pytest -m "not slow"`` leaves them out and takes about two minutes with compiled kernels."""
+"""Which tests are slow, and which are long proofs beside a reduced version of themselves.
+
+``pytest -m "not slow"`` takes about two minutes with compiled kernels; ``make test`` leaves the proofs to
+``make proofs``.
+"""
 
 from __future__ import annotations
 
@@ -52,10 +56,60 @@ SLOW = (
     "study/test_schedulers.py",
 )
 """Files and folders that fit recordings, compare whole families of runs, or compile a kernel of their own."""
+PROOFS = (
+    "benchmarks/test_base_cases.py::test_a_case_is_read_as_it_was_made[block]",
+    "benchmarks/test_base_cases.py::test_a_case_is_read_as_it_was_made[stack_as_block]",
+    "benchmarks/test_diagnosis_cases.py::test_same_seed_same_case_and_other_seed_another",
+    "benchmarks/test_faults.py::test_a_fault_does_no_harm[block swapped]",
+    "benchmarks/test_faults.py::test_a_fault_does_no_harm[cube.nc a link]",
+    "benchmarks/test_faults.py::test_a_fault_does_no_harm[three runs of one study at once]",
+    "benchmarks/test_fibre_wall.py::test_both_programs_move_a_wall_alike[added_stiffness+viscous_damping]",
+    "benchmarks/test_fibre_wall.py::test_both_programs_move_a_wall_alike[bouc_wen]",
+    "benchmarks/test_fibre_wall.py::test_both_programs_move_a_wall_alike[hardening]",
+    "benchmarks/test_fibre_wall.py::test_both_programs_move_a_wall_alike[mullins]",
+    "benchmarks/test_power.py::test_white_noise_is_seen_for_what_it_is",
+    "diagnosis/answer/test_building.py::test_hysteresis_is_named_and_predicts_a_larger_run",
+    "diagnosis/answer/test_diagnose.py::test_ctrl_c_after_the_search_leaves_the_answer[before and after]",
+    "diagnosis/answer/test_diagnose.py::test_ctrl_c_after_the_search_leaves_the_answer[bootstrap]",
+    "diagnosis/outcomes/test_chain.py::test_nothing_is_said_to_be_missing_when_nothing_is",
+    "diagnosis/report/test_names.py::test_an_answer_is_written_whatever_its_recordings_are_called[names1]",
+    "diagnosis/search/test_beginnings.py::test_a_law_of_impacts_that_changes",
+    "diagnosis/search/test_recovery_stack.py::test_a_simulated_effect_is_seen_and_recovered[coulomb_damping]",
+    "diagnosis/search/test_recovery_stack.py::test_the_direction_of_the_score_is_a_finite_difference[coulomb_damping]",
+    "models/housner/test_agreement.py::test_linear_lanes_agree_with_the_linear_reference",
+    "models/interface/test_effects.py::test_a_bending_wall_that_is_turned_starts_straight[reference-1000.0-0.06]",
+    "models/interface/test_lanes.py::test_lanes_agree_with_the_reference_on_random_walls[toe_held",
+    "models/interface/test_reference.py::test_free_rocking_without_dashpots_conserves_energy[midpoint_held]",
+    "models/isolated/test_lanes.py::test_lanes_agree_with_the_reference_on_random_buildings[1]",
+    "models/isolated/test_lanes.py::test_lanes_agree_with_the_reference_on_random_buildings[12]",
+    "models/rubber/test_energy.py::test_a_fibre_never_gives_back_more_than_it_took[hardening]",
+    "models/rubber/test_energy.py::test_a_fibre_never_gives_back_more_than_it_took[locking]",
+    "models/rubber/test_energy.py::test_a_fibre_never_gives_back_more_than_it_took[mullins]",
+    "models/rubber/test_energy.py::test_both_routes_move_and_dissipate_alike[hardening]",
+    "models/rubber/test_energy.py::test_both_routes_move_and_dissipate_alike[locking]",
+    "models/rubber/test_energy.py::test_both_routes_move_and_dissipate_alike[mullins]",
+    "models/rubber/test_energy.py::test_springs_that_only_store_lose_nothing[locking]",
+    "models/rubber/test_laws.py::test_a_shaken_random_wall_and_its_values_agree_with_the_reference[bouc_wen]",
+    "models/rubber/test_laws.py::test_a_shaken_random_wall_and_its_values_agree_with_the_reference[hardening]",
+    "models/rubber/test_laws.py::test_a_shaken_random_wall_and_its_values_agree_with_the_reference[locking]",
+    "models/rubber/test_laws.py::test_a_shaken_random_wall_and_its_values_agree_with_the_reference[mullins]",
+    "models/rubber/test_locking.py::test_what_no_step_tells_of_a_wall_on_layers_that_lock_early_is_not_converged[0.3]",
+    "models/stacked/test_lanes.py::test_lanes_agree_with_the_reference[False-0.0]",
+    "models/stacked/test_lanes.py::test_lanes_agree_with_the_reference[True-0.6]",
+    "models/test_answers.py::test_outputs[reference-stacked]",
+    "models/test_peaks.py::test_the_reference_gives_the_same[isolated]",
+    "study/test_large_cube.py::test_a_table_in_parts_is_the_whole_table[1]",
+    "study/test_schedulers.py::test_the_other_models_lose_nothing_either[interface_linear]",
+    "study/test_schedulers.py::test_the_other_models_lose_nothing_either[isolated]",
+    "study/test_schedulers.py::test_the_other_models_lose_nothing_either[stacked]",
+)
+"""Beginnings of the names of long tests of which another case, or a test of the same thing, stays with the others."""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     slow = [HERE / path for path in SLOW]
     for item in items:
+        if item.nodeid.removeprefix("tests/").startswith(PROOFS):
+            item.add_marker(pytest.mark.proof)
         if any(item.path == path or path in item.path.parents for path in slow):
             item.add_marker(pytest.mark.slow)

@@ -1,12 +1,18 @@
-"""Every entry of the list of slow tests names a file or folder that is there."""
+"""Every entry of the lists of slow tests and of proofs names something that is there."""
 
 from __future__ import annotations
 
 import pytest
 
-from tests.conftest import HERE, SLOW
+from tests.conftest import HERE, PROOFS, SLOW
 
 
 @pytest.mark.parametrize("path", SLOW)
 def test_it_exists(path: str) -> None:
     assert (HERE / path).exists()
+
+
+@pytest.mark.parametrize("name", PROOFS)
+def test_a_proof_is_a_test_with_that_name(name: str) -> None:
+    path, _, test = name.partition("::")
+    assert f"def {test.partition('[')[0]}" in (HERE / path).read_text()

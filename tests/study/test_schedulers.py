@@ -263,7 +263,7 @@ def test_what_a_hung_worker_held_does_not_take_the_next_one_along(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """All late blocks are looked up before a worker is taken away: afterwards one that is well holds them."""
-    monkeypatch.setattr("study.computing.LEAST_PATIENCE", 0.2)
+    monkeypatch.setattr("study.computing.LEAST_PATIENCE", 2.0)
     monkeypatch.setattr("study.computing.PATIENCE", 0.0)
     tasks, store = _tasks(tmp_path)
     pool = Crowded([task.key for task in tasks[:2]])
