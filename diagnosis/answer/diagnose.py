@@ -11,7 +11,7 @@ import numpy as np
 from diagnosis.answer.experiment import next_experiment
 from diagnosis.answer.extrapolated import extrapolated
 from diagnosis.answer.heldout import Shown, compare, fit_figures, horizons, traces_of, windows_of, worsens
-from diagnosis.answer.judgement import explains, p_of_effects, p_of_missing, undecided, verdict_of
+from diagnosis.answer.judgement import contradicted, explains, p_of_effects, p_of_missing, undecided, verdict_of
 from diagnosis.answer.ladder import confirmed, other_model
 from diagnosis.answer.located import located
 from diagnosis.answer.missing_force import missing_force
@@ -132,7 +132,11 @@ def _assemble(
     near = rivals(found)
     progress("stating the errors", 0.87)
     errors = stages.needed(lambda: summary(found.errors, measured))
-    verdict = verdict_of(found, near, bool(flagged) or errors.inadequacy.large, not unexplained, finished)
+    judged = chosen
+    first_held = stages.needed(lambda: compare(found.base, judged, to_show, found.errors)) if to_show else None
+    against = contradicted(found, first_held) if first_held and climbed is None else None
+    doubted = bool(flagged) or errors.inadequacy.large or against is not None
+    verdict = verdict_of(found, near, doubted, not unexplained, finished)
     gains = [climbed.gain] if climbed else stages.needed(lambda: evidence(found))
     p_value = p_of_missing(found, gains, errors.inadequacy, finished)
     if draws and finished and climbed is None:
@@ -166,7 +170,9 @@ def _assemble(
         progress("before and after", 0.95)
         return compare(found.base, final, recordings, found.errors)
 
-    held = stages.needed(lambda: of_held(to_show)) if to_show else None
+    held = first_held
+    if to_show and final is not judged:
+        held = stages.needed(lambda: of_held(to_show))
     if held:
         shown.append(held)
     missing = verdict != "nothing_missing" and (finished or bool(effects))
@@ -221,6 +227,7 @@ def _assemble(
         prediction_horizon=stages.optional("prediction horizons", lambda: _horizons(shown, found.base, final), dict),
         missing_force=force,
         held_stages=held.held_stages if held else (),
+        contradicted=against,
         other_model=other_model(climbed, final) if climbed else None,
         errors=errors,
         channels=stages.optional("what each channel adds", lambda: added_by_channels(final.fitted), dict),

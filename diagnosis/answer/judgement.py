@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from diagnosis.answer.heldout import Shown
+from diagnosis.answer.heldout import Shown, relative_misfit
 from diagnosis.answer.result import Undecided, Verdict
 from diagnosis.errors.adequacy import Inadequacy
 from diagnosis.search.candidates import Candidate
@@ -18,6 +18,8 @@ UNEXPLAINED = 0.5
 """Share of the squared motion in the windows that, left over by the best model, makes any name meaningless."""
 CHANCE = 0.05
 """p-value from which on the strongest suspect is no stronger than chance."""
+WORSE = 1.05
+"""Misfit on recordings held out, over that without what was found, beyond which that is not the explanation."""
 
 
 def explains(shown: Shown) -> bool:
@@ -28,10 +30,21 @@ def explains(shown: Shown) -> bool:
     return float(np.mean(left / np.maximum(whole, 1e-300))) < UNEXPLAINED
 
 
+def contradicted(found: Search, held: Shown) -> tuple[float, float] | None:
+    """Misfit on recordings held out without and with what was found, if that predicts them worse; else None.
+
+    None, too, where an effect begins or ends: what acts in later recordings is then another question.
+    """
+    if found.best is None or any(c.spell is not None for c in found.chosen.candidates):
+        return None
+    without, with_it = (relative_misfit(held.measured, predicted) for predicted in (held.before, held.after))
+    return (without, with_it) if with_it > WORSE * without else None
+
+
 def verdict_of(
     found: Search, near: Sequence[tuple[Explanation, Candidate, float]], flagged: bool, explained: bool, finished: bool
 ) -> Verdict:
-    """One of the four. ``near``: the rivals; ``flagged``: something is not constant, or the model errs."""
+    """One of the four. ``near``: the rivals; ``flagged``: not constant, the model errs, or contradicted."""
     if not finished:  # what was not tried may explain it as well
         return "cannot_tell_apart"
     if flagged or not explained:

@@ -243,6 +243,8 @@ class Diagnosis:
     """Another base model than the specimen's, where that is the answer."""
     held_stages: tuple[HeldStage, ...] = ()
     """In which state recordings held out were predicted, of effects that do not always act."""
+    contradicted: tuple[float, float] | None = None
+    """Misfit on recordings held out without and with the effects found, where that is why they are no explanation."""
     visited: tuple[Visited, ...] = ()
     """The force, jump or error of each named effect over what was visited."""
     reference_peak: float | None = None

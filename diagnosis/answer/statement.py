@@ -57,6 +57,7 @@ def statement(found: Diagnosis, model: Model) -> str:
     if found.verdict == "not_in_library" and not found.unexplained:
         parts.append("That does not settle it: what is missing is not in the library of mechanisms.")
         parts += _left_out(found)
+        parts += _contradicted(found)
         parts += [_flag(flag, declared) for flag in _distinct(found.constancy)[:2]]
         if found.missing_force:
             what = " and a ".join(term["meaning"] for term in found.missing_force["terms"])
@@ -87,6 +88,17 @@ def _extrapolated(one: Extrapolated) -> str:
         f"learned from ({one.learned:.3g} {one.unit}): its prediction extrapolates, with a misfit of {one.after:.3f} "
         f"of {one.channel}."
     )
+
+
+def _contradicted(found: Diagnosis) -> list[str]:
+    """That what was found predicts recordings held out worse than the model without it."""
+    if found.contradicted is None:
+        return []
+    without, with_it = found.contradicted
+    return [
+        f"With it the model predicts recordings held out worse than without: misfit {with_it:.3f} of the signal in "
+        f"place of {without:.3f}."
+    ]
 
 
 def _another(found: Diagnosis) -> list[str]:

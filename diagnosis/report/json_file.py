@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
-from diagnosis.answer.result import Diagnosis, Fit, HeldStage
+from diagnosis.answer.result import Diagnosis, Fit
 from study.provenance import as_json
 
 
@@ -38,7 +38,7 @@ def as_mapping(diagnosis: Diagnosis) -> dict[str, Any]:
         "channels": {name: dict(wider) for name, wider in diagnosis.channels.items()},
         "fit": {
             "train": _fit(diagnosis.train),
-            "holdout": None if diagnosis.holdout is None else _holdout(diagnosis.holdout, diagnosis.held_stages),
+            "holdout": None if diagnosis.holdout is None else _holdout(diagnosis.holdout, diagnosis),
         },
         "statement": diagnosis.statement,
         "next_experiment": None if diagnosis.next_experiment is None else dict(diagnosis.next_experiment),
@@ -74,9 +74,12 @@ def _fit(fit: Fit) -> dict[str, Any]:
     return {"before": fit.before, "after": fit.after, "noise_floor": fit.noise_floor}
 
 
-def _holdout(fit: Fit, held: Sequence[HeldStage]) -> dict[str, Any]:
-    stages = [asdict(one) for one in held]
-    return {**_fit(fit), "share_of_achievable": fit.share_of_achievable, "stages": stages}
+def _holdout(fit: Fit, diagnosis: Diagnosis) -> dict[str, Any]:
+    stages = [asdict(one) for one in diagnosis.held_stages]
+    contradicted = None if diagnosis.contradicted is None else list(diagnosis.contradicted)
+    return {
+        **_fit(fit), "share_of_achievable": fit.share_of_achievable, "stages": stages, "contradicted": contradicted,
+    }  # fmt: skip
 
 
 def finite(value: Any) -> Any:

@@ -100,6 +100,26 @@ def test_a_recording_without_noise_is_known(noise: float, free: bool) -> None:
     assert heldout.fit_figures(shown, True).noise_free is free
 
 
+@pytest.mark.parametrize(
+    ("rise", "spell", "told"), [(0.9, None, False), (1.04, None, False), (1.3, None, True), (1.3, "then", False)]
+)
+def test_what_predicts_recordings_held_out_worse_is_not_the_explanation(
+    rise: float, spell: str | None, told: bool
+) -> None:
+    measured = measure(SPECIMEN, [recording("test_1", 3, noise=0.01)])
+    error = np.random.default_rng(2).normal(size=measured.values.shape)
+    shown = heldout.Shown(measured, measured.values + error, measured.values + rise * error, None, None)  # type: ignore[arg-type]
+    named = candidate("coulomb_damping")
+    named.spell = spell
+    found = search(best=explanation([90.0] * 4, named))
+    against = judgement.contradicted(found, shown)
+    assert (against is not None) is told
+    if against is not None:
+        assert against[1] == pytest.approx(rise * against[0])
+        assert judgement.verdict_of(found, [], True, True, True) == "not_in_library"
+    assert judgement.contradicted(search(), shown) is None
+
+
 def test_ctrl_c_costs_the_stage_and_those_after_it() -> None:
     def interrupted() -> str:
         raise KeyboardInterrupt

@@ -47,6 +47,14 @@ def test_nothing_missing_is_stated_with_its_p_value() -> None:
     assert "no stronger than chance, p = 0.41" in said("nothing_missing")
 
 
+def test_what_recordings_held_out_contradict_is_said_with_both_misfits() -> None:
+    text = said("not_in_library", contradicted=(0.037, 0.069))
+    assert "predicts recordings held out worse than without: misfit 0.069 of the signal in place of 0.037" in text
+    assert "held out worse" not in said("not_in_library") and "Best explanation" not in text
+    read = json.loads(diagnosis_json(answer("not_in_library", contradicted=(0.037, 0.069))))
+    assert read["fit"]["holdout"]["contradicted"] == [0.037, 0.069]
+
+
 @pytest.mark.parametrize("rests_on", ["one window", "one recording", ""])
 def test_a_refused_suspect_is_named_as_undecided(rests_on: str) -> None:
     suspect = Undecided("saturation", "saturation", 46.2, rests_on)

@@ -100,6 +100,7 @@ class HeldStagePart(Part):
 class HoldoutPart(TrainPart):
     share_of_achievable: float | None
     stages: list[HeldStagePart]
+    contradicted: tuple[float, float] | None
 
 
 class FitPart(Part):
