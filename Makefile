@@ -18,13 +18,13 @@ study: $(READY)
 	$(BIN)/rocking slices $(STUDY) uplift_duration --x layer_modulus --select "pga=0.315 g" $(HEAVY)
 
 quick: $(READY) lint types
-	$(BIN)/python -m pytest -n 2 --dist loadfile -m "not slow and not proof"
+	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder -m "not slow and not proof"
 
 test: $(READY) lint types
-	$(BIN)/python -m pytest -n 2 --dist loadfile -m "not proof"
+	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder -m "not proof"
 
 proofs: $(READY)
-	$(BIN)/python -m pytest -n 2 --dist loadfile -m proof
+	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder -m proof
 
 lint: $(READY)
 	$(BIN)/ruff check .

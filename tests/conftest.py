@@ -113,3 +113,5 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.add_marker(pytest.mark.proof)
         if any(item.path == path or path in item.path.parents for path in slow):
             item.add_marker(pytest.mark.slow)
+    # short files last: of two processes neither waits long for the other
+    items.sort(key=lambda item: item.get_closest_marker("slow") is None)
