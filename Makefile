@@ -1,7 +1,7 @@
 # make study   set up everything and run the main job: walls on rubber layers, plan to maps
 # make test    set up everything, then lint, types and tests
 # make quick   the same without the slow tests
-# make proofs  longer tests, of each of which make test runs a reduced version
+# make proofs  long cases of tests of which make test runs other cases
 PYTHON ?= python3
 BIN := .venv/bin
 READY := .venv/.ready

@@ -59,7 +59,6 @@ SLOW = (
 PROOFS = (
     "benchmarks/test_base_cases.py::test_a_case_is_read_as_it_was_made[block]",
     "benchmarks/test_base_cases.py::test_a_case_is_read_as_it_was_made[stack_as_block]",
-    "benchmarks/test_diagnosis_cases.py::test_same_seed_same_case_and_other_seed_another",
     "benchmarks/test_faults.py::test_a_fault_does_no_harm[block swapped]",
     "benchmarks/test_faults.py::test_a_fault_does_no_harm[cube.nc a link]",
     "benchmarks/test_faults.py::test_a_fault_does_no_harm[three runs of one study at once]",
@@ -67,16 +66,12 @@ PROOFS = (
     "benchmarks/test_fibre_wall.py::test_both_programs_move_a_wall_alike[bouc_wen]",
     "benchmarks/test_fibre_wall.py::test_both_programs_move_a_wall_alike[hardening]",
     "benchmarks/test_fibre_wall.py::test_both_programs_move_a_wall_alike[mullins]",
-    "benchmarks/test_power.py::test_white_noise_is_seen_for_what_it_is",
-    "diagnosis/answer/test_building.py::test_hysteresis_is_named_and_predicts_a_larger_run",
     "diagnosis/answer/test_diagnose.py::test_ctrl_c_after_the_search_leaves_the_answer[before and after]",
     "diagnosis/answer/test_diagnose.py::test_ctrl_c_after_the_search_leaves_the_answer[bootstrap]",
-    "diagnosis/outcomes/test_chain.py::test_nothing_is_said_to_be_missing_when_nothing_is",
     "diagnosis/report/test_names.py::test_an_answer_is_written_whatever_its_recordings_are_called[names1]",
-    "diagnosis/search/test_beginnings.py::test_a_law_of_impacts_that_changes",
+    "diagnosis/search/test_beginnings.py::test_a_law_of_impacts_that_changes_is_found_where_the_base_bends_to_the_mean[0.92-5.0]",
     "diagnosis/search/test_recovery_stack.py::test_a_simulated_effect_is_seen_and_recovered[coulomb_damping]",
     "diagnosis/search/test_recovery_stack.py::test_the_direction_of_the_score_is_a_finite_difference[coulomb_damping]",
-    "models/housner/test_agreement.py::test_linear_lanes_agree_with_the_linear_reference",
     "models/interface/test_effects.py::test_a_bending_wall_that_is_turned_starts_straight[reference-1000.0-0.06]",
     "models/interface/test_lanes.py::test_lanes_agree_with_the_reference_on_random_walls[toe_held",
     "models/interface/test_reference.py::test_free_rocking_without_dashpots_conserves_energy[midpoint_held]",
@@ -103,7 +98,7 @@ PROOFS = (
     "study/test_schedulers.py::test_the_other_models_lose_nothing_either[isolated]",
     "study/test_schedulers.py::test_the_other_models_lose_nothing_either[stacked]",
 )
-"""Beginnings of the names of long tests of which another case, or a test of the same thing, stays with the others."""
+"""Beginnings of the names of long cases of tests; other cases of the same test stay with the others."""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -96,8 +96,8 @@ def _contradicted(found: Diagnosis) -> list[str]:
         return []
     without, with_it = found.contradicted
     return [
-        f"With it the model predicts recordings held out worse than without: misfit {with_it:.3f} of the signal in "
-        f"place of {without:.3f}."
+        f"With what was found the model predicts recordings held out worse than without: misfit {with_it:.3f} "
+        f"of the signal in place of {without:.3f}."
     ]
 
 
