@@ -2,7 +2,7 @@
 
 A recording is compared with a model window by window. A window starts from states that were measured, from states that
 the model carries there along the measured motion, and from memories of what came before it; what no model of the
-library explains is described by forces along the leading coordinate. Nothing of this is known to the diagnosis itself:
+library explains is described by forces at the ports of the model. Nothing of this is known to the diagnosis itself:
 each model says it in ``models/<name>/identification.py`` (`Model.identification`; None: neither calibrated nor
 diagnosed).
 """
@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -131,7 +132,7 @@ class Stretches:
 
 @dataclass(frozen=True)
 class Motion:
-    """The fitted motion along all windows: leading coordinate, its rate and the base acceleration, arrays (W, N).
+    """The fitted motion along all windows: a coordinate, its rate and the base acceleration, arrays (W, N).
 
     ``reach``: the largest absolute value of the coordinate inside the windows.
     """
@@ -143,18 +144,30 @@ class Motion:
 
 
 @dataclass(frozen=True)
-class Force:
-    """A kind of force that a model may lack, acting on ``body`` at ``joint`` along the leading coordinate.
+class Port:
+    """Where a force that a model lacks may act on it.
 
-    ``along``: the force over the motion, of order one; None for one that acts at the instants of ``event``
-    (see `Separation`), in proportion to the rate before. ``named``: by the dependence, the kind and dependence
-    under which the same force is reported. ``signed``: it has a direction and no strength.
+    ``coordinate``: what the force works along, from the observables of a run; positive to the right. ``jumps``: changes
+    of the states' rates (by name) by a unit impulse that resists the coordinate, from the coefficients of one wall.
+    """
+
+    name: str
+    coordinate: Callable[[Mapping[str, FloatArray]], FloatArray]
+    jumps: Callable[[Any], Mapping[str, float]]
+
+
+@dataclass(frozen=True)
+class Force:
+    """A kind of force that a model may lack, acting at a ``port``.
+
+    ``along``: the force over the motion of the port's coordinate, of order one; None for one that acts at the instants
+    of ``event`` (see `Separation`), in proportion to the rate before. ``named``: by the dependence, the kind and
+    dependence under which the same force is reported. ``signed``: it has a direction and no strength.
     """
 
     name: str
     meaning: str
-    body: int
-    joint: str
+    port: Port
     along: Callable[[Motion], FloatArray] | None
     event: str = ""
     named: Mapping[str, tuple[str, str]] = field(default_factory=dict)

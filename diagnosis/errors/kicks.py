@@ -8,29 +8,22 @@ change: its height is known too, so that a run can have its events as they were 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis.fit.along import Along
 from diagnosis.fit.prediction import Point, Predictor
-from diagnosis.fit.unknowns import instruments_of
-from grids.instruments.base import Surroundings
-from grids.instruments.staged import moved_in_stages, recorded_in_stages
-from grids.instruments.windowed import moved_in_windows, recorded_in_windows
 from models.base import FloatArray
-from models.kinematics import ground_along
-from models.observed import Observed
-from models.piecewise import Part, trajectories
-from models.shaking import Shaking
 
 CHANGE = 0.01
 FEWEST_LEFT = 3
 """Samples of a window that must follow an event."""
 PULSE = 0.01
 """m s-2, height of the pulses that are tried."""
+BEFORE = 2
+"""Samples from the last one before an event to its pulse."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +43,15 @@ class Kicks:
     height: FloatArray
     followed: NDArray[np.intp]
 
+    def losing(self, share: FloatArray, first: NDArray[np.int64]) -> FloatArray:
+        """Change (W, C, N) of the channels where every event takes a ``share`` (W, N) of the rate.
+
+        Each its value just before the event; ``first`` (W,): the windows' first samples of their recordings.
+        """
+        change = np.zeros(self.columns.shape[::3])
+        change[self.window, self.place] = -share[self.window, self.sample - first[self.window] - BEFORE]
+        return np.asarray(np.einsum("wcnk,wk->wcn", self.columns, change, optimize=True))
+
 
 def kicks(predictor: Predictor, point: Point) -> Kicks:
     """What the events of every window leave, about the motion at ``point``."""
@@ -63,63 +65,34 @@ def kicks(predictor: Predictor, point: Point) -> Kicks:
     sampled: list[NDArray[np.intp]] = []
     heights: list[FloatArray] = []
     samples = m.values.shape[2]
-    for r, recording in enumerate(m.recordings):
-        own = np.flatnonzero(m.recording_of == r)
-        if not own.size:
-            continue
-        sets = predictor.sets(instruments_of(point.values), recording)
-        parts = predictor.parts(point.values, recording)
-        ground = moved_in_stages(m.shakings[r], sets, moved_in_windows)
-        shaking = m.disturbed(ground, r)
-
-        def run(
-            windows: NDArray[np.intp],
-            after: NDArray[np.intp],
-            states: FloatArray,
-            shaking: Shaking = shaking,
-            samples: int = samples,
-            parts: Sequence[Part] = parts,
-        ) -> Mapping[str, FloatArray]:
-            initial = dict(zip(m.model.states, states.T, strict=True)) | {k: v[windows] for k, v in m.memory.items()}
-            first = m.first[windows] + after
-            instants = np.tile(np.array([part.first for part in parts[1:]], np.int64), (first.size, 1))
-            return trajectories(
-                m.model, [part.values for part in parts], instants, shaking, first=first, samples=samples,
-                initial=initial, options=predictor.options,
-            )  # fmt: skip
-
-        plain = run(own, np.zeros(own.size, np.int64), point.states[own])
+    along = Along(predictor, point)
+    for r, plain in along.plain.items():
+        own = along.windows(r)
         sign = np.sign(plain[declared.coordinate])
-        window, sample = np.nonzero(sign[:, 1:] * sign[:, :-1] < 0.0)
-        after = sample + 1
-        inside = after + FEWEST_LEFT < m.mask[own].any(axis=1).sum(axis=1)[window]
+        row, sample = np.nonzero(sign[:, 1:] * sign[:, :-1] < 0.0)
+        window, after = own[row], sample + 1
+        inside = after + FEWEST_LEFT < m.mask[window].any(axis=1).sum(axis=1)
         window, after = window[inside], after[inside]
         if not window.size:
             continue
-        states = np.stack([plain[name][window, after] for name in m.model.states], axis=1)
-        rate = m.model.states.index(declared.rate)
-        start = np.asarray(recording.time_step * m.first[own[window], None], np.float64)
-        around = Surroundings(recording.time_step, m.base[own[window]], m.reference_peak, start)
-        recorded = []
-        for share in (1.0 + CHANGE, 1.0 - CHANGE, 1.0):
-            changed = states.copy()
-            changed[:, rate] *= share
-            ran = run(own[window], after, changed)
-            spliced = Observed({c: partial(_spliced, plain, ran, c, window, after) for c in ran})
-            channels = m.sensed(spliced, ground.time_step, ground_along(ground, m.first[own[window]], samples))
-            found = recorded_in_stages(channels, sets, around, recorded_in_windows)
-            recorded.append(np.stack([found[c] for c in m.channels], axis=1))
-        slope = (recorded[0] - recorded[1]) / (2.0 * CHANGE)
-        straight = 0.5 * np.abs(recorded[0] + recorded[1] - 2.0 * recorded[2]) <= m.units[own[window], :, None]
-        bent = np.any(~straight & m.mask[own[window]], axis=1)
-        np.minimum.at(followed, own[window], np.where(bent.any(axis=1), bent.argmax(axis=1), samples))
-        columns += list(zip(own[window].tolist(), slope, strict=True))
-        at = m.first[own[window]] + after + 1
-        pulse = np.zeros(shaking.horizontal.size)
+        start = along.at(window, after)
+        shares = np.repeat([1.0 + CHANGE, 1.0 - CHANGE, 1.0], window.size)
+        every, since = np.tile(window, 3), np.tile(after, 3)
+        changed = {name: np.concatenate([x, x, x]) for name, x in start.items()}
+        changed[declared.rate] = changed[declared.rate] * shares
+        ran = along.run(r, m.first[every] + since, samples, changed)
+        more, less, same = along.recorded(every, since, ran).reshape(3, window.size, *m.values.shape[1:])
+        slope = (more - less) / (2.0 * CHANGE)
+        straight = 0.5 * np.abs(more + less - 2.0 * same) <= m.units[window, :, None]
+        bent = np.any(~straight & m.mask[window], axis=1)
+        np.minimum.at(followed, window, np.where(bent.any(axis=1), bent.argmax(axis=1), samples))
+        columns += list(zip(window.tolist(), slope, strict=True))
+        at = m.first[window] + after - 1 + BEFORE
+        pulse = np.zeros(m.shakings[r].horizontal.size)
         pulse[at] = PULSE
         pushed, free = (
-            run(own[window], after, states, one, FEWEST_LEFT)[declared.rate][:, FEWEST_LEFT - 1]
-            for one in (replace(shaking, horizontal=shaking.horizontal + pulse), shaking)
+            along.run(r, m.first[window] + after, FEWEST_LEFT, start, push)[declared.rate][:, FEWEST_LEFT - 1]
+            for push in (pulse, None)
         )
         sampled.append(at)
         heights.append(np.divide(PULSE * free, pushed - free, out=np.zeros(at.size), where=pushed != free))
@@ -135,13 +108,3 @@ def kicks(predictor: Predictor, point: Point) -> Kicks:
     return Kicks(
         found_all, window, place, np.concatenate([nowhere, *sampled]), np.concatenate([[], *heights]), followed
     )
-
-
-def _spliced(
-    plain: Mapping[str, FloatArray], ran: Mapping[str, FloatArray], name: str, window: NDArray[np.intp],
-    after: NDArray[np.intp],
-) -> FloatArray:  # fmt: skip
-    """Rows ``window`` of ``plain`` with those of ``ran`` (n, N) in their place from sample ``after`` (n,) on."""
-    before, later = plain[name][window], ran[name]
-    index = np.arange(before.shape[1])[None, :] - after[:, None]
-    return np.where(index >= 0, np.take_along_axis(later, np.maximum(index, 0), axis=1), before)

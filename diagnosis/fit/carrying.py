@@ -121,10 +121,17 @@ def carried(
             values, [begun[id(s.shaking)] for s in settings], ahead, wanted - begin,
             first=np.zeros(lanes, np.int64), initial=initial, options=options,
         )  # fmt: skip
+        if not ran:  # from here on none of the settings stands
+            break
         initial = {} if last else {name: x[:, -1] for name, x in ran.items()}
         for name, x in ran.items():
             found.setdefault(name, []).append(x[:, : inside.size])
-    return {name: np.concatenate(x, axis=1)[:, back] for name, x in found.items()}
+    return {name: _to_the_end(np.concatenate(x, axis=1), at.size)[:, back] for name, x in found.items()}
+
+
+def _to_the_end(states: FloatArray, marks: int) -> FloatArray:
+    """States (P, k, ...) at the first of the marks, nan at the others."""
+    return np.pad(states, [(0, 0), (0, marks - states.shape[1]), *[(0, 0)] * (states.ndim - 2)], constant_values=np.nan)
 
 
 def _motion(

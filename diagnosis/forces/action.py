@@ -20,17 +20,16 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis.fit.along import Along
 from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.unknowns import instruments_of, library
 from grids.instruments import INSTRUMENTS
 from grids.instruments.base import Surroundings
-from grids.instruments.staged import moved_in_stages, recorded_in_stages
-from grids.instruments.windowed import moved_in_windows, recorded_in_windows
+from grids.instruments.staged import recorded_in_stages
+from grids.instruments.windowed import recorded_in_windows
 from grids.stages import intervals
 from models.base import FloatArray
-from models.identification import Largest, Motion
-from models.kinematics import ground_along
-from models.piecewise import trajectories
+from models.identification import Motion
 
 Kind = Literal["force", "error"]
 
@@ -55,7 +54,8 @@ def action(predictor: Predictor, point: Point, effect: str) -> Action:
     """What ``effect``, one of those that act at ``point``, does along the motion there."""
     m = predictor.measured
     inside = np.asarray(m.mask.all(axis=1))
-    states = states_along(predictor, point)
+    along = Along(predictor, point)
+    states = along.states
     lead = states[m.identification.leads[0].channel]
     step = np.array([m.recordings[w.recording].time_step for w in m.windows])[:, None]
     rates = [s for s in m.identification.states if s.rate]
@@ -67,8 +67,7 @@ def action(predictor: Predictor, point: Point, effect: str) -> Action:
         return Action(effect, "error", _errors(predictor, point, effect, states), _events(predictor, motion), motion)
     amount = np.zeros(m.values.shape)
     # from the same states both: those that a model carries are not quite those of its run through the window
-    carried = _carried(predictor, point, states)
-    ahead, less = (_one_step(predictor, at, states, carried) for at in (point, _without(predictor, point, effect)))
+    ahead, less = (_one_step(at, along) for at in (point, _without(predictor, point, effect)))
     both = inside[:, :-1] & inside[:, 1:]
     for state in rates:
         lacking = np.where(both, ahead[state.name] - less[state.name], 0.0)
@@ -85,102 +84,21 @@ def _without(predictor: Predictor, point: Point, effect: str) -> Point:
     return Point(values, point.states)
 
 
-def states_along(predictor: Predictor, point: Point) -> dict[str, FloatArray]:
-    """The model's states and leading channels (W, N) along the windows, before any sensor of the responses."""
-    m = predictor.measured
-    leads = [lead.channel for lead in m.identification.leads]
-    names = dict.fromkeys([*m.free, *leads, *m.channels])
-    found = {name: np.zeros((len(m.windows), m.values.shape[2])) for name in names}
-    carried = predictor.carried(point)
-    for r in range(len(m.recordings)):
-        own = np.flatnonzero(m.recording_of == r)
-        if own.size:
-            initial = {name: point.states[own, k] for k, name in enumerate(m.free)}
-            initial |= {name: before[own] for name, before in (m.memory | carried).items()}
-            ran = _run(predictor, point.values, r, m.first[own], m.values.shape[2], initial)
-            step, samples = m.recordings[r].time_step, m.values.shape[2]
-            sensed = m.sensed(ran, step, ground_along(m.shakings[r], m.first[own], samples))
-            for name in names:
-                found[name][own] = sensed[name] if name in sensed else ran[name]
-    return found
-
-
-def _one_step(
-    predictor: Predictor, point: Point, states: Mapping[str, FloatArray], carried: dict[str, FloatArray]
-) -> dict[str, FloatArray]:
-    """The states (W, N - 1) one sample after each sample of the motion ``states``, by the model at ``point``.
-
-    ``carried`` (W, N, ...): what else the motion has at each sample.
-    """
-    m = predictor.measured
+def _one_step(point: Point, along: Along) -> dict[str, FloatArray]:
+    """The states (W, N - 1) one sample after each sample of a motion, by the model at ``point``."""
+    ran_from = Along(along.predictor, point)
+    m = along.predictor.measured
     count = m.values.shape[2] - 1
     found = {name: np.zeros((len(m.windows), count)) for name in m.free}
-    memory = _memories(predictor, states) | carried
     for r, recording in enumerate(m.recordings):
-        own = np.flatnonzero(m.recording_of == r)
+        own = along.windows(r)
         if not own.size:
             continue
-        first = m.first[own][:, None] + np.arange(count)
-        first = np.minimum(first, recording.time.size - 2)
-        initial = {name: states[name][own, :-1].ravel() for name in m.free}
-        initial |= {name: x[own, :-1].reshape(own.size * count, *x.shape[2:]) for name, x in memory.items()}
-        ran = _run(predictor, point.values, r, first.ravel(), 2, initial)
+        window, sample = (x.ravel() for x in np.meshgrid(own, np.arange(count), indexing="ij"))
+        first = np.minimum(m.first[window] + sample, recording.time.size - 2)
+        ran = ran_from.run(r, first, 2, along.at(window, sample))
         for name in found:
             found[name][own] = ran[name][:, 1].reshape(own.size, count)
-    return found
-
-
-def _run(
-    predictor: Predictor, values: Mapping[str, float], r: int, first: NDArray[np.int64], samples: int,
-    initial: Mapping[str, FloatArray],
-) -> Mapping[str, FloatArray]:  # fmt: skip
-    """Observables (n, samples) of recording ``r`` from each of the samples ``first`` (n,) on."""
-    m = predictor.measured
-    recording = m.recordings[r]
-    shaking = moved_in_stages(m.shakings[r], predictor.sets(instruments_of(values), recording), moved_in_windows)
-    parts = predictor.parts(values, recording)
-    instants = np.tile(np.array([part.first for part in parts[1:]], np.int64), (first.size, 1))
-    ran = trajectories(
-        m.model, [part.values for part in parts], instants, shaking, first=first, samples=samples, initial=initial,
-        options=predictor.options,
-    )  # fmt: skip
-    return m.identification.seen(ran)
-
-
-def _carried(predictor: Predictor, point: Point, states: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
-    """What the model carries (W, N, ...) at every sample of the motion ``states``; by what acts at a window's start."""
-    m = predictor.measured
-    found: dict[str, FloatArray] = {}
-    starts = predictor.carried(point)
-    for r, recording in enumerate(m.recordings):
-        sets = predictor.sets(instruments_of(point.values), recording)
-        shaking = moved_in_stages(m.shakings[r], sets, moved_in_windows)
-        parts = predictor.parts(point.values, recording)
-        begun = np.searchsorted([part.first for part in parts], m.first, side="right") - 1
-        for k, part in enumerate(parts):
-            own = np.flatnonzero((m.recording_of == r) & (begun == k))
-            if not own.size:
-                continue
-            ran = m.model.carry(
-                part.values, shaking, {name: states[name][own] for name in m.free}, np.arange(m.values.shape[2]),
-                first=m.first[own], initial={name: x[own] for name, x in starts.items()}, options=predictor.options,
-            )  # fmt: skip
-            for name, x in ran.items():
-                found.setdefault(name, np.zeros((len(m.windows), *x.shape[1:])))[own] = x
-    return found
-
-
-def _memories(predictor: Predictor, states: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
-    """The declared memories (W, N) at every sample: that of the window's start, and what came since."""
-    m = predictor.measured
-    found = {}
-    for one in m.identification.memories:
-        before, signal = m.memory[one.name][:, None], states[one.channel]
-        if isinstance(one, Largest):
-            found[one.name] = np.maximum(before, np.maximum.accumulate(np.abs(signal), axis=1))
-        else:
-            changes = signal[:, 1:] * signal[:, :-1] < 0.0
-            found[one.name] = before + np.pad(np.cumsum(changes, axis=1), ((0, 0), (1, 0)))
     return found
 
 

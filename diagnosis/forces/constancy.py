@@ -18,7 +18,7 @@ from diagnosis.errors.evidence import Without
 from diagnosis.errors.model import Errors
 from diagnosis.forces.columns import Forces
 from models.base import FloatArray
-from models.identification import Force, Identification
+from models.identification import Force, Identification, Port
 
 FLAG = 15.0
 SCAN_FLAG = 25.0
@@ -61,14 +61,14 @@ class Tested:
     extra: float = 0.0
 
 
-def modulations(forces: Forces) -> Iterator[tuple[str, FloatArray]]:
-    """What a force may depend on, as factors (W, N) about zero."""
+def modulations(forces: Forces, port: Port) -> Iterator[tuple[str, FloatArray]]:
+    """What a force at a port may depend on, as factors (W, N) about zero."""
     m = forces.fitted.measured
     for dependence in m.identification.dependences:
-        factor = dependence.factor(forces.motion)
+        factor = dependence.factor(forces.motions[port.name])
         yield dependence.name, _centred(factor) if dependence.about_mean else factor
     shape = forces.time.shape
-    yield AMPLITUDE, np.broadcast_to(_centred(forces.peak), shape)
+    yield AMPLITUDE, np.broadcast_to(_centred(forces.peak(port)), shape)
     yield TIME, _centred(forces.time / max(r.time[-1] for r in m.recordings))
     record = m.recording_of[:, None]
     for r, recording in enumerate(m.recordings[1:], start=1):
@@ -93,7 +93,7 @@ def tests(forces: Forces, errors: Errors) -> list[Tested]:
 def _with_own_errors(forces: Forces, errors: Errors, kind: Force, tested: list[Tested]) -> list[Tested]:
     """Tests of a kind with the variances estimated beside each column, where that shows more."""
     without = Without.estimated(errors, forces.fitted.measured, forces.predicted(kind)[..., None])
-    factors = dict(modulations(forces))
+    factors = dict(modulations(forces, kind.port))
     found = []
     for test in tested:
         shown = without.evidence(forces.predicted(kind, factors[test.depends_on]))
@@ -113,7 +113,7 @@ def _scores(forces: Forces) -> list[Tested]:
             continue
         along = screen.scores_with_residual(plain)
         found.append(Tested(kind.name, "", along**2 / norm))
-        for depends_on, factor in modulations(forces):
+        for depends_on, factor in modulations(forces, kind.port):
             column = forces.column(kind, factor)
             cross = screen.product(column, plain) / norm
             information = screen.product(column, column) - cross**2 * norm

@@ -19,6 +19,7 @@ import numpy as np
 from diagnosis.forces.columns import Forces
 from diagnosis.forces.constancy import FLAG, SHORTEST_INTERVAL
 from models.base import FloatArray
+from models.identification import Motion
 
 DRAWS = 200
 LEVEL = 0.05
@@ -79,22 +80,28 @@ def missing(forces: Forces, seed: int = 0) -> Missing | None:
 def _columns(forces: Forces) -> Iterator[tuple[str, str, FloatArray]]:
     """Kind, phase word and whitened column (W, M) of everything that is tried."""
     m = forces.fitted.measured
-    factors = [("", np.ones_like(forces.time))]
-    for dependence in m.identification.dependences:
-        factor = np.broadcast_to(dependence.factor(forces.motion), forces.time.shape)
-        half = factor - 0.5 * float(np.max(factor)) if dependence.about_mean else factor
-        ends = ((half < 0.0).astype(float), (half > 0.0).astype(float))
-        factors += [(word, end) for word, end in zip(dependence.phases, ends, strict=True) if word]
-    fast = np.abs(forces.motion.rate) / max(float(np.max(np.abs(forces.motion.rate))), 1e-12)
-    for word, factor in factors:
-        for kind in forces.kinds:
-            yield kind.name, word, forces.column(kind, factor)
-            if kind.along is None:  # jumps that grow with the rate, and in the course of a recording
-                yield kind.name, word, forces.column(kind, factor * fast)
-                yield kind.name, word, forces.column(kind, factor * forces.time)
+    for name, motion in forces.motions.items():
+        fast = np.abs(motion.rate) / max(float(np.max(np.abs(motion.rate))), 1e-12)
+        for word, factor in _phases(forces, motion):
+            for kind in (one for one in forces.kinds if one.port.name == name):
+                yield kind.name, word, forces.column(kind, factor)
+                if kind.along is None:  # jumps that grow with the rate, and in the course of a recording
+                    yield kind.name, word, forces.column(kind, factor * fast)
+                    yield kind.name, word, forces.column(kind, factor * forces.time)
+    for word, factor in _phases(forces, forces.motion):
         for error in _errors(forces):
             column = np.where(m.mask, error * factor[:, None, :], 0.0)
             yield "", word, forces.screen.reduced(forces.fitted.misfit.whitening(column))[0]
+
+
+def _phases(forces: Forces, motion: Motion) -> Iterator[tuple[str, FloatArray]]:
+    """Everywhere (""), then the halves of what a force may depend on, by their words."""
+    yield "", np.ones_like(forces.time)
+    for dependence in forces.fitted.measured.identification.dependences:
+        factor = np.broadcast_to(dependence.factor(motion), forces.time.shape)
+        half = factor - 0.5 * float(np.max(factor)) if dependence.about_mean else factor
+        ends = ((half < 0.0).astype(float), (half > 0.0).astype(float))
+        yield from ((word, end) for word, end in zip(dependence.phases, ends, strict=True) if word)
 
 
 def _errors(forces: Forces) -> Iterator[FloatArray]:

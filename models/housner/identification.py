@@ -2,49 +2,48 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-from models.base import FloatArray
 from models.housner.ladder import LADDER
 from models.identification import (
     Count,
-    Dependence,
     Force,
     Identification,
     Largest,
     Lead,
-    Motion,
+    Port,
     Scatter,
     Separation,
     State,
     WindowLengths,
 )
+from models.unknown_forces import (
+    DEPENDENCES,
+    PHASES,
+    against,
+    constant,
+    over_largest_base,
+    over_largest_rate,
+    over_reach,
+    side,
+)
 
-
-def _over_largest(values: FloatArray) -> FloatArray:
-    return np.asarray(values / max(float(np.max(np.abs(values))), 1e-12))
-
-
-def _side(motion: Motion) -> FloatArray:
-    return np.sign(motion.coordinate)
-
-
+BASE = Port("base", lambda seen: seen["rotation_1"], lambda block: {"rotation_rate_1": -1.0})
+"""A couple between block and base, over the moment of inertia about the corner."""
 FORCES = (
-    Force("restitution", "loss of velocity at impacts", 1, "base", None, event="impact"),
-    Force("viscous_damping", "couple with the angular velocity", 1, "base", lambda m: _over_largest(m.rate)),
-    Force("coulomb_damping", "couple against the motion", 1, "base", lambda m: np.sign(m.rate)),
-    Force("contact", "constant couple on either side", 1, "base", _side),
+    Force("restitution", "loss of velocity at impacts", BASE, None, event="impact"),
+    Force("viscous_damping", "couple with the angular velocity", BASE, over_largest_rate),
+    Force("coulomb_damping", "couple against the motion", BASE, against),
+    Force("contact", "constant couple on either side", BASE, side),
     Force(
-        "stiffness", "couple with the rotation", 1, "base", lambda m: m.coordinate / m.reach,
+        "stiffness", "couple with the rotation", BASE, over_reach,
         # |theta| sign(theta') = theta sign(theta theta')
         named={"direction of motion": ("coulomb_damping", "size of the rotation")},
     ),
     Force(
-        "lean", "constant couple in one direction", 1, "base", lambda m: np.ones_like(m.coordinate), signed=True,
+        "lean", "constant couple in one direction", BASE, constant, signed=True,
         # sign(theta theta') = sign(theta') sign(theta)
         named={"direction of motion": ("coulomb_damping", "side")},
     ),
-    Force("base_motion", "couple with the base acceleration", 1, "base", lambda m: _over_largest(m.base)),
+    Force("base_motion", "couple with the base acceleration", BASE, over_largest_base),
 )  # fmt: skip
 
 IDENTIFICATION = Identification(
@@ -55,26 +54,10 @@ IDENTIFICATION = Identification(
     chaotic=True,
     memories=(Largest("peak_rotation_1", "rotation_1"), Count("impacts", "impact", "rotation_1")),
     forces=FORCES,
-    dependences=(
-        Dependence("side", _side, ("for theta < 0, to the left", "for theta > 0, to the right"), ("left", "right")),
-        Dependence(
-            "size of the rotation", lambda m: np.abs(m.coordinate) / m.reach,
-            ("at small rotation", "at large rotation"), ("small_rotation", "large_rotation"), about_mean=True,
-        ),
-        Dependence(
-            "direction of motion", lambda m: np.sign(m.coordinate * m.rate), ("on the way back", "on the way out")
-        ),
-    ),
+    dependences=DEPENDENCES,
     separation=Separation("impact", lambda m: m.coordinate, "between_impacts"),
     scatter=Scatter("impacts", "rotation_1", "rotation_rate_1"),
-    phases={
-        "impact": "at impacts",
-        "between_impacts": "between impacts",
-        "large_rotation": "at large rotations",
-        "small_rotation": "at small rotations",
-        "left": "while rocking to the left",
-        "right": "while rocking to the right",
-    },
+    phases={"impact": "at impacts", "between_impacts": "between impacts", **PHASES},
     same={"rotation_2": "rotation_1"},
     ladder=LADDER,
 )  # fmt: skip

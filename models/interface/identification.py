@@ -2,7 +2,20 @@
 
 from __future__ import annotations
 
-from models.identification import Exposure, Identification, Lead, State, WindowLengths
+import numpy as np
+
+from models.identification import Exposure, Force, Identification, Lead, Port, State, WindowLengths
+from models.interface.layered import LayeredWall
+from models.unknown_forces import (
+    DEPENDENCES,
+    PHASES,
+    against,
+    constant,
+    over_largest_base,
+    over_largest_rate,
+    over_reach,
+    side,
+)
 
 PROPERTIES = ("stiffness", "layer_modulus", "damping", "damping_ratio")
 
@@ -17,6 +30,52 @@ def _of_layer(joint: str) -> tuple[Exposure, Exposure]:
         Exposure("cycles", f"closings of {which} so far", f"impacts{after}", of, summed=True),
     )
 
+
+def _jumps(wall: LayeredWall, couple_1: float, couple_2: float) -> dict[str, float]:
+    """Jumps of both angular velocities by an impulse that resists, of the generalised forces given, upright."""
+    height = float((wall.height_1 + wall.top_thickness_in_height).item())
+    m2, h2 = float(wall.mass_2.item()), float(wall.centre_2.item())
+    lower = float((wall.inertia_1 + wall.mass_1 * wall.centre_1**2).item()) + m2 * height**2
+    mass = np.array([[lower, m2 * height * h2], [m2 * height * h2, float(wall.inertia_2.item()) + m2 * h2**2]])
+    jumps = -np.linalg.solve(mass, [couple_1, couple_2])
+    return {"rotation_rate_1": float(jumps[0]), "rotation_rate_2": float(jumps[1])}
+
+
+def _on_the_block(wall: LayeredWall) -> dict[str, float]:
+    height = float((wall.height_1 + wall.top_thickness_in_height).item())
+    return _jumps(wall, height, float(wall.centre_2.item()))
+
+
+BASE = Port("base", lambda seen: seen["rotation_1"], lambda wall: _jumps(wall, 1.0, 0.0))
+TOP = Port("top", lambda seen: seen["rotation_2"] - seen["rotation_1"], lambda wall: _jumps(wall, -1.0, 1.0))
+BLOCK = Port("block", lambda seen: seen["displacement_2_x"], _on_the_block)
+"""A couple in either joint (N m s), a horizontal force on the upper block (N s)."""
+
+
+def _of_joint(port: Port, end: str, joint: str) -> tuple[Force, ...]:
+    """Kinds of couples in a joint."""
+    return (
+        Force(f"viscous_damping{end}", f"couple in {joint} with its angular velocity", port, over_largest_rate),
+        Force(f"coulomb_damping{end}", f"couple in {joint} against its motion", port, against),
+        Force(f"contact{end}", f"constant couple in {joint} on either side", port, side),
+        Force(
+            f"stiffness{end}", f"couple in {joint} with its rotation", port, over_reach,
+            named={"direction of motion": (f"coulomb_damping{end}", "size of the rotation")},
+        ),
+        Force(
+            f"lean{end}", f"constant couple in {joint} in one direction", port, constant, signed=True,
+            named={"direction of motion": (f"coulomb_damping{end}", "side")},
+        ),
+    )  # fmt: skip
+
+
+FORCES = (
+    *_of_joint(BASE, "", "the base"),
+    *_of_joint(TOP, "_top", "the top joint"),
+    Force("viscous_damping_block", "force on the upper block with its velocity", BLOCK, over_largest_rate),
+    Force("stiffness_block", "force on the upper block with its displacement", BLOCK, over_reach),
+    Force("base_motion", "force on the upper block with the base acceleration", BLOCK, over_largest_base),
+)
 
 IDENTIFICATION = Identification(
     leads=(Lead("rotation_1", 1, "base"), Lead("rotation_2", 2, "top")),
@@ -43,5 +102,8 @@ IDENTIFICATION = Identification(
     coordinates=("base_stiffness", "top_stiffness", "layer_modulus", "base_layer_modulus", "top_layer_modulus"),
     whole={"bouc_wen.exponent": (1.0, 2.0)},
     carrying=True,
+    forces=FORCES,
+    dependences=DEPENDENCES,
+    phases=PHASES,
     exposures=(*_of_layer("base"), *_of_layer("top"), *_of_layer("")),
 )

@@ -40,12 +40,13 @@ def test_what_is_read_is_a_standard_channel_that_the_model_predicts(name: str) -
 @pytest.mark.parametrize("name", models.MODELS)
 def test_names_of_forces_phases_and_events_fit_together(name: str) -> None:
     found = declared(name)
+    ports = {kind.port.name: kind.port for kind in found.forces}
+    assert all(kind.port is ports[kind.port.name] for kind in found.forces)
     kinds, dependences = {kind.name for kind in found.forces}, {one.name for one in found.dependences}
     assert len(kinds) == len(found.forces) and len(dependences) == len(found.dependences)
     for kind in found.forces:
         assert kind.along is not None or (found.separation and kind.event == found.separation.event)
         assert all(on in dependences and same in kinds and to in dependences for on, (same, to) in kind.named.items())
-        assert (kind.body, kind.joint) in {(lead.body, lead.joint) for lead in found.leads}
     words = {word for one in found.dependences for word in one.phases if word}
     words |= {found.separation.event, found.separation.between} if found.separation else set()
     assert words == found.phases.keys()

@@ -15,7 +15,7 @@ from grids.instruments import recorded as instrumented
 from grids.instruments.base import Surroundings, Switched
 from grids.recordings.base import Recording
 from grids.specimen import Specimen
-from grids.stages import Stage
+from grids.stages import Stage, first_sample
 from models.piecewise import Part, simulate
 from tests.diagnosis.made import TIME_STEP, motion
 
@@ -114,3 +114,15 @@ def test_a_law_that_begins_is_carried_as_it_acts() -> None:
     staged, always = (Predictor(measured, stages=s).predict([point])[0] for s in (stages, {}))
     assert misses(staged, true, measured) < 2e-3
     assert misses(always, true, measured) > 2e-2
+
+
+def test_a_wall_that_falls_from_an_instant_on_carries_nothing_from_there_on() -> None:
+    """Marks before it keep what was carried there, however many follow."""
+    measured = measured_of(made(()))
+    stages = {"tilt": (Stage("shake_1", 0.5 * float(BASE.time[-1])),)}
+    predictor = Predictor(measured, stages=stages)
+    point = Point({**TRUE, "tilt.tilt": 0.6}, true_states(made(()), measured))
+    compressed = predictor.carried(point)["displacement_z_1"]
+    before = measured.first < first_sample(0.5 * float(BASE.time[-1]), TIME_STEP)
+    assert before.any() and not before.all()
+    assert np.all(np.isfinite(compressed[before])) and np.all(np.isnan(compressed[~before]))

@@ -11,6 +11,7 @@ import models
 from diagnosis import calibrate
 from diagnosis.answer.experiment import unrecorded
 from diagnosis.data.measured import Measured
+from diagnosis.fit.along import Along
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.prediction import Predictor
@@ -19,7 +20,7 @@ from diagnosis.fit.solver import fit
 from diagnosis.fit.starts import start_of
 from diagnosis.fit.unknowns import fixed_values, of_specimen
 from diagnosis.fit.whitening import sensor_noise_only
-from diagnosis.forces.action import _carried, _one_step, action, states_along
+from diagnosis.forces.action import _one_step, action
 from diagnosis.search.candidates import candidates
 from diagnosis.search.refit import Explanation, extend
 from diagnosis.search.screen import score
@@ -127,8 +128,8 @@ def test_what_a_law_does_along_the_motion_starts_from_what_the_layers_remember_t
     assert acting.kind == "force" and np.max(np.abs(acting.amount)) > 0.0
     assert np.all(nothing.amount == 0.0)  # what is not there does nothing
     # the run to the next sample is that of the motion itself: nothing was lost on the way
-    states = states_along(one.predictor, point)
-    ahead = _one_step(one.predictor, point, states, _carried(one.predictor, point, states))
+    along = Along(one.predictor, point)
+    states, ahead = along.states, _one_step(point, along)
     for rate in ("rotation_rate_1", "rotation_rate_2"):
         lost = np.where(measured.mask[:, 0, 1:], ahead[rate] - states[rate][:, 1:], 0.0)
         assert np.max(np.abs(lost)) < 0.02 * np.max(np.abs(acting.amount))

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from diagnosis.errors.evidence import Without
+from diagnosis.errors.kicks import BEFORE
 from diagnosis.errors.likelihood import climbed, maximise
 from diagnosis.errors.model import Errors, calibrated
 from diagnosis.fit.setup import measure
@@ -94,11 +95,9 @@ def test_a_scatter_with_a_pattern_is_a_law(errors: tuple[Forces, Errors]) -> Non
     m, kind = about.fitted.measured, KINDS["restitution"]
     shape = errors[1].kicks.columns.shape[::3]
     side = np.zeros(shape)
-    count = np.zeros(shape[0], int)
-    for w, sample, _ in about.jumps:
-        if count[w] < shape[1]:
-            side[w, count[w]] = np.sign(about.motion.coordinate[w, int(sample)])
-            count[w] += 1
+    events = about.events
+    before = events.sample - m.first[events.window] - BEFORE
+    side[events.window, events.place] = np.sign(about.motion.coordinate[events.window, before])
     column, plain = about.predicted(kind, np.sign(about.motion.coordinate)), about.predicted(kind)[..., None]
     patterned = with_impacts(errors, 0.03 * side)
     assert scatter_of(patterned) > 0.015

@@ -1,0 +1,69 @@
+"""What a short impulse at a port of the model leaves in the rest of its window.
+
+From samples of every window the model starts again in the state of the fitted motion, its rates changed as a unit of
+impulse changes them, up and down: half the difference over the size of the change.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnosis.fit.along import Along
+from diagnosis.fit.unknowns import without_instruments
+from diagnosis.fit.whitening import HALF_WIDTH
+from models.base import FloatArray
+from models.identification import Port
+
+CHANGE = 0.01
+"""Of the largest rate, by which the rates are changed."""
+FEWEST_LEFT = 3
+"""Samples of a window that must follow an impulse."""
+
+
+@dataclass(frozen=True)
+class Impulses:
+    """Changes (W, C, N, K) of the channels by a unit impulse at a port, `HALF_WIDTH` s after one another.
+
+    ``offset`` (K,): s from the start of the window; ``values``: by port.
+    """
+
+    offset: FloatArray
+    values: Mapping[str, FloatArray]
+
+
+def impulses(along: Along, ports: Sequence[Port]) -> Impulses:
+    """Of every window, about a motion."""
+    m = along.predictor.measured
+    duration = max(w.samples * m.recordings[w.recording].time_step for w in m.windows)
+    offset = np.arange(0.0, duration, HALF_WIDTH)
+    found = {port.name: np.zeros((*m.values.shape, offset.size)) for port in ports}
+    wall = m.model.build(without_instruments(along.point.values), along.predictor.options)
+    jumps = {port.name: port.jumps(wall) for port in ports}
+    size = {name: CHANGE * _largest(along, rates) for name, rates in jumps.items()}
+    length = np.array([window.samples for window in m.windows])
+    for r in along.plain:
+        own, step = along.windows(r), m.recordings[r].time_step
+        window, knot = (x.ravel() for x in np.meshgrid(own, np.arange(offset.size), indexing="ij"))
+        sample = np.round(offset[knot] / step).astype(np.intp)
+        inside = sample + FEWEST_LEFT < length[window]
+        window, knot, sample = window[inside], knot[inside], sample[inside]
+        start = along.at(window, sample)
+        for name, rates in jumps.items():
+            changed = {key: np.concatenate([x, x]) for key, x in start.items()}
+            for rate, jump in rates.items():
+                step_of = size[name] * jump * np.ones(window.size)
+                changed[rate] = changed[rate] + np.concatenate([step_of, -step_of])
+            every, since = np.tile(window, 2), np.tile(sample, 2)
+            ran = along.run(r, m.first[every] + since, m.values.shape[2], changed)
+            up, down = along.recorded(every, since, ran).reshape(2, window.size, *m.values.shape[1:])
+            found[name][window, :, :, knot] = np.nan_to_num((up - down) / (2.0 * size[name]))
+    return Impulses(offset, found)
+
+
+def _largest(along: Along, rates: Mapping[str, float]) -> float:
+    """The impulse that changes a rate by its largest value along the motion."""
+    each = [np.max(np.abs(along.states[name])) / abs(jump) for name, jump in rates.items() if jump]
+    return float(max(min(each), 1e-9))
