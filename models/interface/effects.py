@@ -96,8 +96,12 @@ class Effects:
 
     def map(self, function: Callable[[FloatArray], Any]) -> Effects:
         """With ``function`` of every field."""
-        chosen: dict[str, Any] = {f.name: function(getattr(self, f.name)) for f in fields(self) if f.name != "parts"}
-        return replace(self, **chosen)
+        return replace(self, **{name: function(values) for name, values in self.arrays.items()})
+
+    @property
+    def arrays(self) -> dict[str, Any]:
+        """The fields with an array (n,), by name."""
+        return {f.name: getattr(self, f.name) for f in fields(self) if f.name != "parts"}
 
     @property
     def coordinates(self) -> int:

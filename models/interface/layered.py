@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import Any, TypeVar, cast
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.base import FloatArray, Values
 from models.interface.effects import Effects
@@ -16,6 +17,9 @@ from models.rubber.base import Numbers, RubberLaw
 from models.rubber.layer import Layer
 
 T = TypeVar("T")
+MOST_KEPT, LAST = 256, 16
+"""Of so many different walls at most, those of the last calls are kept with what was found for them."""
+_LAST: dict[Any, LayeredWall] = {}
 FREE = {
     "both": np.eye(4),
     "base": np.array([[1.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.0, 0.0]]),
@@ -101,10 +105,40 @@ class LayeredWall:
         return self._map(lambda values: float(values[lane]))
 
     def once(self, make: Callable[[LayeredWall], T]) -> T:
-        """What ``make`` finds for the wall, found once: it never changes."""
+        """What ``make`` finds, arrays (n, ...), lane by lane: found once for lanes that follow one another alike."""
         if make not in self._kept:
-            self._kept[make] = make(self)
+            one, lanes = self.distinct
+            self._kept[make] = make(self) if one is self else _of_lanes(one.once(make), lanes)
         return cast(T, self._kept[make])
+
+    @cached_property
+    def distinct(self) -> tuple[LayeredWall, NDArray[np.intp]]:
+        """The walls without those that are as the one before, and where each of the n lies among them (n,).
+
+        The same as in an earlier call where they are equal: what was found for them is known.
+        """
+        new = np.ones(self.size, bool)
+        new[1:] = False
+        for values in self._arrays:
+            new[1:] |= values[1:] != values[:-1]
+        one = self if new.all() else self.take(np.flatnonzero(new))
+        return (one if one.size > MOST_KEPT else one._known()), np.cumsum(new) - 1
+
+    @property
+    def _arrays(self) -> list[FloatArray]:
+        own = [x for x in (getattr(self, f.name) for f in fields(self)) if isinstance(x, np.ndarray)]
+        return [*own, *self.laws.values(), *(() if self.effects is None else self.effects.arrays.values())]
+
+    def _known(self) -> LayeredWall:
+        """The wall of the last ones that is equal to this one, if any is."""
+        parts = () if self.effects is None else tuple(sorted(self.effects.parts))
+        words = (self.joints, self.toe_held, self.clip, tuple(self.laws), self.effects is None, parts)
+        key = words, b"".join(x.tobytes() for x in self._arrays)
+        found = _LAST.pop(key, self)
+        _LAST[key] = found
+        while len(_LAST) > LAST:
+            _LAST.pop(next(iter(_LAST)), None)
+        return found
 
     @cached_property
     def _kept(self) -> dict[Callable[[LayeredWall], Any], Any]:
@@ -170,3 +204,10 @@ class LayeredWall:
     def slenderness_2(self) -> FloatArray:
         """alpha in rad of the upper body on the top joint's ends."""
         return np.arctan2(self.top_half_width, self.centre_2)
+
+
+def _of_lanes(found: Any, lanes: NDArray[np.intp]) -> Any:
+    """An array (k, ...), or a dataclass of them, for every lane."""
+    if isinstance(found, np.ndarray):
+        return found[lanes]
+    return replace(found, **{f.name: getattr(found, f.name)[lanes] for f in fields(found)})

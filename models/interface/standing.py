@@ -14,6 +14,11 @@ Unable = tuple[NDArray[np.bool_], str]
 
 def cannot_stand(wall: LayeredWall) -> list[Unable]:
     """The walls that a layer cannot carry, that creep without end, that tip over, or that crush a layer at rest."""
+    one, lanes = wall.distinct
+    return [(unable[lanes], said) for unable, said in _cannot_stand(one)]
+
+
+def _cannot_stand(wall: LayeredWall) -> list[Unable]:
     straight, rest = resting.upright(wall), modes.static_state(wall)
     over = np.any(np.isnan(rest), axis=1) & ~np.any(np.isnan(straight), axis=1)
     leaning = over & modes.stable(wall, straight)

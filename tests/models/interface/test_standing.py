@@ -5,9 +5,11 @@ import pytest
 
 from models.base import STATUS
 from models.errors import InputError
+from models.interface import resting
 from models.interface.lanes import rows as r
 from models.interface.lanes import run as lanes
 from models.interface.lanes.sense import diverged
+from models.interface.layered import LayeredWall
 from models.lanes.sense import impulse
 from models.shaking import Shaking
 from tests.models.interface.walls import MODEL, SHORT, wall
@@ -81,3 +83,21 @@ def test_what_diverges_has_no_answer() -> None:
     assert STATUS[int(lanes.outputs(many, np.where(np.arange(r.N_RESULT) == r.R_FAILED, 1.0, table))["status"][0])] == (
         "not_converged"
     )
+
+
+def test_where_equal_walls_stand_is_found_once() -> None:
+    """Of lanes that follow one another alike, and of a later call with the same walls; for each what it is alone."""
+    slopes = [0.001, 0.002, 0.004]
+    many = {**SHORT, "tilt.tilt": np.repeat(slopes, 5)}
+    found: list[int] = []
+
+    def counted(one: LayeredWall) -> np.ndarray:
+        found.append(one.size)
+        return resting.at_rest(one)
+
+    first, again = MODEL.build(many), MODEL.build(many)
+    np.testing.assert_array_equal(first.once(counted), again.once(counted))
+    assert found == [3]
+    alone = [resting.at_rest(MODEL.build({**SHORT, "tilt.tilt": slope}))[0] for slope in slopes]
+    np.testing.assert_array_equal(first.once(counted), np.repeat(alone, 5, axis=0))
+    assert MODEL.build({**SHORT, "tilt.tilt": np.array([0.001, 0.002, 0.001])}).distinct[0].size == 3
