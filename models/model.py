@@ -17,7 +17,7 @@ from models.identification import Identification
 from models.mechanisms import acting_on, applied
 from models.peaks import peaks
 from models.placing import Placing
-from models.runs import DONE, Request, Run
+from models.runs import DONE, Prescribed, Request, Run
 from models.shaking import Shaking
 
 MOST_LOGGED = 50_000
@@ -261,30 +261,27 @@ class Model(Placing, ABC, Generic[C]):
         self,
         values: Values,
         shaking: Shaking | Sequence[Shaking],
-        motion: Mapping[str, FloatArray],
-        marks: NDArray[np.int64],
+        along: Prescribed,
         *,
-        first: NDArray[np.int64],
         initial: Mapping[str, FloatArray] | None = None,
         options: Mapping[str, str] | None = None,
     ) -> dict[str, FloatArray]:
-        """What ``initial`` of `trajectories` needs beside ``motion``, arrays ``(n, k, ...)`` at samples ``marks`` (k,).
+        """What ``initial`` of `trajectories` needs beside the motion ``along``, arrays ``(n, k, ...)`` at its marks.
 
-        Lane k runs along ``motion``, states ``(1 or n, samples)`` by name, from sample ``first[k]`` of its own
-        shaking or that of all, at rest or from ``initial``; ``marks`` count from there, in order. nan: cannot stand.
+        Each lane runs from its sample of its own shaking, or of that of all, at rest or from ``initial``; nan of walls
+        that cannot stand.
         """
-        n = first.size
+        n = along.first.size
         shakings = [shaking] * n if isinstance(shaking, Shaking) else shaking
         coefficients = self._shaken(values, options, shakings[0], n, "lanes")
         given = {name: by_lane(v, n) for name, v in (initial or {}).items()}
         unable = _any_of(self.cannot_stand(coefficients))
         if not np.any(unable):
-            return self.carry_lanes(coefficients, shakings, motion, marks, first, given)
+            return self.carry_lanes(coefficients, shakings, along, given)
         if not (able := np.flatnonzero(~unable)).size:
             return {}
-        motion = {name: x if len(x) == 1 else x[able] for name, x in motion.items()}
         given, own = {name: x[able] for name, x in given.items()}, [shakings[k] for k in able.tolist()]
-        found = self.carry_lanes(coefficients.take(able), own, motion, marks, first[able], given)
+        found = self.carry_lanes(coefficients.take(able), own, along.take(able), given)
         whole = {name: np.full((n, *x.shape[1:]), np.nan) for name, x in found.items()}
         for name, x in found.items():
             whole[name][able] = x
@@ -304,9 +301,8 @@ class Model(Placing, ABC, Generic[C]):
         return {}
 
     def carry_lanes(
-        self, coefficients: C, shakings: Sequence[Shaking], motion: Mapping[str, FloatArray],
-        marks: NDArray[np.int64], first: NDArray[np.int64], initial: Mapping[str, FloatArray],
-    ) -> dict[str, FloatArray]:  # fmt: skip
+        self, coefficients: C, shakings: Sequence[Shaking], along: Prescribed, initial: Mapping[str, FloatArray]
+    ) -> dict[str, FloatArray]:
         """`carry` of walls that all stand, each under its own shaking; default: nothing has to be carried."""
         return {}
 

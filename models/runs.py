@@ -98,6 +98,38 @@ DONE = Work()
 
 
 @dataclass(frozen=True)
+class Prescribed:
+    """A measured motion that n lanes run along: states (r, m) by name, of each lane from sample ``first`` (n,) on.
+
+    ``marks`` (k,), counted from there and in order: samples at which the other states are asked for. ``row`` (n,): the
+    motion that each lane follows (default: its own, or the only one); ``last`` (n,): the last mark that it needs.
+    """
+
+    motion: Mapping[str, FloatArray]
+    marks: Index
+    first: Index
+    row: Index = field(default_factory=lambda: np.zeros(0, np.int64))
+    last: Index = field(default_factory=lambda: np.zeros(0, np.int64))
+
+    @property
+    def rows(self) -> Index:
+        """The row of each lane (n,)."""
+        if self.row.size:
+            return self.row
+        rows = len(next(iter(self.motion.values()), ()))
+        return np.arange(self.first.size) if rows > 1 else np.zeros(self.first.size, np.int64)
+
+    @property
+    def ends(self) -> Index:
+        """The last mark of each lane (n,)."""
+        return self.last if self.last.size else np.full(self.first.size, self.marks[-1])
+
+    def take(self, lanes: Index) -> Prescribed:
+        """That of some lanes."""
+        return replace(self, first=self.first[lanes], row=self.rows[lanes], last=self.ends[lanes])
+
+
+@dataclass(frozen=True)
 class Run:
     """Outputs ``(n,)`` by name, states ``(n, samples, k)`` as the model orders them, and events lane by lane.
 

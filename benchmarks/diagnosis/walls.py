@@ -24,6 +24,7 @@ from benchmarks.diagnosis.open_laws import LAWS, Law
 from benchmarks.diagnosis.scene import FloatArray, Unsuitable
 from benchmarks.diagnosis.unseen_laws import UNSEEN
 from models.interface.model import MODEL
+from models.runs import Prescribed
 from models.shaking import Shaking
 
 TOLERANCE = {
@@ -303,9 +304,8 @@ def strength(
         changes[1 + 2 * k : 3 + 2 * k, k] += [1e-2, -1e-2]
     varied = {**true, **{name: true[name] * changes[:, k] for k, name in enumerate(names)}}
     lanes = changes.shape[0]
-    carried = MODEL.carry(
-        varied, measured, {name: channels[name][None] for name in HELD}, first, first=np.zeros(lanes, np.int64)
-    )
+    motion = {name: channels[name][None] for name in HELD}
+    carried = MODEL.carry(varied, measured, Prescribed(motion, first, np.zeros(lanes, np.int64)))
     initial = {name: np.tile(channels[name][first], lanes) for name in HELD}
     initial |= {name: x.reshape(-1, *x.shape[2:]) for name, x in carried.items()}
     each = {name: np.repeat(value, first.size) if np.ndim(value) else value for name, value in varied.items()}

@@ -19,6 +19,7 @@ from models.identification import Largest
 from models.kinematics import ground_along
 from models.observed import Observed
 from models.piecewise import trajectories
+from models.runs import Prescribed
 
 
 @dataclass(frozen=True)
@@ -137,6 +138,7 @@ class Along:
         found: dict[str, FloatArray] = {}
         if not m.identification.carrying:
             return found
+        every = np.arange(m.values.shape[2])
         for r, recording in enumerate(m.recordings):
             sets = predictor.sets(instruments_of(self.point.values), recording)
             shaking = moved_in_stages(m.shakings[r], sets, moved_in_windows)
@@ -147,8 +149,8 @@ class Along:
                 if not own.size:
                     continue
                 ran = m.model.carry(
-                    part.values, shaking, {name: self.states[name][own] for name in m.free},
-                    np.arange(m.values.shape[2]), first=m.first[own],
+                    part.values, shaking,
+                    Prescribed({name: self.states[name][own] for name in m.free}, every, m.first[own]),
                     initial={name: x[own] for name, x in self._starts.items()}, options=predictor.options,
                 )  # fmt: skip
                 for name, x in ran.items():

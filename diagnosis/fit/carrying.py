@@ -26,6 +26,7 @@ from grids.recordings.base import REQUIRED, Recording
 from models.base import FloatArray
 from models.identification import NARROWEST, State
 from models.piecewise import Part, begun_at
+from models.runs import Prescribed
 from models.shaking import Shaking
 
 KEPT = 512
@@ -52,6 +53,29 @@ class Setting:
         return wall, instruments
 
 
+@dataclass(frozen=True)
+class Asked:
+    """Settings along a recording, and the samples (k,) at which the states are asked for."""
+
+    recording: Recording
+    marks: NDArray[np.int64]
+    settings: Sequence[Setting]
+
+
+@dataclass(frozen=True)
+class _Lane:
+    """One setting along a recording."""
+
+    recording: Recording
+    marks: NDArray[np.int64]
+    setting: Setting
+
+    @property
+    def firsts(self) -> tuple[int, ...]:
+        """Samples at which the wall's values change."""
+        return tuple(part.first for part in self.setting.parts)
+
+
 Kept = OrderedDict[tuple[Any, ...], tuple[Recording, dict[str, FloatArray]]]
 """Arrays by name, with the recording: else its id could become another's."""
 
@@ -64,69 +88,74 @@ class Carrying:
         self.motions: Kept = OrderedDict()
 
     def at(
-        self,
-        marks: NDArray[np.int64],
-        measured: Measured,
-        recording: Recording,
-        settings: Sequence[Setting],
-        options: Mapping[str, str],
-    ) -> dict[str, FloatArray]:
-        """Carried states (P, k, ...) by name of P settings, at samples ``marks`` (k,)."""
-        keys = [(id(recording), marks.tobytes(), *setting.key) for setting in settings]
-        new = {key: one for key, one in zip(keys, settings, strict=True) if key not in self.kept}
-        together: dict[tuple[float, int], list[tuple[Any, ...]]] = {}
-        for key, one in new.items():
-            together.setdefault((one.shaking.time_step, one.shaking.horizontal.size), []).append(key)
+        self, asked: Sequence[Asked], measured: Measured, options: Mapping[str, str]
+    ) -> list[dict[str, FloatArray]]:  # fmt: skip
+        """Carried states (P, k, ...) by name of P settings of each recording, at its samples ``marks`` (k,)."""
+        keys = [[(id(one.recording), one.marks.tobytes(), *setting.key) for setting in one.settings] for one in asked]
+        new = {
+            key: _Lane(one.recording, one.marks, setting)
+            for one, own in zip(asked, keys, strict=True)
+            for key, setting in zip(own, one.settings, strict=True)
+            if key not in self.kept
+        }
+        together: dict[tuple[Any, ...], list[tuple[Any, ...]]] = {}
+        for key, lane in new.items():
+            together.setdefault((lane.setting.shaking.time_step, *lane.firsts), []).append(key)
         for alike in together.values():
-            found = carried(marks, measured, recording, [new[key] for key in alike], options, self.motions)
-            for k, key in enumerate(alike):
-                self.kept[key] = recording, {name: x[k] for name, x in found.items()}
-        each = []
-        for key in keys:
-            self.kept.move_to_end(key)
-            each.append(self.kept[key][1])
+            found = _carried(measured, [new[key] for key in alike], options, self.motions)
+            for key, states in zip(alike, found, strict=True):
+                self.kept[key] = new[key].recording, states
+        each = [[self._kept(key) for key in own] for own in keys]
         for kept in (self.kept, self.motions):
             while len(kept) > KEPT:
                 kept.popitem(last=False)
-        whole = max(each, key=len)
-        # what cannot stand carries nothing
-        return {name: np.stack([one.get(name, np.full(x.shape, np.nan)) for one in each]) for name, x in whole.items()}
+        return [_stacked(own) for own in each]
+
+    def _kept(self, key: tuple[Any, ...]) -> dict[str, FloatArray]:
+        self.kept.move_to_end(key)
+        return self.kept[key][1]
 
 
-def carried(
-    marks: NDArray[np.int64],
-    measured: Measured,
-    recording: Recording,
-    settings: Sequence[Setting],
-    options: Mapping[str, str],
-    motions: Kept,
-) -> dict[str, FloatArray]:
-    """The same of settings whose bases move over the same samples, run."""
-    lanes = len(settings)
-    motion = _motion(measured, recording, settings, motions)
-    at, back = np.unique(marks, return_inverse=True)
-    firsts = [part.first for part in settings[0].parts]
+def _stacked(each: Sequence[dict[str, FloatArray]]) -> dict[str, FloatArray]:
+    """States of several settings as one array; nan of what cannot stand, which carries nothing."""
+    whole = max(each, key=len)
+    return {name: np.stack([one.get(name, np.full(x.shape, np.nan)) for one in each]) for name, x in whole.items()}
+
+
+def _carried(
+    measured: Measured, lanes: Sequence[_Lane], options: Mapping[str, str], motions: Kept
+) -> list[dict[str, FloatArray]]:
+    """States (k, ...) by name of every lane at its marks; settings change at the same samples in all of them."""
+    motion, row = _motion(measured, lanes, motions)
+    at = np.unique(np.concatenate([lane.marks for lane in lanes]))
+    firsts, longest = lanes[0].firsts, max(lane.recording.time.size for lane in lanes)
+    shakings = [lane.setting.shaking for lane in lanes]
     found: dict[str, list[FloatArray]] = {}
     initial: dict[str, FloatArray] = {}
-    for j, (begin, end) in enumerate(pairwise([*firsts, recording.time.size])):
+    for j, (begin, end) in enumerate(pairwise([*firsts, longest])):
         inside = at[(at >= begin) & (at < end)]
         last = j + 1 == len(firsts)
         wanted = inside if last else np.append(inside, end)
         if not wanted.size:
             break
-        values = {name: np.array([s.parts[j].values[name] for s in settings]) for name in settings[0].parts[j].values}
-        begun = {id(s.shaking): begun_at(s.shaking, begin) for s in settings}
+        parts = [lane.setting.parts[j].values for lane in lanes]
+        values = {name: np.array([part[name] for part in parts]) for name in parts[0]}
+        begun = {id(shaking): begun_at(shaking, begin) for shaking in shakings}
+        ends = np.clip([int(lane.marks.max()) - begin for lane in lanes], 0, int(wanted[-1]) - begin)
         ahead = {name: x[:, begin:] for name, x in motion.items()}
         ran = measured.model.carry(
-            values, [begun[id(s.shaking)] for s in settings], ahead, wanted - begin,
-            first=np.zeros(lanes, np.int64), initial=initial, options=options,
+            values, [begun[id(shaking)] for shaking in shakings],
+            Prescribed(ahead, wanted - begin, np.zeros(len(lanes), np.int64), row, ends),
+            initial=initial, options=options,
         )  # fmt: skip
         if not ran:  # from here on none of the settings stands
             break
         initial = {} if last else {name: x[:, -1] for name, x in ran.items()}
         for name, x in ran.items():
             found.setdefault(name, []).append(x[:, : inside.size])
-    return {name: _to_the_end(np.concatenate(x, axis=1), at.size)[:, back] for name, x in found.items()}
+    whole = {name: _to_the_end(np.concatenate(x, axis=1), at.size) for name, x in found.items()}
+    own = [np.searchsorted(at, lane.marks) for lane in lanes]
+    return [{name: x[k, own[k]] for name, x in whole.items()} for k in range(len(lanes))]
 
 
 def _to_the_end(states: FloatArray, marks: int) -> FloatArray:
@@ -135,23 +164,24 @@ def _to_the_end(states: FloatArray, marks: int) -> FloatArray:
 
 
 def _motion(
-    measured: Measured, recording: Recording, settings: Sequence[Setting], motions: Kept
-) -> dict[str, FloatArray]:  # fmt: skip
-    """The free states along a recording, (1, samples) where all settings share them, else (P, samples)."""
-    keys = [(id(recording), setting.key[1]) for setting in settings]
-    for key, one in zip(keys, settings, strict=True):
+    measured: Measured, lanes: Sequence[_Lane], motions: Kept
+) -> tuple[dict[str, FloatArray], NDArray[np.int64]]:  # fmt: skip
+    """The free states along every recording, (r, samples) held beyond its end, and the row of each lane (n,)."""
+    keys = [(id(lane.recording), lane.setting.key[1], lane.setting.shaking.time_step) for lane in lanes]
+    for key, lane in zip(keys, lanes, strict=True):
         if key not in motions:
-            motions[key] = recording, _smoothed(measured, recording, one.sets)
+            motions[key] = lane.recording, _smoothed(measured, lane.recording, lane.setting)
         motions.move_to_end(key)
-    each = [motions[key][1] for key in (keys if len(set(keys)) > 1 else keys[:1])]
-    # per sample of the recording: the clock of the responses may run on another step
-    quicker = recording.time_step / settings[0].shaking.time_step
-    found = {}
-    for state in measured.identification.free:
-        if state.name in measured.free:
-            rows = np.stack([states[state.name] for states in each])
-            found[state.name] = rows * quicker if _slope(state, recording) else rows
-    return found | {name: found[of] for name, of in measured.alike.items() if name not in found}
+    distinct = list(dict.fromkeys(keys))
+    each = [motions[key][1] for key in distinct]
+    longest = max(x.size for states in each for x in states.values())
+    found = {name: np.stack([_held(states[name], longest) for states in each]) for name in each[0]}
+    found |= {name: found[of] for name, of in measured.alike.items() if name not in found}
+    return found, np.array([distinct.index(key) for key in keys], np.int64)
+
+
+def _held(states: FloatArray, samples: int) -> FloatArray:
+    return states if states.size == samples else np.pad(states, (0, samples - states.size), mode="edge")
 
 
 def _slope(state: State, recording: Recording) -> bool:
@@ -159,16 +189,18 @@ def _slope(state: State, recording: Recording) -> bool:
     return state.rate and state.name not in recording.channels
 
 
-def _smoothed(measured: Measured, recording: Recording, sets: Sets) -> dict[str, FloatArray]:
-    """The free states (samples,) by name, per s of the recording's clock."""
-    channels = _freed(measured, recording, sets)
+def _smoothed(measured: Measured, recording: Recording, setting: Setting) -> dict[str, FloatArray]:
+    """The free states (samples,) by name; per sample of the recording: the clock of the responses may run otherwise."""
+    channels = _freed(measured, recording, setting.sets)
     width = measured.lengths.carrying if measured.lengths else NARROWEST
+    quicker = recording.time_step / setting.shaking.time_step
     found = {}
     for state in measured.identification.free:
         if state.name in measured.free:
             slope = _slope(state, recording)
             name = state.channel if slope or not state.rate else state.name
-            found[state.name] = smooth(channels[name], recording.time_step, width, slope)
+            states = smooth(channels[name], recording.time_step, width, slope)
+            found[state.name] = states * quicker if slope else states
     return found
 
 

@@ -16,11 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.data.measured import Measured
-from diagnosis.fit.carrying import Carrying, Setting
+from diagnosis.fit.carrying import Asked, Carrying, Setting
 from diagnosis.fit.through import run_through
 from diagnosis.fit.unknowns import instruments_of, without_instruments
 from grids.instruments.base import Surroundings, Switched
-from grids.instruments.staged import moved_in_stages, recorded_in_stages
+from grids.instruments.staged import Sets, moved_in_stages, recorded_in_stages
 from grids.instruments.windowed import moved_in_windows, recorded_in_windows, same_base, seconds_ahead
 from grids.recordings.base import Recording
 from grids.stages import Stage, changes, first_sample
@@ -44,6 +44,21 @@ class Point:
     states: FloatArray
     coordinates: tuple[str, ...] = ()
     rung: Rung | None = None
+
+
+@dataclass(frozen=True)
+class _Moves:
+    """Windows of recording ``r``, and how its base moves for points with ``alike`` instruments, the sets with them."""
+
+    r: int
+    windows: NDArray[np.intp]
+    alike: Sequence[tuple[Sequence[int], Sets]]
+    grounds: Sequence[Shaking]
+
+    @property
+    def bases(self) -> dict[int, Shaking]:
+        """The base's motion by point."""
+        return {p: ground for (members, _), ground in zip(self.alike, self.grounds, strict=True) for p in members}
 
 
 @dataclass(frozen=True)
@@ -80,6 +95,7 @@ class Predictor:
         groups: dict[tuple[object, ...], list[int]] = {}
         for k, switched in enumerate(instruments):
             groups.setdefault(same_base(switched), []).append(k)
+        moves: list[_Moves] = []
         for r, recording in enumerate(m.recordings):
             windows = np.flatnonzero((m.recording_of == r) & (True if only is None else only))
             if not windows.size:
@@ -91,13 +107,14 @@ class Predictor:
                     self._through(r, members, windows, moved_in_stages(plain, sets), complete, instruments, out)
                 continue
             grounds = [moved_in_stages(m.shakings[r], sets, moved_in_windows) for _, sets in alike]
-            bases = {p: ground for (members, _), ground in zip(alike, grounds, strict=True) for p in members}
-            carried = self._carried(bases, windows, complete, recording, instruments)
-            for (members, sets), ground in zip(alike, grounds, strict=True):
-                shaking = ground if shakings is None else moved_in_stages(shakings[r], sets, moved_in_windows)
+            moves.append(_Moves(r, windows, alike, grounds))
+        for one, carried in zip(moves, self._carried(moves, complete, instruments), strict=True):
+            for (own, acting), ground in zip(one.alike, one.grounds, strict=True):
+                shaking = ground if shakings is None else moved_in_stages(shakings[one.r], acting, moved_in_windows)
                 # probes of the base are disturbances of the model: accelerometers are on the base as it moves
-                around = m.disturbed(shaking, r), ground
-                self._run(points, members, windows, around, complete, recording, instruments, carried, out)
+                around = m.disturbed(shaking, one.r), ground
+                recording = m.recordings[one.r]
+                self._run(points, own, one.windows, around, complete, recording, instruments, carried, out)
         return out if m.as_it_was is None else out - m.as_it_was.offset
 
     def declared(self, points: Sequence[Point]) -> list[Point]:
@@ -119,13 +136,16 @@ class Predictor:
         """What the model carries to the starts of all windows at a point, arrays (W, ...) by name."""
         m = self.measured
         values, instruments = without_instruments(point.values), instruments_of(point.values)
-        found: dict[str, FloatArray] = {}
+        moves = []
         for r, recording in enumerate(m.recordings):
             own = np.flatnonzero(m.recording_of == r)
             if own.size:
-                shaking = moved_in_stages(m.shakings[r], self.sets(instruments, recording), moved_in_windows)
-                for name, x in self._carried({0: shaking}, own, [values], recording, [instruments]).items():
-                    found.setdefault(name, np.zeros((len(m.windows), *x.shape[2:])))[own] = x[0]
+                sets = self.sets(instruments, recording)
+                moves.append(_Moves(r, own, [([0], sets)], [moved_in_stages(m.shakings[r], sets, moved_in_windows)]))
+        found: dict[str, FloatArray] = {}
+        for one, carried in zip(moves, self._carried(moves, [values], [instruments]), strict=True):
+            for name, x in carried.items():
+                found.setdefault(name, np.zeros((len(m.windows), *x.shape[2:])))[one.windows] = x[0]
         return found
 
     def _complete(self, points: Sequence[Point]) -> list[dict[str, float]]:
@@ -147,22 +167,21 @@ class Predictor:
         return found
 
     def _carried(
-        self,
-        bases: Mapping[int, Shaking],
-        windows: NDArray[np.intp],
-        complete: Sequence[Mapping[str, float]],
-        recording: Recording,
-        instruments: Sequence[Switched],
-    ) -> dict[str, FloatArray]:
-        """What the model carries to the starts of the windows (P, n, ...), under the ``bases`` of all P points."""
+        self, moves: Sequence[_Moves], complete: Sequence[Mapping[str, float]], instruments: Sequence[Switched]
+    ) -> list[dict[str, FloatArray]]:
+        """What the model carries to the starts of the windows (P, n, ...) of all P points, recording by recording."""
         m = self.measured
         if not m.identification.carrying:
-            return {}
-        settings = [
-            Setting(bases[p], self.parts(complete[p], recording), self.sets(instruments[p], recording))
-            for p in range(len(complete))
-        ]
-        return self.carrying.at(m.first[windows], m, recording, settings, self.options)
+            return [{} for _ in moves]
+        asked = []
+        for one in moves:
+            recording, bases = m.recordings[one.r], one.bases
+            settings = [
+                Setting(bases[p], self.parts(complete[p], recording), self.sets(instruments[p], recording))
+                for p in range(len(complete))
+            ]
+            asked.append(Asked(recording, m.first[one.windows], settings))
+        return self.carrying.at(asked, m, self.options)
 
     def _run(
         self,

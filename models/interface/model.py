@@ -19,7 +19,7 @@ from models.interface.observe import observe
 from models.interface.poses import poses
 from models.interface.tangent import unstressed
 from models.model import Model
-from models.runs import Request, Run
+from models.runs import Prescribed, Request, Run
 from models.shaking import Shaking
 
 
@@ -86,12 +86,15 @@ class Interface(Model[LayeredWall]):
         return unstressed(self.build(values, options), values, names)
 
     def carry_lanes(
-        self, coefficients: LayeredWall, shakings: Sequence[Shaking], motion: Mapping[str, FloatArray],
-        marks: NDArray[np.int64], first: NDArray[np.int64], initial: Mapping[str, FloatArray],
-    ) -> dict[str, FloatArray]:  # fmt: skip
+        self,
+        coefficients: LayeredWall,
+        shakings: Sequence[Shaking],
+        along: Prescribed,
+        initial: Mapping[str, FloatArray],
+    ) -> dict[str, FloatArray]:
         from models.interface.lanes.carried import carry
 
-        return carry(coefficients, shakings, motion, marks, first, initial)
+        return carry(coefficients, shakings, along, initial)
 
     def observe(self, coefficients: LayeredWall, samples: FloatArray) -> Mapping[str, FloatArray]:
         return observe(coefficients, samples)

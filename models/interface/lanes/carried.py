@@ -21,24 +21,21 @@ from models.interface.lanes.run import given_table, low_passes, pitching, subste
 from models.interface.layered import LayeredWall
 from models.lanes.record import end_to_end, recorded
 from models.lanes.tables import groups
+from models.runs import Prescribed
 from models.shaking import Shaking
 
 
 def carry(
-    wall: LayeredWall,
-    shakings: Sequence[Shaking],
-    motion: Mapping[str, FloatArray],
-    marks: NDArray[np.int64],
-    first: NDArray[np.int64],
-    initial: Mapping[str, FloatArray],
+    wall: LayeredWall, shakings: Sequence[Shaking], along: Prescribed, initial: Mapping[str, FloatArray]
 ) -> dict[str, FloatArray]:
-    """The states that ``motion`` does not hold, and the history of the layers, of n walls at k ``marks``.
+    """The states that the motion does not hold, and the history of the layers, of n walls at k marks.
 
     As `models.model.Model.carry`.
     """
     at_rest, effects, time_step = resting.at_rest(wall), wall.effects, shakings[0].time_step
+    motion, marks, rows, last = along.motion, along.marks, along.rows, along.ends
     rest = at_rest[:, :4]
-    begun = {**initial, **{name: x[:, 0] for name, x in motion.items()}}
+    begun = {**initial, **{name: x[rows, 0] for name, x in motion.items()}}
     given = given_table(wall, np.ones(wall.size), begun, rest)
     steps = substeps(wall, modes.at_rest(wall).squares, time_step)
     given[:, r.Q_STEPS] = steps
@@ -57,8 +54,8 @@ def carry(
         records = [recorded(shaking, 1, 0.0, pitching(wall, shaking, corner)) for shaking in distinct.values()]
         record, begins = end_to_end(records)
         advance(
-            record, first[lanes] + begins[own[lanes]], given[lanes],
-            prescribed if prescribed.shape[0] == 1 else prescribed[lanes], held, marks,
+            record, along.first[lanes] + begins[own[lanes]], last[lanes], given[lanes],
+            prescribed, rows[lanes], held, marks,
             moved, past, more_moved,
             None if wall.joints == "both" or more is not None else True, None if laws is None else True,
             None if laws is None else some(laws, lanes), more,

@@ -27,13 +27,14 @@ from models.rubber.lanes import N_HIDDEN
 
 @compiled
 def carry(
-    record: Record, first: Counts, given: Table, motion: Table, held: Counts, marks: Counts, states: Table,
-    history: Table, others: Table, mixed: Any, laws: Any, rubber: Any, more: Any,
+    record: Record, first: Counts, last: Counts, given: Table, motion: Table, along: Counts, held: Counts,
+    marks: Counts, states: Table, history: Table, others: Table, mixed: Any, laws: Any, rubber: Any, more: Any,
 ) -> None:  # fmt: skip
     """Run n lanes from sample ``first`` (n,), each as many steps a sample as the first of them takes.
 
-    ``motion`` (1 or n, m, h): the states ``held`` (h,), by their place among the model's, at the samples from ``first``
-    on. ``marks`` (k,), counted from ``first``, in order: where ``states`` (n, k, 8) and ``history`` (n, k, joints,
+    ``motion`` (r, m, h): the states ``held`` (h,), by their place among the model's, at the samples from ``first`` on,
+    of each lane in the row ``along`` (n,). ``marks`` (k,), counted from ``first``, in order and up to ``last`` (n,) of
+    each lane: where ``states`` (n, k, 8) and ``history`` (n, k, joints,
     laws, fibres) are written, and ``others`` (n, k, 12) of walls with effects (`More.ended`). ``mixed``, ``laws``,
     ``rubber``, ``more``: as of `models.interface.lanes.advance.advance`.
     """
@@ -64,12 +65,14 @@ def carry(
                     rubber,
                     more,
                 )
-        mark = 0
-        for i in range(marks[-1] + 1):
+        mark, end = 0, 0
+        for slot in range(count):
+            end = max(end, last[begin + slot])
+        for i in range(end + 1):
             for slot in range(count):
-                row = begin + slot if motion.shape[0] > 1 else 0
+                row = motion[along[begin + slot], min(i, motion.shape[1] - 1)]
                 for k in range(held.size):
-                    w[T1 + held[k], slot] = motion[row, i, k]
+                    w[T1 + held[k], slot] = row[k]
                 if more is not None:
                     follow(flat, slot)
             while mark < marks.size and marks[mark] == i:

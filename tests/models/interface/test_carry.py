@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from scipy.signal import savgol_filter
 
+from models.runs import Prescribed
 from models.shaking import Shaking
 from tests.models.interface.walls import MODEL
 
@@ -35,7 +36,7 @@ def shaking() -> Shaking:
 
 
 def carried(values: dict[str, Any], motion: dict[str, np.ndarray], **more: Any) -> dict[str, np.ndarray]:
-    return MODEL.carry(values, shaking(), motion, MARKS, first=np.zeros(1, np.int64), **more)
+    return MODEL.carry(values, shaking(), Prescribed(motion, MARKS, np.zeros(1, np.int64)), **more)
 
 
 def in_windows(values: dict[str, Any], channels: Any, carried: dict[str, np.ndarray]) -> np.ndarray:
@@ -82,7 +83,7 @@ def test_lanes_do_not_depend_on_one_another_and_what_cannot_stand_carries_nothin
     channels = MODEL.simulate(WALL, shaking()).channels
     motion = {name: channels[name][None] for name in HELD}
     soft = np.array([4.0e7, 4.0e4, 8.0e7])
-    each = MODEL.carry({**WALL, "base_stiffness": soft}, shaking(), motion, MARKS, first=np.zeros(3, np.int64))
+    each = MODEL.carry({**WALL, "base_stiffness": soft}, shaking(), Prescribed(motion, MARKS, np.zeros(3, np.int64)))
     for name, together in each.items():
         assert np.all(np.isnan(together[1]))
         for k in (0, 2):
@@ -94,8 +95,8 @@ def test_walls_on_bases_that_move_apart_are_carried_as_each_alone() -> None:
     channels = MODEL.simulate(values, shaking()).channels
     motion = {name: channels[name][None] for name in HELD}
     bases = [shaking(), replace(shaking(), horizontal=1.1 * shaking().horizontal)]
-    together = MODEL.carry(values, [bases[0], bases[1], bases[0]], motion, MARKS, first=np.zeros(3, np.int64))
-    each = [MODEL.carry(values, base, motion, MARKS, first=np.zeros(1, np.int64)) for base in bases]
+    together = MODEL.carry(values, [bases[0], bases[1], bases[0]], Prescribed(motion, MARKS, np.zeros(3, np.int64)))
+    each = [MODEL.carry(values, base, Prescribed(motion, MARKS, np.zeros(1, np.int64))) for base in bases]
     for name, x in together.items():
         for k, base in enumerate((0, 1, 0)):
             np.testing.assert_array_equal(x[k], each[base][name][0])
@@ -108,11 +109,26 @@ def test_a_run_cut_in_two_carries_what_the_whole_one_does() -> None:
     motion = {name: channels[name][None] for name in HELD}
     whole, cut = carried(values, motion), 1100
     first, begun = np.zeros(1, np.int64), MARKS[cut < MARKS] - cut
-    at_cut = MODEL.carry(values, shaking(), motion, np.array([cut]), first=first)
+    at_cut = MODEL.carry(values, shaking(), Prescribed(motion, np.array([cut]), first))
     later = MODEL.carry(
-        values, shaking(), {name: x[:, cut:] for name, x in motion.items()}, begun, first=first + cut,
+        values, shaking(), Prescribed({name: x[:, cut:] for name, x in motion.items()}, begun, first + cut),
         initial={name: x[:, 0] for name, x in at_cut.items()},
     )  # fmt: skip
     for name, x in later.items():
         scale = np.max(np.abs(whole[name]))
         np.testing.assert_allclose(x[0], whole[name][0, cut < MARKS], atol=2e-4 * scale)
+
+
+def test_walls_along_motions_of_their_own_are_carried_as_each_alone_to_its_last_mark() -> None:
+    """Of two recordings, the shorter one ends before the other."""
+    values = WALL | MAXWELL
+    channels = MODEL.simulate(values, shaking()).channels
+    motions = [{name: s * channels[name][None] for name in HELD} for s in (1.0, 0.7)]
+    both = {name: np.concatenate([motion[name] for motion in motions]) for name in HELD}
+    first = np.zeros(3, np.int64)
+    row, last = np.array([0, 1, 1]), np.array([MARKS[-1], MARKS[1], MARKS[-1]])
+    together = MODEL.carry(values, shaking(), Prescribed(both, MARKS, first, row, last))
+    for name, x in together.items():
+        for k, count in enumerate((MARKS.size, 2, MARKS.size)):
+            alone = carried(values, motions[row[k]])[name][0]
+            np.testing.assert_array_equal(x[k, :count], alone[:count])

@@ -13,6 +13,7 @@ from models.interface.lanes import run as lanes
 from models.interface.model import MODEL
 from models.interface.reference import run as reference
 from models.rubber import LAWS
+from models.runs import Prescribed
 from models.shaking import Shaking
 from tests.models.interface.walls import LONG, SHORT, undamped, wall
 from tests.models.requests import asked
@@ -232,7 +233,7 @@ def test_slips_and_closings_are_carried_along_the_rotations() -> None:
     motion = {name: states[k][None] for k, name in ((0, "rotation_1"), (1, "rotation_2"))}
     motion |= {name: states[k][None] for k, name in ((4, "rotation_rate_1"), (5, "rotation_rate_2"))}
     marks = np.array([40, 80, 119])
-    found = MODEL.carry(values, shaking, motion, marks, first=np.zeros(1, np.int64))
+    found = MODEL.carry(values, shaking, Prescribed(motion, marks, np.zeros(1, np.int64)))
     for name, column in (("displacement_x_1", 8), ("displacement_x_2", 9), ("displacement_z_1", 2)):
         size = np.max(np.abs(states[column]))
         np.testing.assert_allclose(found[name][0], states[column][marks], rtol=0, atol=0.02 * size, err_msg=name)
