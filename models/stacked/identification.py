@@ -1,7 +1,6 @@
 """What a diagnosis needs to know of two stacked blocks: both rotations lead and are measured.
 
-Forces outside the library are not declared: a couple in one joint is no base acceleration, and what it leaves in a
-window is not known to the diagnosis.
+Forces outside the library are not declared: which bodies an impulse at a joint moves depends on which joints are open.
 """
 
 from __future__ import annotations
