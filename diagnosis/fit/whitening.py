@@ -6,7 +6,6 @@ small base accelerations (triangular pulses of half width D over the window) the
     C = sigma^2 I + G S G',        S = (sigma_a^2 dt/D + floor^2) I,
 
 and C^-1/2 = sigma^-1 [I - U diag(1 - 1/sqrt(1 + s^2)) U'] by the singular values s of G S^1/2/sigma.
-The same responses G show what an unknown force would do (`diagnosis.forces.columns`).
 """
 
 from __future__ import annotations

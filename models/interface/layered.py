@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
+from threading import Lock
 from typing import Any, TypeVar, cast
 
 import numpy as np
@@ -20,6 +21,7 @@ T = TypeVar("T")
 MOST_KEPT, LAST = 256, 16
 """Of so many different walls at most, those of the last calls are kept with what was found for them."""
 _LAST: dict[Any, LayeredWall] = {}
+_LOCK = Lock()
 FREE = {
     "both": np.eye(4),
     "base": np.array([[1.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.0, 0.0]]),
@@ -134,10 +136,11 @@ class LayeredWall:
         parts = () if self.effects is None else tuple(sorted(self.effects.parts))
         words = (self.joints, self.toe_held, self.clip, tuple(self.laws), self.effects is None, parts)
         key = words, b"".join(x.tobytes() for x in self._arrays)
-        found = _LAST.pop(key, self)
-        _LAST[key] = found
-        while len(_LAST) > LAST:
-            _LAST.pop(next(iter(_LAST)), None)
+        with _LOCK:
+            found = _LAST.pop(key, self)
+            _LAST[key] = found
+            while len(_LAST) > LAST:
+                _LAST.pop(next(iter(_LAST)))
         return found
 
     @cached_property
