@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from models.base import FloatArray
-from models.identification import Dependence, Motion
+from models.identification import Dependence, Force, Motion, Port
 
 
 def _over_largest(values: FloatArray) -> FloatArray:
@@ -57,3 +57,22 @@ PHASES = {
     "right": "while rocking to the right",
 }
 """Words for the halves of the dependences, in plain English."""
+
+
+def couples(port: Port, end: str = "", where: str = "") -> tuple[Force, ...]:
+    """Kinds of couples in a joint; ``end`` of their names, and ``where`` in their meaning."""
+    return (
+        Force(f"viscous_damping{end}", f"couple{where} with the angular velocity", port, over_largest_rate),
+        Force(f"coulomb_damping{end}", f"couple{where} against the motion", port, against),
+        Force(f"contact{end}", f"constant couple{where} on either side", port, side),
+        Force(
+            f"stiffness{end}", f"couple{where} with the rotation", port, over_reach,
+            # |theta| sign(theta') = theta sign(theta theta')
+            named={"direction of motion": (f"coulomb_damping{end}", "size of the rotation")},
+        ),
+        Force(
+            f"lean{end}", f"constant couple{where} in one direction", port, constant, signed=True,
+            # sign(theta theta') = sign(theta') sign(theta)
+            named={"direction of motion": (f"coulomb_damping{end}", "side")},
+        ),
+    )  # fmt: skip

@@ -44,9 +44,9 @@ class Kicks:
     followed: NDArray[np.intp]
 
     def losing(self, share: FloatArray, first: NDArray[np.int64]) -> FloatArray:
-        """Change (W, C, N) of the channels where every event takes a ``share`` (W, N) of the rate.
+        """Change (W, C, N) of the channels where every event takes a ``share`` of the rate.
 
-        Each its value just before the event; ``first`` (W,): the windows' first samples of their recordings.
+        ``share`` (W, N) along the windows, read just before an event; ``first`` (W,): the windows' first samples.
         """
         change = np.zeros(self.columns.shape[::3])
         change[self.window, self.place] = -share[self.window, self.sample - first[self.window] - BEFORE]

@@ -15,34 +15,13 @@ from models.identification import (
     State,
     WindowLengths,
 )
-from models.unknown_forces import (
-    DEPENDENCES,
-    PHASES,
-    against,
-    constant,
-    over_largest_base,
-    over_largest_rate,
-    over_reach,
-    side,
-)
+from models.unknown_forces import DEPENDENCES, PHASES, couples, over_largest_base
 
 BASE = Port("base", lambda seen: seen["rotation_1"], lambda block: {"rotation_rate_1": -1.0})
 """A couple between block and base, over the moment of inertia about the corner."""
 FORCES = (
     Force("restitution", "loss of velocity at impacts", BASE, None, event="impact"),
-    Force("viscous_damping", "couple with the angular velocity", BASE, over_largest_rate),
-    Force("coulomb_damping", "couple against the motion", BASE, against),
-    Force("contact", "constant couple on either side", BASE, side),
-    Force(
-        "stiffness", "couple with the rotation", BASE, over_reach,
-        # |theta| sign(theta') = theta sign(theta theta')
-        named={"direction of motion": ("coulomb_damping", "size of the rotation")},
-    ),
-    Force(
-        "lean", "constant couple in one direction", BASE, constant, signed=True,
-        # sign(theta theta') = sign(theta') sign(theta)
-        named={"direction of motion": ("coulomb_damping", "side")},
-    ),
+    *couples(BASE),
     Force("base_motion", "couple with the base acceleration", BASE, over_largest_base),
 )  # fmt: skip
 

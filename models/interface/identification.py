@@ -6,16 +6,7 @@ import numpy as np
 
 from models.identification import Exposure, Force, Identification, Lead, Port, State, WindowLengths
 from models.interface.layered import LayeredWall
-from models.unknown_forces import (
-    DEPENDENCES,
-    PHASES,
-    against,
-    constant,
-    over_largest_base,
-    over_largest_rate,
-    over_reach,
-    side,
-)
+from models.unknown_forces import DEPENDENCES, PHASES, couples, over_largest_base, over_largest_rate, over_reach
 
 PROPERTIES = ("stiffness", "layer_modulus", "damping", "damping_ratio")
 
@@ -52,26 +43,9 @@ BLOCK = Port("block", lambda seen: seen["displacement_2_x"], _on_the_block)
 """A couple in either joint (N m s), a horizontal force on the upper block (N s)."""
 
 
-def _of_joint(port: Port, end: str, joint: str) -> tuple[Force, ...]:
-    """Kinds of couples in a joint."""
-    return (
-        Force(f"viscous_damping{end}", f"couple in {joint} with its angular velocity", port, over_largest_rate),
-        Force(f"coulomb_damping{end}", f"couple in {joint} against its motion", port, against),
-        Force(f"contact{end}", f"constant couple in {joint} on either side", port, side),
-        Force(
-            f"stiffness{end}", f"couple in {joint} with its rotation", port, over_reach,
-            named={"direction of motion": (f"coulomb_damping{end}", "size of the rotation")},
-        ),
-        Force(
-            f"lean{end}", f"constant couple in {joint} in one direction", port, constant, signed=True,
-            named={"direction of motion": (f"coulomb_damping{end}", "side")},
-        ),
-    )  # fmt: skip
-
-
 FORCES = (
-    *_of_joint(BASE, "", "the base"),
-    *_of_joint(TOP, "_top", "the top joint"),
+    *couples(BASE, where=" in the base"),
+    *couples(TOP, "_top", " in the top joint"),
     Force("viscous_damping_block", "force on the upper block with its velocity", BLOCK, over_largest_rate),
     Force("stiffness_block", "force on the upper block with its displacement", BLOCK, over_reach),
     Force("base_motion", "force on the upper block with the base acceleration", BLOCK, over_largest_base),
