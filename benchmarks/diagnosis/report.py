@@ -83,7 +83,7 @@ def _counts(cases: Sequence[Scored]) -> dict[str, Any]:
 
 
 def tables(figures: Mapping[str, Any]) -> str:
-    """All tables of `grouped`, `by_imperfection`, `by_beginning` or `by_base`."""
+    """All tables of `grouped`, `of_all`, `by_imperfection`, `by_beginning` or `by_base`."""
     if "by_base" in figures:
         lines = [table(figures, "wrong base models")]
         for name, part in figures["by_base"].items():
@@ -100,6 +100,8 @@ def tables(figures: Mapping[str, Any]) -> str:
             return "\n".join(lines)
     found = [table(figures, "1 % noise, nominal size")]
     for title, name in (("3 % noise, half size", "half_size_3_percent"), ("0.5 % noise", "nominal_size_half_percent")):
+        if name not in figures:
+            continue
         part = figures[name]
         suffix = "_half" if name.startswith("half") else ""
         bare = {key.removesuffix("_half"): number for key, number in part.items() if key != "intervals"}

@@ -29,3 +29,8 @@ def test_weights_of_the_weak_form_integrate_by_parts() -> None:
     test, curve = _test_function(201, step)
     theta = np.sin(9.0 * time)
     assert step * curve @ theta == pytest.approx(step * test @ (-81.0 * theta), rel=1e-4)
+
+
+def test_tables_of_a_bench_without_groups_are_one_table() -> None:
+    shown = report.tables(report.of_all(CASES))
+    assert shown.startswith("1 % noise, nominal size") and len(shown.split(" cases {")) == 2
