@@ -206,7 +206,7 @@ class Model(Placing, ABC, Generic[C]):
         """
         scale = np.atleast_1d(np.asarray(scale, dtype=np.float64))
         coefficients = self._shaken(values, options, shaking, scale.size, integrator)
-        request = Request(shaking, scale, self.resolve_options(options), tail=tail)
+        request = Request(shaking.lines, scale, self.resolve_options(options), tail=tail)
         found = dict(self.run(integrator, coefficients, request).outputs)
         if wanted := [quantity for quantity in self.outputs if quantity.peak_of and quantity.name in outputs]:
 
@@ -250,8 +250,8 @@ class Model(Placing, ABC, Generic[C]):
         coefficients = self._shaken(values, options, shaking, n, "lanes")
         last = np.minimum(first + steps, end)
         request = Request(
-            shaking, np.ones(n), self.resolve_options(options), first=first, last=last, samples=int(np.max(steps)) + 1,
-            initial={name: by_lane(v, n) for name, v in initial.items()},
+            shaking.lines, np.ones(n), self.resolve_options(options), first=first, last=last,
+            samples=int(np.max(steps)) + 1, initial={name: by_lane(v, n) for name, v in initial.items()},
         )  # fmt: skip
         run = self.run("lanes", coefficients, request)
         after = self.resume(run.samples[np.arange(n), last - first], run.outputs, request.initial)
@@ -272,7 +272,7 @@ class Model(Placing, ABC, Generic[C]):
         that cannot stand.
         """
         n = along.first.size
-        shakings = [shaking] * n if isinstance(shaking, Shaking) else shaking
+        shakings = [shaking.lines] * n if isinstance(shaking, Shaking) else [one.lines for one in shaking]
         coefficients = self._shaken(values, options, shakings[0], n, "lanes")
         given = {name: by_lane(v, n) for name, v in (initial or {}).items()}
         unable = _any_of(self.cannot_stand(coefficients))
@@ -349,7 +349,7 @@ class Model(Placing, ABC, Generic[C]):
             raise InputError(sentence)
         step = shaking.time_step
         request = Request(
-            shaking, np.array([scale], dtype=np.float64), self.resolve_options(options),
+            shaking.lines, np.array([scale], dtype=np.float64), self.resolve_options(options),
             tail=max(0.0, samples * step - shaking.duration), initial=initial, last=np.array([samples]),
             samples=samples + 1, log=MOST_LOGGED,
         )  # fmt: skip

@@ -100,6 +100,7 @@ def begun_at(shaking: Shaking, first: int) -> Shaking:
         left = samples[first:]
         return left if left.size > 1 else np.append(left, np.zeros(2 - left.size))
 
+    shaking = shaking.lines  # before it is cut
     vertical = None if shaking.vertical is None else part(shaking.vertical)
     return replace(shaking, horizontal=part(shaking.horizontal), vertical=vertical)
 

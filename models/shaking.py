@@ -20,18 +20,20 @@ KEPT = 8
 
 @dataclass(frozen=True)
 class Shaking:
-    """Base acceleration sampled at a constant step, linear between samples.
+    """Base acceleration sampled at a constant step; models take it as linear between samples (`lines`).
 
     ``horizontal`` (n,) is positive to the right and ``vertical`` (n,) positive up, both in m s-2,
     at times 0, time_step, 2 time_step ... Before the first and after the last sample the base is
     at rest (zero acceleration). ``vertical_acts`` false: the base model leaves the vertical component
-    out, and only the mechanism `vertical_acceleration` looks at it.
+    out, and only the mechanism `vertical_acceleration` looks at it. ``band_limited``: the samples are of a smooth
+    motion without content above half the sampling frequency, as a recording is.
     """
 
     time_step: float
     horizontal: NDArray[np.float64]
     vertical: NDArray[np.float64] | None = None
     vertical_acts: bool = True
+    band_limited: bool = False
 
     def __post_init__(self) -> None:
         for name in ("horizontal", "vertical"):
@@ -57,6 +59,20 @@ class Shaking:
     def time(self) -> NDArray[np.float64]:
         """Times (n,) of the samples, in s."""
         return np.asarray(np.arange(self.horizontal.size) * self.time_step, np.float64)
+
+    @cached_property
+    def lines(self) -> Shaking:
+        """The motion as models run it: linear between samples, with the displacements of the true one.
+
+        Straight lines between the samples of a sine of frequency f hold sinc^2(f dt) of it, .8 % less at 5 Hz and
+        3.3 % at 10 Hz at a step dt of .01 s. Those of a band-limited motion are therefore drawn between
+        x - D x / 12 + D^2 x / 90, D x_i = x_i-1 - 2 x_i + x_i+1: 1 / sinc^2, in error by .11 (pi f dt)^6.
+        The corners of the lines, above half the sampling frequency, leave an error of fourth order in responses.
+        """
+        if not self.band_limited:
+            return self
+        vertical = None if self.vertical is None else _sharpened(self.vertical)
+        return replace(self, horizontal=_sharpened(self.horizontal), vertical=vertical, band_limited=False)
 
     @cached_property
     def splines(self) -> tuple[CubicSpline, CubicSpline | None]:
@@ -92,3 +108,9 @@ class Shaking:
     def silence(cls, duration: float, time_step: float) -> Shaking:
         """No shaking for ``duration`` seconds (free rocking)."""
         return cls(time_step, np.zeros(round(duration / time_step) + 1))
+
+
+def _sharpened(samples: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Between which straight lines hold as much of every slow sine as these ``samples`` (n,); see `Shaking.lines`."""
+    once = np.diff(np.pad(samples, 1, mode="edge"), 2)
+    return np.asarray(samples - once / 12.0 + np.diff(np.pad(once, 1, mode="edge"), 2) / 90.0)

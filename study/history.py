@@ -16,6 +16,7 @@ from grids.instruments.base import Surroundings
 from grids.instruments.staged import moved_in_stages, recorded_in_stages
 from grids.netcdf_lock import NETCDF_LOCK
 from grids.recordings.base import SHARE
+from grids.recordings.netcdf import BAND_LIMITED, BETWEEN, LINEAR
 from grids.recordings.placed import attributes
 from grids.specimen import Specimen
 from grids.stages import Mechanisms, first_sample, stretches
@@ -169,6 +170,7 @@ def _label(model: Model, history: History, read: Shaking, placed: Mapping[str, P
         about = {"units": quantity.unit, "long_name": quantity.meaning}
         variables[name] = (dims, values, about)
     about = {"units": "m s-2", "long_name": "horizontal acceleration of the base, positive to the right"}
+    about[BETWEEN] = BAND_LIMITED if read.band_limited else LINEAR
     variables["base_acceleration_x"] = (("time",), _at(history, read, read.horizontal), about)
     if read.vertical is not None:
         about = {"units": "m s-2", "long_name": "vertical acceleration of the base, positive up"}

@@ -74,7 +74,8 @@ def run(
     """Rotations (2, n) in rad of wall and block at the steps (s) of ``acceleration`` (n,) in m s-2.
 
     ``wall``: parameters as specimens name them, stiffness and dashpot of both layers given. ``law``: a couple on the
-    wall beyond the catalogue with its ``numbers`` (`open_laws`); ``largest``: rotation without it (rad).
+    wall beyond the catalogue with its ``numbers`` (`open_laws`, where alpha is here ``largest``, the rotation (rad)
+    without it, and p^2 what makes p^2 alpha that of the wall).
     """
     values = {**NULLS, **(mechanisms or {})}
     body, layers = _body(wall, values), _layers(wall, values)
@@ -85,7 +86,9 @@ def run(
         values["viscous_damping.couple_damping"],
         values["coulomb_damping.over_m_g_b"] * mass * GRAVITY * np.cos(tilt) * wall["wall_length"] / 2.0, lever[0],
     ])  # fmt: skip
-    geometry = np.array([lever[1], np.arctan2(wall["wall_length"] / 2.0, lever[2]), GRAVITY, lever[3], largest])
+    # p^2 alpha resists a wall that has uplifted as it does a block, but at its own, smaller rotations
+    resists = lever[1] * np.arctan2(wall["wall_length"] / 2.0, lever[2])
+    geometry = np.array([resists / largest, largest, GRAVITY, lever[3], largest])
     rate = sum(float(layer[1] * layer[3]) for layer in layers) * 2.0 / wall["wall_mass"]
     per = max(1, int(np.ceil(step / LONGEST)), int(np.ceil(step * rate / STABLE)))
     couple, lean = law.couple if law else nothing, np.array([-GRAVITY * np.sin(tilt), GRAVITY * np.cos(tilt)])

@@ -43,6 +43,8 @@ OVER_UPLIFT = (1.5, 8.0)
 SCALES = np.geomspace(0.3, 6.0, 24)
 NOMINAL, WITHIN = 10.0, 0.1
 SHARES = np.geomspace(0.01, 1.0, 12)
+BEYOND = np.geomspace(0.01, 100.0, 23)
+"""Shares tried of a law outside the catalogue, whose range is one of free-standing blocks."""
 NOISE = 0.01
 COUNTS: dict[suite.Kind, int] = {"null": 60, "single": 84, "pair": 20, "open": 20}
 ERRORS = (*imperfections.COLOURS, *imperfections.OTHERS)
@@ -147,16 +149,13 @@ class Truth:
         if not self.apart:
             channels = MODEL.simulate({**self.wall, **self.mechanisms}, shaking).channels
             return {name: channels[name] for name in HELD}
-        found = fibre_wall.run(
-            self.wall,
-            shaking.horizontal,
-            shaking.time_step,
-            self.mechanisms,
-            self.law,
-            self.numbers,
-            self.largest,
-            fibres,
-        )
+        try:
+            found = fibre_wall.run(
+                self.wall, shaking.horizontal, shaking.time_step, self.mechanisms, self.law, self.numbers, self.largest,
+                fibres,
+            )  # fmt: skip
+        except np.linalg.LinAlgError as error:  # it fell, far
+            raise Unsuitable from error
         if not np.isfinite(found).all():
             raise Unsuitable
         rates = np.gradient(found, shaking.time_step, axis=1)
@@ -260,14 +259,16 @@ def _law(
     def at(share: float) -> Truth:
         return replace(plain, law=law, numbers=(share * end, *numbers, *interval, 0.0), largest=peak)
 
-    share = _nominal(lambda share: max(strength(at(share), {}, shaking, peak, COARSE) for _, shaking, _ in drawn[:2]))
+    share = _nominal(
+        lambda share: max(strength(at(share), {}, shaking, peak, COARSE) for _, shaking, _ in drawn[:2]), BEYOND
+    )
     return at(share), share * end
 
 
-def _nominal(size: Callable[[float], float]) -> float:
-    """Share (0-1) of the way to the end of a range at which the effect has nominal size."""
+def _nominal(size: Callable[[float], float], shares: FloatArray = SHARES) -> float:
+    """Share of the way to the end of a range at which the effect has nominal size."""
     low = 0.0
-    for share in SHARES.tolist():
+    for share in shares.tolist():
         if size(share) < NOMINAL:
             low = share
             continue

@@ -54,7 +54,7 @@ def _events(
     found = []
     for piece, state in zip(pieces, states, strict=True):
         recording = m.recordings[piece.recording]
-        shaking = moved_in_stages(m.shakings[piece.recording], predictor.sets(instruments, recording))
+        shaking = moved_in_stages(m.shakings[piece.recording], predictor.sets(instruments, recording)).lines
         part = slice(piece.first, piece.first + piece.samples + 1)
         vertical = None if shaking.vertical is None else shaking.vertical[part]
         cut = replace(shaking, horizontal=shaking.horizontal[part], vertical=vertical)

@@ -50,8 +50,10 @@ class Recording:
     """Channels ``(n_times,)``, or ``(n_levels, n_times)`` over ``levels``, at a uniform ``time_step``.
 
     ``places``: what channels measure that are no standard ones. ``estimated``: channels that were not recorded but
-    follow from those that were. ``time`` (n_times,) starts at 0 s. ``notes`` say what was done while reading,
-    ``suspicions`` what looks wrong with the data but may be right; ``source``: the file and what it says of itself.
+    follow from those that were. ``band_limited``: the base motion is smooth between samples, as a logger's is; else
+    linear, as a simulation's (`models.shaking.Shaking`). ``time`` (n_times,) starts at 0 s. ``notes`` say what was
+    done while reading, ``suspicions`` what looks wrong with the data but may be right; ``source``: the file and what
+    it says of itself.
     """
 
     name: str
@@ -64,6 +66,7 @@ class Recording:
     source: Mapping[str, str] = field(default_factory=dict)
     places: Mapping[str, Place] = field(default_factory=dict)
     estimated: frozenset[str] = frozenset()
+    band_limited: bool = False
 
     def __repr__(self) -> str:
         lines = [
@@ -98,6 +101,7 @@ class Recording:
             self.channels[REQUIRED],
             self.channels["base_acceleration_z"] if vertical else None,
             vertical_acts,
+            self.band_limited,
         )
 
 
@@ -112,6 +116,7 @@ class Raw:
     notes: tuple[str, ...]
     source: Mapping[str, str]
     places: Mapping[str, Place]
+    band_limited: bool = True
 
 
 def unknown_channel(name: str) -> str:

@@ -1,4 +1,8 @@
-"""Recordings in netCDF: dimension `time` (s), variables by standard name with a `units` attribute."""
+"""Recordings in netCDF: dimension `time` (s), variables by standard name with a `units` attribute.
+
+`base_acceleration_x` may say how it goes on `between_samples`: "band_limited", as what a logger samples (default), or
+"linear", as in a simulation under straight lines between its samples.
+"""
 
 from __future__ import annotations
 
@@ -7,13 +11,15 @@ from pathlib import Path
 import numpy as np
 
 from grids.netcdf_file import Variable, read_netcdf
-from grids.recordings.base import CHANNELS, FloatArray, Raw, unknown_channel
+from grids.recordings.base import CHANNELS, REQUIRED, FloatArray, Raw, unknown_channel
 from grids.recordings.placed import KEYS, read_places
 from grids.sampling import uniform_step
 from grids.units import factor_to_si
-from models.errors import InputError
+from models.errors import InputError, nearest
 from models.kinematics import Place
 
+BETWEEN = "between_samples"
+LINEAR, BAND_LIMITED = "linear", "band_limited"
 SUFFIXES = (".nc", ".nc4", ".cdf", ".netcdf")
 
 
@@ -43,8 +49,16 @@ def read(path: Path) -> Raw:
         if "level" in wanted:
             levels = _levels(data.variables.get("level"), len(channels[name]))
     return Raw(
-        uniform_step(times, "time"), float(times[0]), channels, levels, tuple(notes), dict(data.attributes), places
-    )
+        uniform_step(times, "time"), float(times[0]), channels, levels, tuple(notes), dict(data.attributes), places,
+        _band_limited(data.variables.get(REQUIRED)),
+    )  # fmt: skip
+
+
+def _band_limited(base: Variable | None) -> bool:
+    stated = BAND_LIMITED if base is None else base.attributes.get(BETWEEN, BAND_LIMITED)
+    if stated not in (LINEAR, BAND_LIMITED):
+        raise InputError(f"{REQUIRED}: {BETWEEN} is '{stated}'; {nearest(str(stated), (LINEAR, BAND_LIMITED))}")
+    return stated == BAND_LIMITED
 
 
 def _plain(attribute: str) -> str | float:

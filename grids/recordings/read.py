@@ -75,7 +75,10 @@ def _checked(name: str, raw: Raw, base_only: bool) -> Recording:
         kept.flags.writeable = False
         channels[channel] = kept
     time = np.arange(last - first + 1, dtype=np.float64) * raw.time_step
-    return Recording(name, raw.time_step, time, channels, raw.levels, tuple(notes), (), raw.source, raw.places)
+    return Recording(
+        name, raw.time_step, time, channels, raw.levels, tuple(notes), (), raw.source, raw.places,
+        band_limited=raw.band_limited,
+    )  # fmt: skip
 
 
 def _measured_span(raw: Raw) -> tuple[int, int]:

@@ -71,6 +71,16 @@ def stored(folder: Path, data: Any) -> Path:
     return path
 
 
+def test_a_recording_is_band_limited_between_samples_unless_it_says_linear(tmp_path: Path) -> None:
+    data = dataset()
+    assert read_recording(stored(tmp_path, data)).shaking(False).band_limited
+    data["base_acceleration_x"].attrs["between_samples"] = "linear"
+    assert not read_recording(stored(tmp_path, data)).shaking(False).band_limited
+    data["base_acceleration_x"].attrs["between_samples"] = "linaer"
+    with pytest.raises(InputError, match=r"between_samples is 'linaer'; did you mean 'linear'"):
+        read_recording(stored(tmp_path, data))
+
+
 def test_units_become_si_and_time_starts_at_zero(tmp_path: Path) -> None:
     data = dataset(
         base_acceleration_x=(BASE / GRAVITY, "g"),

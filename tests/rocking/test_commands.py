@@ -141,6 +141,7 @@ def test_simulate_writes_a_history_that_is_a_recording() -> None:
         assert np.all(rotation[at - 1] * rotation[at] <= 1e-6)
     recording = read_recording("h.nc")
     assert {"rotation_1", "base_acceleration_x"} <= set(recording.channels)
+    assert not recording.band_limited
     again = rocking("simulate", "wall.toml", "--motion", "h.nc", "--out", "again.nc")
     assert again.exit_code == 0, again.output
     with xr.open_dataset("h.nc") as one, xr.open_dataset("again.nc") as two:
