@@ -6,9 +6,7 @@ import numpy as np
 
 from diagnosis.answer.heldout import Shown
 from diagnosis.answer.result import Extrapolated
-
-BEYOND = 1.1
-"""Peak over the largest learned from, from which a prediction extrapolates."""
+from diagnosis.search.left_out import BEYOND
 
 
 def extrapolated(learned: Shown, held: Shown) -> tuple[Extrapolated, ...]:

@@ -13,6 +13,7 @@ from diagnosis.progress import Progress
 from diagnosis.search.beside import extended, seconds
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.found import Search, adjusted
+from diagnosis.search.left_out import predicts_worse
 from diagnosis.search.refit import Explanation, again, gain_by_window, reshaped, without
 from diagnosis.search.weighing import weigh_again
 
@@ -47,7 +48,8 @@ def _better(found: Search, incomplete: bool) -> Explanation | None:
     """The likeliest of as many effects, if it is likelier than the best.
 
     Where no model explains everything, what they all get wrong is part of what is weighed, and it is alike all along a
-    recording: an exchange then has to gain without the window that speaks most for it, and without any one recording.
+    recording: an exchange then has to gain without the window that speaks most for it and without any one recording,
+    and must not predict recordings worse that are left out in turn.
     """
     best = found.best
     if best is None:
@@ -56,7 +58,9 @@ def _better(found: Search, incomplete: bool) -> Explanation | None:
         if adjusted(other) >= adjusted(best):
             return None
         same = set(other.candidates) == set(best.candidates)
-        if len(other.candidates) == len(best.candidates) and (same or not incomplete or _everywhere(best, other)):
+        if len(other.candidates) != len(best.candidates):
+            continue
+        if same or not incomplete or (_everywhere(best, other) and not predicts_worse(best, other)):
             return other
     return None
 

@@ -99,11 +99,14 @@ def respond_in_windows(channels: Channels, values: Values, around: Surroundings)
 
 
 def shifted(signal: FloatArray, advance: float) -> FloatArray:
-    """The signal read ``advance`` samples later; the last value is held."""
+    """The signal read ``advance`` samples later; the last value is held. nan between samples that are not finite."""
     from scipy.interpolate import CubicSpline
 
     index = np.arange(signal.shape[-1])
-    return np.asarray(CubicSpline(index, signal, axis=-1)(np.minimum(index + advance, index[-1])))
+    at, finite = np.minimum(index + advance, index[-1]), np.isfinite(signal)
+    found = np.asarray(CubicSpline(index, np.where(finite, signal, 0.0), axis=-1)(at))
+    low, high = np.floor(at).astype(int), np.ceil(at).astype(int)
+    return np.where(finite[..., low] & finite[..., high], found, np.nan)
 
 
 MECHANISM = Mechanism(

@@ -166,6 +166,18 @@ def test_a_filter_in_windows_is_the_filter_of_the_record(order: int) -> None:
     np.testing.assert_allclose(seen[:300], whole[recorded_peak : recorded_peak + 300], atol=0.01)
 
 
+def test_a_filter_in_windows_passes_on_what_is_not_finite() -> None:
+    """The motion of a wall that falls, or cannot stand, is nan; its window is told as such and others are filtered."""
+    sensor, around = INSTRUMENTS["filter"], Surroundings(STEP, np.zeros((2, 400)))
+    values = {**sensor.nulls, "corner_hz": 8.0, "order": 2.0}
+    both = np.tile(np.sin(7.0 * STEP * np.arange(400)), (2, 1))
+    whole = sensor.acts["windowed"]({"rotation_1": both}, values, around)["rotation_1"]
+    both[0, 250:] = np.nan
+    seen = sensor.acts["windowed"]({"rotation_1": both}, values, around)["rotation_1"]
+    np.testing.assert_array_equal(seen[1], whole[1])
+    assert np.isnan(seen[0, 250:]).all() and np.isfinite(seen[0, :200]).all()
+
+
 def test_a_drift_that_begins_within_a_recording_grows_from_there() -> None:
     """Not by a jump to what it would have come to since the start: that is a sensor that is knocked."""
     plain, drifting = {"offset": {"offset_over_peak": 0.1}}, {"drift": {"rate": 0.01}}

@@ -9,7 +9,7 @@ import pytest
 from diagnosis.errors.model import disturbance_about, estimate
 from diagnosis.fit.setup import base_fit, measure
 from diagnosis.progress import silent
-from diagnosis.search import select
+from diagnosis.search import exchange, select
 from diagnosis.search.candidates import candidates
 from diagnosis.search.exchange import exchanged
 from diagnosis.search.found import Search, adjusted
@@ -61,6 +61,15 @@ def test_an_effect_gives_way_to_one_that_explains_more_beside_the_other(found: S
     assert set(best.names) == set(TRUE)
     assert best.fitted.values["restitution.factor_on_housner"] == pytest.approx(0.9, abs=0.01)
     assert best.fitted.values["tilt.tilt"] == pytest.approx(0.01, abs=0.001)
+
+
+def test_no_effect_gives_way_to_one_that_predicts_recordings_left_out_worse(
+    found: Search, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """However much more it explains, as long as no model explains everything."""
+    monkeypatch.setattr(exchange, "predicts_worse", lambda before, after: True)
+    best = exchanged_from(found, taken(found, "tilt", "velocity_restitution"))
+    assert set(best.names) == {"tilt", "velocity_restitution"}
 
 
 def test_no_effect_is_named_that_the_last_errors_do_not_ask_for(found: Search, monkeypatch: pytest.MonkeyPatch) -> None:
