@@ -133,7 +133,12 @@ def _assemble(
     progress("stating the errors", 0.87)
     errors = stages.needed(lambda: summary(found.errors, measured))
     judged = chosen
-    first_held = stages.needed(lambda: compare(found.base, judged, to_show, found.errors)) if to_show else None
+
+    def of_held(explanation: Explanation, recordings: Measured, share: float) -> Shown:
+        progress("before and after", share)
+        return compare(found.base, explanation, recordings, found.errors)
+
+    first_held = stages.needed(lambda: of_held(judged, to_show, 0.88)) if to_show else None
     against = contradicted(found, first_held) if first_held and climbed is None else None
     doubted = bool(flagged) or errors.inadequacy.large or against is not None
     verdict = verdict_of(found, near, doubted, not unexplained, finished)
@@ -166,13 +171,9 @@ def _assemble(
         final = chosen = settled_at
         shown = [stages.needed(lambda: compare(found.base, final, measured, found.errors))]
 
-    def of_held(recordings: Measured) -> Shown:
-        progress("before and after", 0.95)
-        return compare(found.base, final, recordings, found.errors)
-
     held = first_held
     if to_show and final is not judged:
-        held = stages.needed(lambda: of_held(to_show))
+        held = stages.needed(lambda: of_held(final, to_show, 0.95))
     if held:
         shown.append(held)
     missing = verdict != "nothing_missing" and (finished or bool(effects))

@@ -14,11 +14,13 @@ from diagnosis.fit.solver import Fitted, fit
 from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.found import Search, adjusted
-from diagnosis.search.refit import Explanation, best_of, further, ways, without
+from diagnosis.search.refit import Explanation, best_of, further, resized, ways, without
 
 NEAR, OWN = 0.3, 0.4
 """Share of the leader's gain from which an explanation is taken along, and from which its own errors are estimated."""
 MOST, MOST_OWN = 6, 4
+CLOSE = 30.0
+"""Gain from the best within which an explanation is fitted from other sizes too: three times what rivals have."""
 
 
 def reweighed(explanation: Explanation, errors: Errors) -> Explanation:
@@ -72,7 +74,11 @@ def weigh_again(found: Search) -> None:
     found.weighed = found.best.candidates
     found.base = reweighed(found.base, found.errors)
     others = [reweighed(e, found.errors) for e in near if e.candidates != found.best.candidates]
-    found.tried = [found.best, *others]
+    close = [e for e in others if adjusted(e) - adjusted(found.best) < CLOSE]
+    found.tried = [found.best, *(resized(e) if any(e is one for one in close) else e for e in others)]
+    if close:
+        found.best = min([resized(found.best), *found.tried], key=adjusted)
+        found.tried.append(found.best)
     found.singles = sorted((e for e in found.tried if len(e.candidates) == 1), key=adjusted)
 
 

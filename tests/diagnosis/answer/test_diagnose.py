@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from importlib import import_module
 
 import numpy as np
 import pytest
 
 from diagnosis import calibrate, diagnose
+from diagnosis.answer.heldout import Shown
 from diagnosis.answer.result import Diagnosis
-from diagnosis.search.found import MISSING
+from diagnosis.search.found import MISSING, Search
 from models.errors import InputError
 from tests.diagnosis.made import SPECIMEN, TRUE, recording
 
@@ -57,6 +59,22 @@ def test_a_stopped_search_gives_what_it_has() -> None:
     assert not found.finished
     assert found.effects and found.effects[0].name == "restitution"
     assert "stopped" in found.statement
+
+
+def test_an_answer_that_recordings_held_out_contradict_is_not_in_the_library(monkeypatch: pytest.MonkeyPatch) -> None:
+    """From the judgement to verdict and statement, with the effects found still told."""
+    judged: list[tuple[str, ...]] = []
+
+    def worse(found: Search, held: Shown) -> tuple[float, float]:
+        judged.append(found.chosen.names)
+        assert [r.name for r in held.measured.recordings] == ["test_1"]
+        return 0.04, 0.07
+
+    monkeypatch.setattr(import_module("diagnosis.answer.diagnose"), "contradicted", worse)
+    found = diagnosed({"restitution": {"factor_on_housner": 0.93}})
+    assert judged == [("restitution",)]
+    assert found.verdict == "not_in_library" and found.contradicted == (0.04, 0.07)
+    assert found.effects[0].name == "restitution" and "recordings held out" in found.statement
 
 
 @pytest.mark.parametrize("stage", ["intervals", "bootstrap", "before and after"])

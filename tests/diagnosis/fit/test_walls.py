@@ -22,7 +22,7 @@ from diagnosis.fit.unknowns import fixed_values, of_specimen
 from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.forces.action import _one_step, action
 from diagnosis.search.candidates import candidates
-from diagnosis.search.refit import Explanation, extend
+from diagnosis.search.refit import Explanation, extend, further, resized
 from diagnosis.search.screen import score
 from grids.recordings.base import CHANNELS, Recording
 from grids.specimen import Specimen
@@ -133,3 +133,18 @@ def test_what_a_law_does_along_the_motion_starts_from_what_the_layers_remember_t
     for rate in ("rotation_rate_1", "rotation_rate_2"):
         lost = np.where(measured.mask[:, 0, 1:], ahead[rate] - states[rate][:, 1:], 0.0)
         assert np.max(np.abs(lost)) < 0.02 * np.max(np.abs(acting.amount))
+
+
+def test_a_fit_from_other_sizes_gets_along_a_bent_valley() -> None:
+    """A damping couple and the dashpot of the layer do nearly the same; where a fit has crawled to, it is not over."""
+    measured = measure(WALL, [recorded(1, (("viscous_damping.couple_damping", 3.0e5),))])
+    one = misfit(measured)
+    base = fit(one, start_of(one.unknowns), measured.states)
+    (law,) = (c for c in candidates(measured, WALL) if c.name == "viscous_damping")
+    share = 0.02 * (law.unknowns[0].bounds[1] - law.null)
+    crawled = further(extend(Explanation((), base), law, law.null + share))
+    found = resized(crawled)
+    assert found.loss < crawled.loss - 3.0
+    sizes = found.fitted.values
+    assert abs(sizes["viscous_damping.couple_damping"] / 3.0e5 - 1.0) < 0.1
+    assert abs(sizes["base_damping"] - LAYERS["base_damping"]) < 0.7 * LAYERS["base_damping"]
