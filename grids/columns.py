@@ -6,6 +6,7 @@
     delimiter = ","                        # default; " " for any white space
     decimal = "."                          # default; "," where the logger writes 0,25
     skip = 0                               # lines before the header
+    between_samples = "linear"             # of a simulated recording (see `grids.recordings.base.Recording`)
     header = true                          # one line with the columns' names; false: columns by number
     [columns]
     base_acceleration_x = { column = "acc_x", unit = "g", sign = -1 }
@@ -45,7 +46,8 @@ class Column(Schema):
 class Layout(Schema):
     """What the TOML beside a table states; exactly one of ``time_step`` and ``time``.
 
-    ``channels``: what columns of a recording measure (see `grids.recordings.placed`).
+    ``channels``: what columns of a recording measure (see `grids.recordings.placed`); ``between_samples``: how its base
+    moves between them, "band_limited" where nothing is said.
     """
 
     columns: dict[str, Column] = Field(min_length=1)
@@ -56,6 +58,7 @@ class Layout(Schema):
     decimal: Literal[".", ","] = "."
     skip: int = Field(default=0, ge=0)
     header: bool = True
+    between_samples: Literal["linear", "band_limited"] | None = None
     title: str = ""
     source: str = ""
     licence: str = ""

@@ -11,6 +11,7 @@ from diagnosis.answer.result import Undecided, Verdict
 from diagnosis.errors.adequacy import Inadequacy
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.found import MISSING, Search, adjusted, price
+from diagnosis.search.left_out import WORSE
 from diagnosis.search.null import LEAST_P
 from diagnosis.search.refit import Explanation, gain_by_window
 
@@ -18,8 +19,6 @@ UNEXPLAINED = 0.5
 """Share of the squared motion in the windows that, left over by the best model, makes any name meaningless."""
 CHANCE = 0.05
 """p-value from which on the strongest suspect is no stronger than chance."""
-WORSE = 1.05
-"""Misfit on recordings held out, over that without what was found, beyond which that is not the explanation."""
 
 
 def explains(shown: Shown) -> bool:

@@ -20,7 +20,7 @@ from diagnosis.search.refit import Explanation
 BEYOND = 1.1
 """Peak over the largest learned from, from which a prediction extrapolates."""
 WORSE = 1.05
-"""Error of a prediction over that of another from which on it is worse."""
+"""Error over that of another prediction from which on it is worse: of recordings left out, and of those held out."""
 
 
 def predicts_worse(before: Explanation, after: Explanation) -> bool:

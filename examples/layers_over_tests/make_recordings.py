@@ -29,7 +29,8 @@ SOFTENING, STRAIN = 0.5, 0.3
 STEP, LENGTH = 0.005, 6.0
 TESTS = (0.3, 0.8, 0.8, 2.2, 0.8)
 """Largest acceleration of the table by test, m s-2: a level that lifts the wall is repeated after each stronger one."""
-COLUMNS = """time = { column = "time", unit = "s" }
+COLUMNS = """between_samples = "linear"
+time = { column = "time", unit = "s" }
 
 [columns]
 base_acceleration_x = { column = "base_acceleration_x", unit = "m s-2" }

@@ -64,4 +64,5 @@ def read(path: Path) -> Raw:
     signs = [name for name, column in layout.columns.items() if column.sign == -1]
     notes = (f"sign turned as stated: {', '.join(signs)}",) if signs else ()
     source = {k: getattr(layout, k) for k in ("title", "source", "licence") if getattr(layout, k)}
-    return Raw(table.time_step, table.start, channels, levels, notes, source, places)
+    smooth = layout.between_samples != "linear"
+    return Raw(table.time_step, table.start, channels, levels, notes, source, places, smooth)

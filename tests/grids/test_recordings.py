@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from grids.data_folder import data_folder
+from grids.motions import read_motion
 from grids.recordings import noise_of, read_recording
 from models.errors import InputError
 
@@ -79,6 +80,23 @@ def test_a_recording_is_band_limited_between_samples_unless_it_says_linear(tmp_p
     data["base_acceleration_x"].attrs["between_samples"] = "linaer"
     with pytest.raises(InputError, match=r"between_samples is 'linaer'; did you mean 'linear'"):
         read_recording(stored(tmp_path, data))
+
+
+def test_a_table_says_so_too_and_a_motion_cannot(tmp_path: Path) -> None:
+    header, rows = "t,a,r", [f"{k},{0.1 * k},{0.01 * k}" for k in range(20)]
+    (tmp_path / "run.csv").write_text("\n".join([header, *rows]))
+    channels = {"base_acceleration_x": ("a", "m/s2"), "rotation_1": ("r", "rad")}
+    columns = [f'{name} = {{ column = "{column}", unit = "{unit}" }}' for name, (column, unit) in channels.items()]
+    layout = "\n".join(['time_step = "0.01 s"', "[columns]", *columns])
+    (tmp_path / "run.toml").write_text(layout)
+    assert read_recording(tmp_path / "run.csv").band_limited
+    (tmp_path / "run.toml").write_text(f'between_samples = "linear"\n{layout}')
+    assert not read_recording(tmp_path / "run.csv").band_limited
+    assert read_motion(tmp_path / "run.csv").time_step == 0.01  # which is linear anyway
+    (tmp_path / "run.toml").write_text(f'between_samples = "band_limited"\n{layout}')
+    assert read_recording(tmp_path / "run.csv").band_limited
+    with pytest.raises(InputError, match=r"a motion is linear between samples"):
+        read_motion(tmp_path / "run.csv")
 
 
 def test_units_become_si_and_time_starts_at_zero(tmp_path: Path) -> None:

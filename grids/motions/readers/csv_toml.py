@@ -13,10 +13,14 @@ from typing import Any
 from grids.columns import Layout, read_columns, read_layout
 from grids.motions.readers.base import Reader, Record, assemble, check_samples, component_name
 from grids.motions.units import acceleration_factor
+from models.errors import InputError
 
 
 def _read(path: Path, key: str | None, statement: Mapping[str, Any]) -> Record:
     layout = read_layout(path, statement)
+    if layout.between_samples == "band_limited":
+        where = path.with_suffix(".toml").name
+        raise InputError(f"{where}: a motion is linear between samples; leave between_samples = 'band_limited' out.")
     named = {name: column for name, column in layout.columns.items() if component_name(name)}
     layout = layout.model_copy(update={"columns": named or layout.columns})
     channels = read_columns(path, layout, lambda _, unit, where: acceleration_factor(unit, where))
