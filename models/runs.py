@@ -124,6 +124,11 @@ class Prescribed:
         """The last mark of each lane (n,)."""
         return self.last if self.last.size else np.full(self.first.size, self.marks[-1])
 
+    def held(self, states: Sequence[str]) -> tuple[Index, FloatArray]:
+        """Places of the prescribed ones among the model's ``states`` (h,), and the motion (r, m, h) in that order."""
+        places = np.array([k for k, name in enumerate(states) if name in self.motion], np.int64)
+        return places, np.stack([self.motion[states[k]] for k in places], axis=-1)
+
     def take(self, lanes: Index) -> Prescribed:
         """That of some lanes."""
         return replace(self, first=self.first[lanes], row=self.rows[lanes], last=self.ends[lanes])

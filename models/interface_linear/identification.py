@@ -1,4 +1,4 @@
-"""What a diagnosis needs to know of walls on linear layers: as on other rubber, but nothing is carried yet."""
+"""What a diagnosis needs to know of walls on linear layers: as on other rubber, which has laws of its own there."""
 
 from __future__ import annotations
 
@@ -6,4 +6,4 @@ from dataclasses import replace
 
 from models.interface import identification
 
-IDENTIFICATION = replace(identification.IDENTIFICATION, carrying=False)
+IDENTIFICATION = replace(identification.IDENTIFICATION, coordinates=(), whole={})

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from models.base import FloatArray
 from models.interface import modes
@@ -12,7 +12,8 @@ from models.interface_linear import declaration, equation
 from models.interface_linear.identification import IDENTIFICATION
 from models.interface_linear.observe import observe
 from models.interface_linear.poses import poses
-from models.runs import Request, Run
+from models.runs import Prescribed, Request, Run
+from models.shaking import Shaking
 
 
 class InterfaceLinear(Interface):
@@ -49,6 +50,17 @@ class InterfaceLinear(Interface):
         from models.interface_linear.reference.run import run
 
         return run(coefficients, request)
+
+    def carry_lanes(
+        self,
+        coefficients: LayeredWall,
+        shakings: Sequence[Shaking],
+        along: Prescribed,
+        initial: Mapping[str, FloatArray],
+    ) -> dict[str, FloatArray]:
+        from models.interface_linear.lanes.carried import carry
+
+        return carry(coefficients, shakings, along, initial)
 
     def observe(self, coefficients: LayeredWall, samples: FloatArray) -> Mapping[str, FloatArray]:
         return observe(coefficients, samples)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,7 +40,19 @@ def recorded(shaking: Shaking, per_sample: int, tail: float, more: Sequence[Floa
     return Record(samples, extremes(samples[:-1]), step, shaken, end)
 
 
-def end_to_end(records: Sequence[Record]) -> tuple[Record, NDArray[np.int64]]:
+def of_lanes(
+    shakings: Sequence[Shaking], more: Callable[[Shaking], Sequence[FloatArray | None]] = lambda shaking: ()
+) -> tuple[Record, NDArray[np.int64]]:
+    """The shaking of each of n lanes at its own samples, each once, and where that of a lane begins (n,).
+
+    ``more``: channels beyond a and a_z, as of `recorded`.
+    """
+    distinct = {id(shaking): shaking for shaking in shakings}
+    record, begins = _end_to_end([recorded(shaking, 1, 0.0, more(shaking)) for shaking in distinct.values()])
+    return record, begins[[list(distinct).index(id(shaking)) for shaking in shakings]]
+
+
+def _end_to_end(records: Sequence[Record]) -> tuple[Record, NDArray[np.int64]]:
     """Records of one step after one another, for lanes of which each stays within its own; where each begins."""
     samples = np.concatenate([record.samples for record in records], axis=1)
     begins = np.cumsum([0, *(record.samples.shape[1] for record in records[:-1])])

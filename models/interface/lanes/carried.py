@@ -19,7 +19,7 @@ from models.interface.lanes.effects.rows import N_ENDED
 from models.interface.lanes.laws import HISTORY, given_laws, some
 from models.interface.lanes.run import given_table, low_passes, pitching, substeps
 from models.interface.layered import LayeredWall
-from models.lanes.record import end_to_end, recorded
+from models.lanes.record import of_lanes
 from models.lanes.tables import groups
 from models.runs import Prescribed
 from models.shaking import Shaking
@@ -40,21 +40,17 @@ def carry(
     steps = substeps(wall, modes.at_rest(wall).squares, time_step)
     given[:, r.Q_STEPS] = steps
     laws = given_laws(wall, at_rest, time_step / steps, initial)
-    held = np.array([k for k, name in enumerate(STATES) if name in motion], np.int64)
-    prescribed = np.stack([motion[STATES[k]] for k in held], axis=-1)
+    held, prescribed = along.held(STATES)
     states = np.zeros((wall.size, marks.size, len(STATES)))
     others = np.zeros((wall.size, marks.size, N_ENDED))
     history = np.zeros((wall.size, marks.size, *(() if laws is None else laws.hidden.shape[1:])))
-    distinct = {id(shaking): shaking for shaking in shakings}
-    own = np.array([list(distinct).index(id(shaking)) for shaking in shakings])
     for (_, corner), lanes in groups(steps, low_passes(wall)):
         part = wall if lanes.size == wall.size else wall.take(lanes)
         moved, past, more_moved = (np.zeros((lanes.size, *whole.shape[1:])) for whole in (states, history, others))
         more = None if effects is None else given_effects(part, part.effects, _of(begun, lanes), at_rest[lanes])
-        records = [recorded(shaking, 1, 0.0, pitching(wall, shaking, corner)) for shaking in distinct.values()]
-        record, begins = end_to_end(records)
+        record, begins = of_lanes(shakings, lambda shaking, corner=corner: pitching(wall, shaking, corner))
         advance(
-            record, along.first[lanes] + begins[own[lanes]], last[lanes], given[lanes],
+            record, along.first[lanes] + begins[lanes], last[lanes], given[lanes],
             prescribed, rows[lanes], held, marks,
             moved, past, more_moved,
             None if wall.joints == "both" or more is not None else True, None if laws is None else True,

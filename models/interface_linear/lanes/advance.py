@@ -136,6 +136,42 @@ def first_state(given: Table, lane: int, joint: int, x: Table) -> int:
     return HALF_RIGHT if turn >= 0.0 else HALF_LEFT
 
 
+@inlined
+def fresh(most_levels: int) -> Work:
+    """Room for one wall after the other."""
+    return Work(
+        np.zeros(4, np.int64), np.zeros(r.N_STATE), np.zeros(r.N_STATE), np.zeros(r.N_READING), np.zeros(r.N_READING),
+        np.zeros(r.N_GATHERED), np.zeros((STATES * STATES, most_levels + 1, COLUMNS, 8)),
+        np.zeros(STATES * STATES, np.bool_), np.zeros((ORDER + 1, 8)), np.zeros((4, ORDER + 1)),
+        np.zeros((COLUMNS, 8)), np.zeros((COLUMNS, 8)),
+    )  # fmt: skip
+
+
+@inlined
+def begin(given: Table, lane: int, work: Work) -> None:
+    """A lane at its start, nothing gathered, no propagator at hand."""
+    x, gathered = work.x, work.gathered
+    work.built[:], gathered[:] = False, 0.0
+    gathered[r.ONSET_B : r.ONSET_T + 1], gathered[r.SHARE_B : r.SHARE_T + 1] = NEVER, 1.0
+    gathered[r.ACROSS_B : r.ACROSS_T + 1] = 1.0
+    for row in range(8):
+        x[row] = given[lane, r.START + row]
+
+
+@inlined
+def drive(given: Table, lane: int, samples: Table, time_step: float, shaken: int, i: int, x: Table) -> None:
+    """The inputs and their slopes from sample i of the record on."""
+    if i < shaken:
+        x[r.A] = given[lane, r.OFFSET] + given[lane, r.SCALE] * samples[0, i]
+        x[r.G] = given[lane, r.GRAVITY] + given[lane, r.VSCALE] * samples[1, i]
+        x[r.A_SLOPE] = given[lane, r.SCALE] * (samples[0, i + 1] - samples[0, i]) / time_step
+        x[r.G_SLOPE] = given[lane, r.VSCALE] * (samples[1, i + 1] - samples[1, i]) / time_step
+    else:
+        # beyond the record's last sample the base is at rest: it may jump there
+        x[r.A], x[r.G] = given[lane, r.OFFSET], given[lane, r.GRAVITY]
+        x[r.A_SLOPE], x[r.G_SLOPE] = 0.0, 0.0
+
+
 @called
 def close(result: Table, given: Table, gathered: Table, lane: int, x: Table, time: float, how: int, body: int) -> None:
     """Write the account of a lane that ends at ``time`` (s)."""
@@ -182,12 +218,7 @@ def advance(
     """
     samples, time_step, shaken = record.samples, record.step, record.shaken
     result, trace, log, count = tables.result, tables.trace, tables.log, tables.length
-    work = Work(
-        np.zeros(4, np.int64), np.zeros(r.N_STATE), np.zeros(r.N_STATE), np.zeros(r.N_READING), np.zeros(r.N_READING),
-        np.zeros(r.N_GATHERED), np.zeros((STATES * STATES, most_levels + 1, COLUMNS, 8)),
-        np.zeros(STATES * STATES, np.bool_), np.zeros((ORDER + 1, 8)), np.zeros((4, ORDER + 1)),
-        np.zeros((COLUMNS, 8)), np.zeros((COLUMNS, 8)),
-    )  # fmt: skip
+    work = fresh(most_levels)
     place, x, gathered = work.place, work.x, work.gathered
     steps = 0
     for lane in range(given.shape[0]):
@@ -195,11 +226,7 @@ def advance(
         per, levels = int(given[lane, r.STEPS]), int(given[lane, r.LEVELS])
         length = time_step / per
         unit = length / (1 << levels)
-        work.built[:], gathered[:] = False, 0.0
-        gathered[r.ONSET_B : r.ONSET_T + 1], gathered[r.SHARE_B : r.SHARE_T + 1] = NEVER, 1.0
-        gathered[r.ACROSS_B : r.ACROSS_T + 1] = 1.0
-        for row in range(8):
-            x[row] = given[lane, r.START + row]
+        begin(given, lane, work)
         gathered[r.PEAK_1], gathered[r.PEAK_2] = abs(x[0]), abs(x[1])
         base, top = first_state(given, lane, 0, x), first_state(given, lane, 1, x)
         place[0], place[1], place[3] = STATES * base + top, levels, 0
@@ -213,15 +240,7 @@ def advance(
                 gathered[r.ONSET_B + joint] = i * time_step
         while True:
             shaking = i < shaken
-            x[r.A] = given[lane, r.OFFSET] + given[lane, r.SCALE] * samples[0, i]
-            x[r.G] = given[lane, r.GRAVITY] + given[lane, r.VSCALE] * samples[1, i]
-            x[r.A_SLOPE], x[r.G_SLOPE] = 0.0, 0.0
-            if shaking:
-                x[r.A_SLOPE] = given[lane, r.SCALE] * (samples[0, i + 1] - samples[0, i]) / time_step
-                x[r.G_SLOPE] = given[lane, r.VSCALE] * (samples[1, i + 1] - samples[1, i]) / time_step
-            else:
-                # beyond the record's last sample the base is at rest: it may jump there
-                x[r.A], x[r.G] = given[lane, r.OFFSET], given[lane, r.GRAVITY]
+            drive(given, lane, samples, time_step, shaken, i, x)
             read(system, place[0], x, work.before)
             if i == first[lane]:
                 look(gathered, given, lane, place[0], x, work.before)

@@ -80,6 +80,11 @@ def fastest_rate(wall: LayeredWall) -> FloatArray:
     return np.asarray(np.sqrt(fastest) + modes.modes(wall, mass, damping).squares[:, -1])
 
 
+def systems_of(wall: LayeredWall) -> FloatArray:
+    """`equation.systems` as the kernels read them, (n, 25, 10, N_ROWS)."""
+    return np.ascontiguousarray(np.swapaxes(equation.systems(wall), 2, 3))
+
+
 def run(wall: LayeredWall, request: Request, refinement: int = 1, brief: float = BRIEF) -> Run:
     """Run n lanes of ``wall`` as requested; ``refinement`` divides every step. Samples: q, q'.
 
@@ -93,10 +98,9 @@ def run(wall: LayeredWall, request: Request, refinement: int = 1, brief: float =
     steps = 0
     for start in range(0, wall.size, LANES_AT_ONCE):
         some = slice(start, start + LANES_AT_ONCE)
-        systems = np.ascontiguousarray(np.swapaxes(equation.systems(wall.take(some)), 2, 3))
         steps += advance(
-            record, first[some], last[some], given[some], systems, int(given[some, r.LEVELS].max()),
-            part(tables, some), request.history,
+            record, first[some], last[some], given[some], systems_of(wall.take(some)),
+            int(given[some, r.LEVELS].max()), part(tables, some), request.history,
         )  # fmt: skip
     lost = diverged(wall, request, tables.result)
     tables.result[:, kept.R_FAILED] = np.maximum(tables.result[:, kept.R_FAILED], lost)
