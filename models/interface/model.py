@@ -63,11 +63,15 @@ class Interface(Model[LayeredWall]):
     def derive(self, values: Values, options: Mapping[str, str] | None = None) -> dict[str, FloatArray]:
         """Static state, natural frequencies, mode shapes and modal damping at rest, arrays ``(n,)``."""
         wall = self.build(values, options)
-        return modes.derived(wall, self.natural_modes(wall))
+        return modes.derived(wall, self.natural_modes(wall), self.rest(wall))
 
     def natural_modes(self, wall: LayeredWall) -> modes.Modes:
         """Undamped modes in full contact."""
         return modes.at_rest(wall)
+
+    def rest(self, wall: LayeredWall) -> FloatArray:
+        """q ``(n, 4)`` at rest under gravity, relaxed."""
+        return modes.static_state(wall)
 
     def run_lanes(self, coefficients: LayeredWall, request: Request) -> Run:
         from models.interface.lanes.run import run

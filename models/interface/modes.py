@@ -153,9 +153,8 @@ def modes(wall: LayeredWall, mass: FloatArray, stiffness: FloatArray) -> Modes:
     return Modes(squares, shapes / largest, ratios)
 
 
-def derived(wall: LayeredWall, found: Modes) -> dict[str, FloatArray]:
-    """The declared derived quantities, arrays ``(n,)``; nan for modes that a bonded joint takes away."""
-    rest = static_state(wall)
+def derived(wall: LayeredWall, found: Modes, rest: FloatArray) -> dict[str, FloatArray]:
+    """The declared derived quantities, arrays ``(n,)``, of q at ``rest`` (n, 4); nan for modes without a coordinate."""
     missing = np.full((wall.size, 4), np.nan)
     frequencies, damping, shapes = missing.copy(), missing.copy(), np.full((wall.size, 4, 4), np.nan)
     count = found.squares.shape[1]

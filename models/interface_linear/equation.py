@@ -19,7 +19,7 @@ from __future__ import annotations
 import numpy as np
 
 from models.base import FloatArray
-from models.interface import modes
+from models.interface import modes, resting, standing
 from models.interface.layered import FREE, LayeredWall
 
 FULL, HALF_RIGHT, HALF_LEFT, HELD_RIGHT, HELD_LEFT = range(5)
@@ -45,6 +45,29 @@ def matrices(
     damping = modes.layer_matrix(wall, wall.base_damping, wall.top_damping, sides)
     stiffness = modes.layer_matrix(wall, wall.base_stiffness, wall.top_stiffness, sides)
     return modes.mass_matrix(wall, height), damping, stiffness - modes.gravity_matrix(wall, height)
+
+
+def rest(wall: LayeredWall) -> FloatArray:
+    """q ``(n, 4)`` at rest under gravity, relaxed: K q = f of full contact; where that opens a joint see `lifted`."""
+    found = resting.upright(wall).copy()
+    if (lanes := np.flatnonzero(wall.offset)).size:
+        some, free = wall.take(lanes), FREE[wall.joints]
+        force = loads(some) @ np.stack([some.offset, some.gravity], axis=1)[:, :, None]
+        stiffness = matrices(some, (0, 0))[2]
+        found[lanes] = (free @ np.linalg.solve(free.T @ stiffness @ free, free.T @ force))[:, :, 0]
+    return found
+
+
+def lifted(wall: LayeredWall) -> standing.Unable:
+    """Walls that lean so far that a joint is open at rest, (n,), and a sentence: no rest of full contact."""
+    state = rest(wall)
+    up = [
+        np.einsum("nk,nk->n", gap(wall, joint, side), state) > 0.0
+        for joint, name in enumerate(("base", "top"))
+        for side in (1, -1)
+        if name in wall.rubber_joints
+    ]
+    return np.any(up, axis=0), "the base leans so far that a joint is open at rest: less tilt, or a longer wall"
 
 
 def at_rest(wall: LayeredWall) -> modes.Modes:
@@ -97,7 +120,7 @@ def strain_rows(wall: LayeredWall, joint: int, side: int) -> FloatArray:
 
 def sizes(wall: LayeredWall) -> tuple[FloatArray, FloatArray]:
     """Compression (m) and sigma (N m-2) of both joints at the uplift under their weight, ``(n, 2)``; 1 if bonded."""
-    compression = -modes.static_state(wall)[:, 2:]
+    compression = -rest(wall)[:, 2:]
     compression = np.where(compression > 0.0, compression, 1.0)
     width = np.stack([wall.base_half_width, wall.top_half_width], axis=1)
     k = np.stack([wall.base_stiffness, wall.top_stiffness], axis=1)

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+
 from models.base import FloatArray
-from models.interface import modes
+from models.interface import modes, standing
 from models.interface.layered import LayeredWall
 from models.interface.model import Interface
 from models.interface_linear import declaration, equation
@@ -32,7 +34,7 @@ class InterfaceLinear(Interface):
     outputs = declaration.OUTPUTS
     identification = IDENTIFICATION
     bodies = 2
-    resumes_with = ("vertical_acceleration", "pivot_inset")
+    resumes_with = ("vertical_acceleration", "pivot_inset", "tilt")
 
     def resolve_options(self, options: Mapping[str, str] | None) -> dict[str, str]:
         """Every option of `interface` with its word: `joints` as chosen, the others as the paper has them."""
@@ -40,6 +42,14 @@ class InterfaceLinear(Interface):
 
     def natural_modes(self, wall: LayeredWall) -> modes.Modes:
         return equation.at_rest(wall)
+
+    def rest(self, wall: LayeredWall) -> FloatArray:
+        return equation.rest(wall)
+
+    def cannot_stand(self, coefficients: LayeredWall) -> list[standing.Unable]:
+        leaning = bool(np.any(coefficients.offset))
+        level = coefficients.replace(offset=0.0) if leaning else coefficients
+        return [*standing.cannot_stand(level), *([equation.lifted(coefficients)] if leaning else [])]
 
     def run_lanes(self, coefficients: LayeredWall, request: Request) -> Run:
         from models.interface_linear.lanes.run import run

@@ -6,9 +6,9 @@ import numpy as np
 
 from models.base import FloatArray
 from models.interface.layered import LayeredWall
-from models.interface.modes import static_state
 from models.interface.poses import of_bodies
 from models.interface_linear.equation import lever
+from models.interface_linear.equation import rest as of_rest
 from models.observed import Observed
 
 
@@ -18,7 +18,7 @@ def poses(wall: LayeredWall, state: FloatArray) -> Observed:
     level = lever(wall)[:, None]
 
     def rest(coordinate: int) -> FloatArray:
-        return np.asarray(static_state(wall)[:, coordinate, None])
+        return np.asarray(of_rest(wall)[:, coordinate, None])
 
     return Observed(
         {

@@ -32,7 +32,7 @@ MECHANISM = Mechanism(
     equation="a -> a - g sin(tau), G -> G - g (1 - cos(tau)); a and a_z along and across the leaning base",
     signature="differs left and right; onset at unequal accelerations",
     sentence="the base leans by {tilt:+.4f} rad (clockwise positive)",
-    acts={"housner": on_housner, "stacked": on_stacked, "interface": on_interface},
+    acts={"housner": on_housner, "stacked": on_stacked, "interface": on_interface, "interface_linear": on_interface},
     static_test="put a level on the base",
     source="statics of a plane that leans",
 )

@@ -48,7 +48,7 @@ def given_table(wall: LayeredWall, scale: FloatArray, initial: Mapping[str, Floa
         r.RUBBER_B: float(wall.joints != "top"), r.RUBBER_T: float(wall.joints != "base"),
     }  # fmt: skip
     table = filled(wall.size, r.N_GIVEN, constants)
-    rest = modes.static_state(wall)
+    rest = equation.rest(wall)
     for k, name in enumerate(STATES):
         table[:, r.START + k] = initial.get(name, rest[:, k] if k < 4 else 0.0)
     return table

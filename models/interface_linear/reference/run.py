@@ -17,7 +17,6 @@ from models.base import STATUS, FloatArray
 from models.ground import Piece, pieces
 from models.interface.declaration import CALM, STATES
 from models.interface.layered import LayeredWall
-from models.interface.modes import static_state
 from models.interface.observe import with_onset
 from models.interface.reference.account import Account
 from models.interface_linear import equation
@@ -33,7 +32,7 @@ TOUCH = 1e-12
 def run(wall: LayeredWall, request: Request, rtol: float = 1e-10, brief: float = BRIEF) -> Run:
     """One wall (a `LayeredWall` of one lane) as requested, from the start of the shaking. Samples: q, q'."""
     body = _Run(wall, request.times, rtol, brief, may_rest=not request.history)
-    rest = dict(zip(STATES, [*static_state(wall)[0], 0.0, 0.0, 0.0, 0.0], strict=True))
+    rest = dict(zip(STATES, [*equation.rest(wall)[0], 0.0, 0.0, 0.0, 0.0], strict=True))
     body.begin(np.array([request.start.get(name, rest[name]) for name in STATES]))
     for piece in pieces(wall, request.shaking, float(request.scale[0]), request.until):
         body.advance(piece, shaken=piece.start < request.shaking.duration)

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import models
 from diagnosis.data.measured import left_out
 from diagnosis.fit.setup import measure
 from grids.recordings.base import Recording
@@ -47,10 +48,15 @@ def test_what_a_window_needs_is_named_with_the_recordings_that_lack_it() -> None
         measure(two, [recording("a", 1), recording("b", 2)])
 
 
-@pytest.mark.parametrize("model", ["interface_linear"])
-def test_a_model_whose_motion_no_recording_holds_is_not_offered(model: str) -> None:
-    with pytest.raises(
-        InputError,
-        match=f"of model {model} are not offered yet.*; use model housner or stacked or interface or isolated",
-    ):
-        measure(Specimen(title="wall", model=model, parameters={}), [recording("a", 1)])
+@pytest.mark.parametrize("lacking", ["declaration", "states"])
+def test_a_model_whose_motion_no_recording_holds_is_not_offered(lacking: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing declared, or latent states that are not carried."""
+    model = models.get("interface_linear")
+    left = None if lacking == "declaration" else replace(model.identification, carrying=False)
+    monkeypatch.setattr(model, "identification", left)
+    why = (
+        "what they need to know of it" if lacking == "declaration" else "displacement_z_1, .* which no recording holds"
+    )
+    offered = "use model housner or stacked or interface or isolated"
+    with pytest.raises(InputError, match=f"of model interface_linear are not offered yet: {why}.*; {offered}, or"):
+        measure(Specimen(title="wall", model="interface_linear", parameters={}), [recording("a", 1)])
