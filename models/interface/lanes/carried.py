@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,7 +49,7 @@ def carry(
         part = wall if lanes.size == wall.size else wall.take(lanes)
         moved, past, more_moved = (np.zeros((lanes.size, *whole.shape[1:])) for whole in (states, history, others))
         more = None if effects is None else given_effects(part, part.effects, _of(begun, lanes), at_rest[lanes])
-        record, begins = of_lanes(shakings, lambda shaking, corner=corner: pitching(wall, shaking, corner))
+        record, begins = of_lanes(shakings, partial(pitching, wall, low_pass=corner))
         advance(
             record, along.first[lanes] + begins[lanes], last[lanes], given[lanes],
             prescribed, rows[lanes], held, marks,
