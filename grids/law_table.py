@@ -2,7 +2,7 @@
 
 Each term has 12 rows: from the reach below zero to zero, then from zero to the reach above it, evenly spaced, in SI.
 Zero stands twice, since a law may jump there. Terms of the same variable share its reach; a term that is left out
-does nothing. Terms and units: `models.mechanisms.table_force`.
+does nothing. Terms and units: the tables that the model declares (`models.tables`).
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 
 from grids.files import read_text
 from models.errors import InputError, nearest
-from models.mechanisms.table_force import KNOTS, MECHANISM, REACHES, SIDES, TERMS, row
+from models.tables import KNOTS, SIDES, Tables, row
 
 LAW_FILE = "law.csv"
 """Name of the file beside a specimen that is written."""
@@ -25,11 +25,11 @@ EVEN = 1e-6
 """Share of the reach by which a row may be off its even spacing."""
 
 
-def law_text(parameters: Mapping[str, float]) -> str:
+def law_text(parameters: Mapping[str, float], tables: Tables) -> str:
     """The file of a law given by the mechanism's parameters."""
     lines = [",".join(COLUMNS)]
-    for term, (variable, _, _) in TERMS.items():
-        reach = parameters[REACHES[variable][0]]
+    for term in tables.terms:
+        reach = parameters[tables.variable(term).reach]
         below, above = ([parameters[row(term, side, k)] for k in range(KNOTS)] for side in SIDES)
         if any(below) or any(above):
             at = np.linspace(0.0, reach, KNOTS)
@@ -38,7 +38,7 @@ def law_text(parameters: Mapping[str, float]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def read_law(path: Path) -> dict[str, float]:
+def read_law(path: Path, tables: Tables) -> dict[str, float]:
     """The mechanism's parameters from such a file. Raises InputError."""
     entries = list(csv.reader(read_text(path, "law").splitlines()))
     if not entries or tuple(entries[0][:3]) != COLUMNS:
@@ -48,13 +48,13 @@ def read_law(path: Path) -> dict[str, float]:
         where = f"{path.name}, line {number}"
         if len(entry) < len(COLUMNS):
             raise InputError(f"{where}: {len(entry)} columns; give {', '.join(COLUMNS)}.")
-        if entry[0] not in TERMS:
-            raise InputError(f"{where}: term '{entry[0]}'; {nearest(entry[0], TERMS)}")
+        if entry[0] not in tables.terms:
+            raise InputError(f"{where}: term '{entry[0]}'; {nearest(entry[0], tables.terms)}")
         rows.setdefault(entry[0], []).append((_number(entry[1], where), _number(entry[2], where)))
-    found = MECHANISM.nulls
+    found = {name: 0.0 for name, _ in tables.rows} | {v.reach: 1.0 for v in tables.variables.values()}
     reaches: dict[str, float] = {}
     for term, pairs in rows.items():
-        name = REACHES[TERMS[term][0]][0]
+        name = tables.variable(term).reach
         reach = _reach(pairs, f"{path.name}, {term}")
         if not math.isclose(reaches.setdefault(name, reach), reach, rel_tol=EVEN):
             raise InputError(

@@ -48,6 +48,7 @@ from grids.units import to_si, with_unit
 from models.errors import InputError, nearest
 from models.kinematics import Place
 from models.model import Model
+from models.tables import Tables
 
 MOST_TOLERANCE = 1.0
 STAGES = "stages"
@@ -179,8 +180,8 @@ def _mechanisms(file: SpecimenFile, targets: Targets, folder: Path) -> dict[str,
         values = {parameter: value for parameter, value in table.items() if parameter != STAGES}
         if not values:
             raise InputError(f"[mechanisms.{name}] is empty; give its parameters or leave the table out.")
-        if mechanism.tabulated:
-            mechanisms[name] = _law(name, values, folder)
+        if mechanism.tabulated is not None:
+            mechanisms[name] = _law(name, values, mechanism.tabulated, folder)
             continue
         mechanisms[name] = {}
         for parameter, value in values.items():
@@ -200,11 +201,11 @@ def _stages(file: SpecimenFile) -> dict[str, tuple[Stage, ...]]:
     return found
 
 
-def _law(name: str, table: Mapping[str, Any], folder: Path) -> dict[str, float]:
+def _law(name: str, table: Mapping[str, Any], tables: Tables, folder: Path) -> dict[str, float]:
     """The values of a law in a table, from its file."""
     if list(table) != ["file"] or not isinstance(table["file"], str):
         raise InputError(f'[mechanisms.{name}] has {", ".join(table)}: give file = "law.csv", and nothing else.')
-    return read_law(folder / table["file"])
+    return read_law(folder / table["file"], tables)
 
 
 def _tolerance(file: SpecimenFile, parameters: Mapping[str, float], targets: Targets) -> dict[str, float]:

@@ -10,7 +10,7 @@ from typing import Any
 from grids.law_table import LAW_FILE
 from grids.recordings.placed import attributes
 from grids.specimen import Specimen
-from models.mechanisms.table_force import MECHANISM as LAW
+from models.mechanisms import acting_on
 
 
 def specimen_text(specimen: Specimen) -> str:
@@ -32,7 +32,8 @@ def specimen_text(specimen: Specimen) -> str:
     parts += [f"[{name}]\n{_lines(table)}" for name, table in tables.items() if table or name == "parameters"]
     parts += [f"[channels.{name}]\n{_lines(attributes(place))}" for name, place in specimen.places.items()]
     for name, values in specimen.mechanisms.items():
-        named = {"file": LAW_FILE} if name == LAW.name else values
+        known = acting_on(specimen.model).get(name)
+        named = {"file": LAW_FILE} if known is not None and known.tabulated is not None else values
         parts.append(f"[mechanisms.{name}]\n{_lines(named)}")
         parts += [f"[[mechanisms.{name}.stages]]\n{_lines(vars(one))}" for one in specimen.stages.get(name, ())]
     return "\n".join(parts)

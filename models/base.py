@@ -13,6 +13,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from models.tables import Tables
+
 Values = Mapping[str, Any]
 """Parameter values by name: floats or arrays that broadcast to the lanes' shape ``(n,)``."""
 FloatArray = NDArray[np.float64]
@@ -111,8 +113,8 @@ class Mechanism:
     """Models on which ``parameter_base`` and ``parameter_top`` address one joint alone."""
     sentences: Mapping[str, str] = field(default_factory=dict)
     """By parameter: the sentence where the mechanism acts through that one alone, instead of its first."""
-    tabulated: bool = False
-    """Its parameters are the values of a table: files name the table, and a diagnosis does not switch it on."""
+    tabulated: Tables | None = None
+    """The tables whose values its parameters are: files name the table, and a diagnosis does not switch it on."""
     static_test: str = ""
     """A test without shaking that would settle it, as an instruction; empty where there is none."""
 

@@ -19,7 +19,8 @@ from grids.plan import read_plan
 from grids.recordings import Recording, read_recording
 from grids.recordings.outcomes import read_outcomes
 from grids.specimen import read_specimen
-from models.mechanisms.table_force import KNOTS, MECHANISM, SIDES, row
+from models.mechanisms.table_force import MECHANISM, TABLES
+from models.tables import KNOTS, SIDES, row
 from study.manifest import Manifest
 from study.open import open_study
 from study.run import run
@@ -193,7 +194,7 @@ def _tables() -> list[Reader]:
         | {"reach_rotation": 0.05}
         | {row("rotation", s, k): 0.004 * k for s in SIDES for k in range(KNOTS)}
     )
-    table = law_text(law).encode()
+    table = law_text(law, TABLES).encode()
     plans = (plan_text(motion=PULSE), plan_text(motion=PULSE).replace("[outputs]", "[options]\n[outputs]"))
     motion = {"001.csv": b"t,a\n" + b"".join(b"%.2f,%.3f\n" % (k / 100, v) for k, v in enumerate(NORTH[SHORT]))}
     motion["001.toml"] = b'time_step = 0.01\n[columns]\nx = { column = "a", unit = "g" }\n'
@@ -206,7 +207,7 @@ def _tables() -> list[Reader]:
             "plan", "p.toml", tuple(p.encode() for p in plans), lambda f: read_plan(f / "p.toml"), of_plan, share=0.5,
         ),
         Reader("specimen", "s.toml", (SPECIMEN.encode(),), lambda f: read_specimen(f / "s.toml")),
-        Reader("law in a table", "law.csv", (table,), lambda f: read_law(f / "law.csv"), of_law),
+        Reader("law in a table", "law.csv", (table,), lambda f: read_law(f / "law.csv", TABLES), of_law),
         Reader(
             "outcomes", "o.toml", (OUTCOMES.encode(),), outcomes, share=0.5,
             beside={"runs.csv": RUNS.encode(), **motion},

@@ -13,24 +13,26 @@ from diagnosis.search.law import Law, Table
 from diagnosis.search.refit import Explanation
 from grids.instruments import INSTRUMENTS
 from models.base import FloatArray
-from models.mechanisms.table_force import FACTORS, KNOTS, REACHES, TERMS
+from models.tables import KNOTS, Term, Variable
 
 
 def missing_force(found: Search, law: Law) -> Mapping[str, Any]:
     """``terms``: curves with 95 % bands and evidence; ``nearest``: the best single mechanism, and its curve in each
     term; ``parameters``: every value of the law, by name."""
+    tables = law.mechanism.tabulated
+    assert tables is not None
     singles = [e for e in found.singles if e.names[0] not in INSTRUMENTS]
     nearest = min(singles, key=adjusted) if singles else None
     acting = _action(nearest) if nearest else None
     terms = []
     for table in law.tables:
-        variable, meaning, unit = TERMS[table.term]
+        one, over = tables.terms[table.term], tables.variable(table.term)
         terms.append(
             {
-                "term": table.term, "meaning": meaning, "unit": unit, "variable": variable,
-                "variable_unit": REACHES[variable][1], "at": table.at.tolist(), "value": table.value.tolist(),
+                "term": table.term, "meaning": one.meaning, "unit": one.unit, "variable": one.variable,
+                "variable_unit": over.unit, "at": table.at.tolist(), "value": table.value.tolist(),
                 "low95": table.low95.tolist(), "high95": table.high95.tolist(), "evidence": table.evidence,
-                "nearest": None if acting is None or nearest is None else _curve(nearest, acting, table),
+                "nearest": None if acting is None or nearest is None else _curve(nearest, acting, one, over, table),
             }
         )  # fmt: skip
     return {"terms": terms, "nearest": nearest.names[0] if nearest else None, "parameters": law.values}
@@ -40,28 +42,32 @@ def _action(explanation: Explanation) -> Action:
     return action(explanation.fitted.misfit.predictor, explanation.fitted.point, explanation.names[0])
 
 
-def _curve(explanation: Explanation, acting: Action, table: Table) -> list[float | None]:
+def _curve(
+    explanation: Explanation, acting: Action, term: Term, over: Variable, table: Table
+) -> list[float | None] | None:  # fmt: skip
     """What the effect does on average at each row of a table, in the table's own unit; None where it was not.
 
-    Forces over a factor (the rate, its sign) are fitted as that factor times the row; what acts at events is the
+    None where a force at one port moves several bodies: what an effect changes of their rates is no force there. Forces
+    over a factor (the rate, its sign) are fitted as that factor times the row; what acts at events is the
     relative change of the rate.
     """
     m = explanation.measured
+    if len(m.identification.leads) > 1:
+        return None
     step = np.array([m.recordings[w.recording].time_step for w in m.windows])[:, None]
     inside = np.asarray(m.mask.any(axis=1))
     inside[:, :-1] &= inside[:, 1:]
     inside[:, -1] = False
     motion, impulse = acting.motion, acting.amount.sum(axis=1)
-    variable, _, unit = TERMS[table.term]
-    factors = {"rate": motion.rate, "direction": np.sign(motion.rate)}
-    x = {"rotation": motion.coordinate, "rate": motion.rate, "base": motion.base}[variable]
-    if unit == "1":
+    factors = {"": np.ones_like(motion.rate), "rate": motion.rate, "direction": np.sign(motion.rate)}
+    x = {"coordinate": motion.coordinate, "rate": motion.rate, "base": motion.base}[over.along]
+    if term.event:
         after = np.roll(motion.rate, -1, axis=1)
         inside &= acting.event & (after != impulse)
         value, weight = impulse / np.where(inside, after - impulse, 1.0), np.ones_like(x)
     else:
         inside &= ~acting.event
-        factor = factors.get(FACTORS.get(table.term, ""), np.ones_like(x))
+        factor = factors[term.factor]
         value, weight = impulse / step * factor, factor**2
     found = _averages(x[inside], value[inside], weight[inside], table.at)
     return [None if np.isnan(v) else float(v) for v in found]

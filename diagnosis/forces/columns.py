@@ -69,10 +69,14 @@ class Forces:
         return np.asarray(np.einsum("wcnk,wk->wcn", self.response.values[kind.port.name], each, optimize=True))
 
 
-def motion_of(fitted: Fitted) -> Motion:
-    """The leading coordinate along the windows of a fit."""
-    along = Along(fitted.misfit.predictor, fitted.point)
-    return _motion(along, along.states[fitted.measured.identification.leads[0].channel])
+def motions_of(fitted: Fitted) -> dict[str, Motion]:
+    """By port of the model, its coordinate along the windows of a fit."""
+    return _motions(Along(fitted.misfit.predictor, fitted.point))
+
+
+def _motions(along: Along) -> dict[str, Motion]:
+    ports = {kind.port.name: kind.port for kind in along.predictor.measured.identification.forces}
+    return {name: _motion(along, along.observed(port.coordinate)) for name, port in ports.items()}
 
 
 def _motion(along: Along, coordinate: FloatArray) -> Motion:
@@ -96,7 +100,7 @@ def forces(fitted: Fitted) -> Forces:
         fitted=fitted,
         screen=linearise_about(fitted),
         response=response,
-        motions={port.name: _motion(along, along.observed(port.coordinate)) for port in ports},
+        motions=_motions(along),
         time=m.first[:, None] * step + since,
         weight=pulses / np.maximum(pulses.sum(axis=2, keepdims=True), 1.0),
         events=kicks(predictor, fitted.point),

@@ -1,8 +1,8 @@
 """The missing force as a model: a law in a table, estimated inside the simulator.
 
-Where no mechanism explains the recordings, the values c of tables over the leading coordinate, its rate and the
-base acceleration, some of them times the rate or its sign (`models.mechanisms.table_force`), become unknowns of the
-windowed fit, beside base parameters, effects and states. Which tables, and how smooth, is decided on the problem
+Where no mechanism explains the recordings, the values c of the tables that the model can hold (`models.tables`: over
+the coordinate of a port, its rate or the base acceleration, some of them times the rate or its sign) become unknowns of
+the windowed fit, beside base parameters, effects and states. Which tables, and how smooth, is decided on the problem
 linearised in the simulator: with the states and other unknowns projected out, H = J'WJ, g = J'Wr, and a prior
 c ~ N(0, (lambda P)^-1) on second differences, the evidence
 
@@ -15,7 +15,7 @@ recording could be predicted with it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -25,18 +25,18 @@ from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.misfit import Misfit, reduce
 from diagnosis.fit.solver import Fitted, fit, normal
 from diagnosis.fit.unknowns import Unknown, without_instruments
-from diagnosis.forces.columns import motion_of
+from diagnosis.forces.columns import motions_of
 from diagnosis.search.refit import Explanation
 from models.base import FloatArray, Mechanism
 from models.identification import Motion
-from models.mechanisms.table_force import KNOTS, REACHES, SIDES, TERMS, row
+from models.tables import KNOTS, SIDES, Tables, row
 
 MOST_TERMS = 3
 MORE = 10.0
 """Evidence (2 log) that one more table must bring."""
 SMOOTH = np.geomspace(1e-3, 1e3, 13)
 JUMP = 100.0
-"""Weight of a jump at zero, of tables over anything but the leading coordinate, over that of a bend."""
+"""Weight of a jump at zero, of tables that may not jump there, over that of a bend."""
 RIDGE = 0.02
 UNIT, WIDEST = 0.02, 100.0
 """One unit of a table's value over the typical acceleration of the motion, and the most units a fit may reach."""
@@ -77,45 +77,54 @@ def estimate(explanation: Explanation) -> Law | None:
     fitted = explanation.fitted
     model = fitted.measured.model
     form = next((m for m in model.mechanisms.values() if m.tabulated), None)
-    if form is None:
+    if form is None or form.tabulated is None:
         return None
-    motion = motion_of(fitted)
-    unknowns = {term: _unknowns(form, term, motion, fitted) for term in TERMS}
+    tables, motions = form.tabulated, motions_of(fitted)
+    unknowns = {term: _unknowns(form, term, motions[one.port], fitted) for term, one in tables.terms.items()}
+    reaches = _reaches(tables, motions)
     off = {f"{form.name}.{p.name}": p.null for p in form.parameters}
-    off |= {f"{form.name}.{name}": reach for name, reach in _reaches(motion).items()}
-    first = unknowns[next(iter(TERMS))][0]
+    off |= {f"{form.name}.{name}": reach for name, reach in reaches.items()}
+    first = next(iter(unknowns.values()))[0]
     on = {**without_instruments(fitted.point.values), **off, first.name: first.scale}
     if model.check(on, fitted.misfit.predictor.options):
         return None
     base = replace(fitted.misfit, fixed={**fitted.misfit.fixed, **off})
-    chosen = _choose(base, fitted, unknowns)
+    bends = {term: _bends(one.variable in tables.jumps) for term, one in tables.terms.items()}
+    chosen = _choose(base, fitted, unknowns, bends)
     if not chosen:
         return None
-    best = _fitted(base, fitted, unknowns, chosen)
-    return Law(Explanation(explanation.candidates, best), _tables(best, unknowns, chosen, _reaches(motion)), form)
+    best = _fitted(base, fitted, unknowns, chosen, bends)
+    return Law(Explanation(explanation.candidates, best), _tables(best, unknowns, chosen, tables, reaches), form)
 
 
-def _reaches(motion: Motion) -> dict[str, float]:
+def _reaches(tables: Tables, motions: Mapping[str, Motion]) -> dict[str, float]:
     """Parameter by parameter, how far the motion goes in each variable of a table."""
-    largest = {"rotation": motion.reach, "rate": np.max(np.abs(motion.rate)), "base": np.max(np.abs(motion.base))}
-    return {name: max(float(largest[variable]), 1e-9) for variable, (name, _, _) in REACHES.items()}
+    found = {}
+    for one in tables.terms.values():
+        motion, variable = motions[one.port], tables.variables[one.variable]
+        largest = {"coordinate": motion.reach, "rate": np.max(np.abs(motion.rate)), "base": np.max(np.abs(motion.base))}
+        found[variable.reach] = max(float(largest[variable.along]), 1e-9)
+    return found
 
 
 def _unknowns(form: Mechanism, term: str, motion: Motion, fitted: Fitted) -> tuple[Unknown, ...]:
-    """The values of a term's table, in units of what its force would have to be to matter."""
+    """The values of a term's table, in units of what its force would have to be to matter.
+
+    Shares (of a weight, of the restitution) are of order one themselves.
+    """
     step = fitted.measured.recordings[0].time_step
     inside = fitted.measured.mask[:, 0]
     typical = float(np.sqrt(np.mean((np.gradient(motion.rate, axis=1) / step)[inside] ** 2)))
     speed = float(np.sqrt(np.mean(motion.rate[inside] ** 2)))
     unit = form.parameter(row(term, SIDES[0], 0)).unit
-    scale = UNIT * {"rad s-2": typical, "s-1": typical / speed, "1": 1.0}[unit]
+    scale = UNIT * {"rad s-2": typical, "s-1": typical / speed, "1": 1.0, "s": 1.0 / speed, "s m-1": 1.0 / speed}[unit]
     reach = WIDEST * scale
     names = [row(term, side, knot) for side in SIDES for knot in range(KNOTS)]
     return tuple(Unknown(f"{form.name}.{name}", unit, -reach, reach, 0.0, scale) for name in names)
 
 
-def _bends(term: str) -> FloatArray:
-    """Rows R of the prior R c ~ N(0, 1/lambda) on a term's values: bends, the jump at zero, and a little on all."""
+def _bends(jumps: bool) -> FloatArray:
+    """Rows R of the prior R c ~ N(0, 1/lambda) on a table's values: bends, the jump at zero, and a little on all."""
     below, above = np.arange(KNOTS)[::-1], KNOTS + np.arange(KNOTS)
     rows = []
     for side in (below, above):
@@ -123,14 +132,16 @@ def _bends(term: str) -> FloatArray:
             bend = np.zeros(2 * KNOTS)
             bend[side[k - 1 : k + 2]] = 1.0, -2.0, 1.0
             rows.append(bend)
-    if TERMS[term][0] != next(iter(REACHES)):
+    if not jumps:
         jump = np.zeros(2 * KNOTS)
         jump[0], jump[KNOTS] = -JUMP, JUMP
         rows.append(jump)
     return np.concatenate([np.array(rows), RIDGE * np.eye(2 * KNOTS)])
 
 
-def _choose(base: Misfit, fitted: Fitted, unknowns: dict[str, tuple[Unknown, ...]]) -> list[tuple[str, float, float]]:
+def _choose(
+    base: Misfit, fitted: Fitted, unknowns: dict[str, tuple[Unknown, ...]], bends: Mapping[str, FloatArray]
+) -> list[tuple[str, float, float]]:
     """Terms with their smoothness lambda and evidence, by forward selection on the linearised problem."""
     whole = replace(base, unknowns=(*base.unknowns, *(u for term in unknowns.values() for u in term)))
     count = len(base.unknowns)
@@ -149,7 +160,7 @@ def _choose(base: Misfit, fitted: Fitted, unknowns: dict[str, tuple[Unknown, ...
     reached = 0.0
     while len(chosen) < MOST_TERMS:
         trials = [
-            (_evidence(h, g, place, [*((t, s) for t, s, _ in chosen), (term, smooth)]), term, float(smooth))
+            (_evidence(h, g, place, bends, [*((t, s) for t, s, _ in chosen), (term, smooth)]), term, float(smooth))
             for term in unknowns
             if term not in [t for t, _, _ in chosen]
             for smooth in SMOOTH
@@ -163,30 +174,30 @@ def _choose(base: Misfit, fitted: Fitted, unknowns: dict[str, tuple[Unknown, ...
 
 
 def _evidence(
-    h: FloatArray, g: FloatArray, place: dict[str, NDArray[np.intp]], terms: Sequence[tuple[str, float]]
-) -> float:
+    h: FloatArray, g: FloatArray, place: dict[str, NDArray[np.intp]], bends: Mapping[str, FloatArray],
+    terms: Sequence[tuple[str, float]],
+) -> float:  # fmt: skip
     at = np.concatenate([place[term] for term, _ in terms])
     prior = np.zeros((at.size, at.size))
     for k, (term, smooth) in enumerate(terms):
         own = slice(2 * KNOTS * k, 2 * KNOTS * (k + 1))
-        bends = _bends(term)
-        prior[own, own] = smooth * bends.T @ bends
+        prior[own, own] = smooth * bends[term].T @ bends[term]
     whole = h[np.ix_(at, at)] + prior
     explained = g[at] @ np.linalg.solve(whole, g[at])
     return float(explained - np.linalg.slogdet(whole)[1] + np.linalg.slogdet(prior)[1])
 
 
 def _fitted(
-    base: Misfit, fitted: Fitted, unknowns: dict[str, tuple[Unknown, ...]], chosen: Sequence[tuple[str, float, float]]
-) -> Fitted:
+    base: Misfit, fitted: Fitted, unknowns: dict[str, tuple[Unknown, ...]], chosen: Sequence[tuple[str, float, float]],
+    bends: Mapping[str, FloatArray],
+) -> Fitted:  # fmt: skip
     """Everything refitted with the chosen tables."""
     count = len(base.unknowns)
     extra = [u for term, _, _ in chosen for u in unknowns[term]]
     prior = []
     for k, (term, smooth, _) in enumerate(chosen):
-        bends = np.sqrt(smooth) * _bends(term)
-        rows = np.zeros((bends.shape[0], count + len(extra)))
-        rows[:, count + 2 * KNOTS * k : count + 2 * KNOTS * (k + 1)] = bends
+        rows = np.zeros((bends[term].shape[0], count + len(extra)))
+        rows[:, count + 2 * KNOTS * k : count + 2 * KNOTS * (k + 1)] = np.sqrt(smooth) * bends[term]
         prior.append(rows)
     misfit = replace(base, unknowns=(*base.unknowns, *extra), smooth=np.concatenate(prior))
     return fit(misfit, np.concatenate([fitted.u, np.zeros(len(extra))]), fitted.states, ITERATIONS)
@@ -194,7 +205,7 @@ def _fitted(
 
 def _tables(
     fitted: Fitted, unknowns: dict[str, tuple[Unknown, ...]], chosen: Sequence[tuple[str, float, float]],
-    reaches: dict[str, float],
+    tables: Tables, reaches: dict[str, float],
 ) -> tuple[Table, ...]:  # fmt: skip
     deviation = np.sqrt(np.diag(linearise_about(fitted).inverse))
     names = [u.name for u in fitted.misfit.unknowns]
@@ -204,7 +215,7 @@ def _tables(
         order = np.concatenate([np.arange(KNOTS)[::-1], KNOTS + np.arange(KNOTS)])
         scale = np.array([u.scale for u in unknowns[term]])
         value, band = (scale * fitted.u[index])[order], (NORMAL * scale * deviation[index])[order]
-        one_side = np.linspace(0.0, reaches[REACHES[TERMS[term][0]][0]], KNOTS)
+        one_side = np.linspace(0.0, reaches[tables.variable(term).reach], KNOTS)
         at = np.concatenate([-one_side[::-1], one_side])
         found.append(Table(term, at, value, value - band, value + band, evidence))
     return tuple(found)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, fields, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -58,6 +58,7 @@ class Effects:
     base tears. ``shear_base``, ``shear_top``: stiffness and dashpot along a joint over those across it.
     ``friction``: coefficient at the base. ``bending``: stiffness of the wall over that of the base layer.
 
+    ``law``: values of a law in a table by name (`models.interface.table`), none without one.
     ``parts``: the mechanisms given, at whatever value: they alone decide how many coordinates move.
     """
 
@@ -80,6 +81,7 @@ class Effects:
     friction: FloatArray
     bending: FloatArray
     parts: frozenset[str] = frozenset()
+    law: Mapping[str, FloatArray] = field(default_factory=dict)
 
     @classmethod
     def none(cls, size: int) -> Effects:
@@ -94,14 +96,20 @@ class Effects:
         }
         return replace(self, **arrays, parts=self.parts | {part})
 
+    def with_law(self, values: Mapping[str, Any]) -> Effects:
+        """With a law in a table; values broadcast to ``(n,)``."""
+        law = {k: np.broadcast_to(np.asarray(v, float), self.left.shape).copy() for k, v in values.items()}
+        return replace(self, law=law, parts=self.parts | {"table_force"})
+
     def map(self, function: Callable[[FloatArray], Any]) -> Effects:
-        """With ``function`` of every field."""
-        return replace(self, **{name: function(values) for name, values in self.arrays.items()})
+        """With ``function`` of every array."""
+        own: dict[str, Any] = {name: function(getattr(self, name)) for name in NULLS}
+        return replace(self, **own, law={name: function(values) for name, values in self.law.items()})
 
     @property
     def arrays(self) -> dict[str, Any]:
-        """The fields with an array (n,), by name."""
-        return {f.name: getattr(self, f.name) for f in fields(self) if f.name != "parts"}
+        """Everything with an array (n,), by name."""
+        return {**{name: getattr(self, name) for name in NULLS}, **self.law}
 
     @property
     def coordinates(self) -> int:

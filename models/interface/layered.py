@@ -86,6 +86,10 @@ class LayeredWall:
         """With the mechanism ``part``, which acts through fields of `Effects`."""
         return self._with({"effects": (self.effects or Effects.none(self.size)).given(part, **changes)})
 
+    def with_law_in_table(self, values: Values) -> LayeredWall:
+        """With a law in a table, see `models.interface.table`."""
+        return self._with({"effects": (self.effects or Effects.none(self.size)).with_law(values)})
+
     def with_effects(self, effects: Effects) -> LayeredWall:
         return self._with({"effects": effects})
 

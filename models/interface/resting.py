@@ -14,6 +14,7 @@ from models.interface.effects import Effects
 from models.interface.fibres import Fibres
 from models.interface.layered import LayeredWall
 from models.interface.stored import in_contact
+from models.interface.table import TABLES, LawInTable
 from models.lanes.tables import groups
 
 ITERATIONS = 40
@@ -52,6 +53,8 @@ def leans(wall: LayeredWall) -> NDArray[np.bool_]:
     if wall.effects is not None:
         e = wall.effects
         found = found | (e.top_offset != 0.0) | (e.left != 1.0) | (e.right != 1.0) | np.isfinite(e.bending)
+        for name, _ in TABLES.rows if e.law else ():
+            found = found | (e.law[name] != 0.0)
     return np.asarray(found)
 
 
@@ -70,7 +73,7 @@ def _numbers(wall: LayeredWall) -> FloatArray:
     """All that describes n walls, (n, m)."""
     found = [value for value in vars(wall).values() if isinstance(value, np.ndarray)] + list(wall.laws.values())
     if wall.effects is not None:
-        found += [value for value in vars(wall.effects).values() if isinstance(value, np.ndarray)]
+        found += list(wall.effects.arrays.values())
     return np.stack(found, axis=1)
 
 
@@ -116,6 +119,7 @@ def _unbalanced(wall: LayeredWall) -> Callable[[FloatArray], FloatArray]:
     effects: Any = one.effects
     mass = masses(one)[0]
     fibres = {joint: Fibres(wall, joint) for joint in wall.rubber_joints if wall.laws_at(joint)}
+    law = LawInTable(one) if effects.law else None
 
     def laws(joint: str, z: FloatArray, angle: FloatArray) -> tuple[FloatArray, FloatArray]:
         force, moment = np.zeros(z.shape), np.zeros(z.shape)
@@ -133,6 +137,12 @@ def _unbalanced(wall: LayeredWall) -> Callable[[FloatArray], FloatArray]:
         t1, t2, z1, z2, x1, x2, tm, zm = q
         over = np.maximum(np.abs(t1) - effects.couple_gap, 0.0)
         found[0] -= effects.couple_stiffness * np.copysign(over, t1)
+        if law is not None:
+            couple_b, couple_t, push = law.forces((t1, 0.0), (t2 - tm, 0.0), (at.places[2].real, 0.0), one.offset)
+            found += push * at.jacobians[2].real
+            found[0] += couple_b
+            found[1] += couple_t
+            found[6] -= couple_t
         if wall.joints != "top":
             b, k, s = one.base_half_width, one.base_stiffness, np.sin(t1)
             left, right = (

@@ -68,6 +68,7 @@ MECHANISMS: tuple[Mechanism, ...] = (
     wall_flexibility.MECHANISM,
     wall_flexibility.OF_TWO_HALVES,
     table_force.MECHANISM,
+    table_force.OF_WALL,
 )
 """In the order in which they act on a model's coefficients; one name stands twice where its equation has other
 parameters on other models."""

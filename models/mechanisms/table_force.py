@@ -1,4 +1,4 @@
-"""A law in a table: a couple, and a factor on the restitution, that no other mechanism describes."""
+"""A law in a table: forces, and a factor on the restitution, that no other mechanism describes."""
 
 from __future__ import annotations
 
@@ -8,68 +8,91 @@ import numpy as np
 
 from models.base import Mechanism, MechanismParameter, Values
 from models.housner.block import Block
+from models.interface.layered import LayeredWall
+from models.interface.table import TABLES as ON_WALL
+from models.tables import KNOTS, Tables, Term, Variable
 
-TERMS = {
-    "rotation": ("rotation", "couple over the inertia that depends on the rotation", "rad s-2"),
-    "rate": ("rate", "couple over the inertia that depends on the angular velocity", "rad s-2"),
-    "damping": ("rotation", "couple over the inertia and the angular velocity that depends on the rotation", "s-1"),
-    "friction": (
-        "rotation", "couple over the inertia, times the sign of the angular velocity, that depends on the rotation",
-        "rad s-2",
-    ),
-    "base": ("base", "couple over the inertia that depends on the acceleration of the base", "rad s-2"),
-    "base_damping": (
-        "base", "couple over the inertia and the angular velocity that depends on the acceleration of the base", "s-1",
-    ),
-    "impact": ("rate", "change of the factor on the restitution, by the angular velocity before", "1"),
-}  # fmt: skip
-"""By term: the variable of its table, what it is, the unit of its values."""
-FACTORS = {"damping": "rate", "base_damping": "rate", "friction": "direction"}
-"""By term, what its table is times of: the angular velocity, or its sign; of no other term anything."""
-REACHES = {
-    "rotation": ("reach_rotation", "rad", "rotation of the last rows"),
-    "rate": ("reach_rate", "rad s-1", "angular velocity of the last rows"),
-    "base": ("reach_base", "m s-2", "acceleration of the base of the last rows"),
-}
-SIDES = ("below", "above")
-KNOTS = 6
-"""Rows on either side of zero, from zero to the reach; a table may jump at zero."""
-
-
-def row(term: str, side: str, knot: int) -> str:
-    """Name of the parameter that holds one value of a table."""
-    return f"{term}_{side}_{knot}"
-
-
-ROWS = tuple(row(term, side, knot) for term in TERMS for side in SIDES for knot in range(KNOTS))
+COUPLE = "couple over the inertia"
+TABLES = Tables(
+    terms={
+        "rotation": Term("rotation", f"{COUPLE} that depends on the rotation", "rad s-2", "base"),
+        "rate": Term("rate", f"{COUPLE} that depends on the angular velocity", "rad s-2", "base"),
+        "damping": Term(
+            "rotation", f"{COUPLE} and the angular velocity that depends on the rotation", "s-1", "base", "rate"
+        ),
+        "friction": Term(
+            "rotation", f"{COUPLE}, times the sign of the angular velocity, that depends on the rotation", "rad s-2",
+            "base", "direction",
+        ),
+        "base": Term("base", f"{COUPLE} that depends on the acceleration of the base", "rad s-2", "base"),
+        "base_damping": Term(
+            "base", f"{COUPLE} and the angular velocity that depends on the acceleration of the base", "s-1", "base",
+            "rate",
+        ),
+        "impact": Term(
+            "rate", "change of the factor on the restitution, by the angular velocity before", "1", "base", event=True
+        ),
+    },
+    variables={
+        "rotation": Variable("coordinate", "reach_rotation", "rad", "rotation of the last rows"),
+        "rate": Variable("rate", "reach_rate", "rad s-1", "angular velocity of the last rows"),
+        "base": Variable("base", "reach_base", "m s-2", "acceleration of the base of the last rows"),
+    },
+    jumps=("rotation",),
+)  # fmt: skip
+"""Of one block."""
 
 
 def on_housner(block: Block, values: Values) -> Block:
-    columns = [values[name] for name, _, _ in REACHES.values()] + [values[name] for name in ROWS]
+    columns = [values[v.reach] for v in TABLES.variables.values()] + [values[name] for name, _ in TABLES.rows]
     table = np.stack([np.broadcast_to(np.asarray(c, float), block.mass.shape) for c in columns], axis=1)
     return replace(block, table=table)
 
 
+def on_interface(wall: LayeredWall, values: Values) -> LayeredWall:
+    return wall.with_law_in_table(values)
+
+
+def _parameters(tables: Tables) -> tuple[MechanismParameter, ...]:
+    """Every value of the tables, then how far they reach."""
+    rows = []
+    for name, term in tables.rows:
+        _, side, knot = name.rsplit("_", 2)
+        one = tables.terms[term]
+        rows.append(
+            MechanismParameter(name, "f", one.unit, f"{one.meaning}: {side} zero, {knot} of {KNOTS - 1} reaches")
+        )
+    reaches = [
+        MechanismParameter(v.reach, "x_r", v.unit, v.meaning, 0.0, null=1.0, shape=True)
+        for v in tables.variables.values()
+    ]
+    return (*rows, *reaches)
+
+
+SENTENCE = "a law in a table acts"
+SOURCE = "estimated from recordings that no other mechanism explains"
 MECHANISM = Mechanism(
     name="table_force",
     effect_class="open",
-    parameters=(
-        *(
-            MechanismParameter(row(term, side, knot), "f", unit, f"{what}: {side} zero, {knot} of {KNOTS - 1} reaches")
-            for term, (_, what, unit) in TERMS.items()
-            for side in SIDES
-            for knot in range(KNOTS)
-        ),
-        *(
-            MechanismParameter(name, "x_r", unit, what, 0.0, null=1.0, shape=True)
-            for name, unit, what in REACHES.values()
-        ),
-    ),
+    parameters=_parameters(TABLES),
     equation="couple I_O [f_1(theta) + f_2(theta') + f_3(theta) theta' + f_4(theta) sign theta' + f_5(a) "
     "+ f_6(a) theta'], e times 1 + f_7(theta'); f linear between rows, constant beyond the last",
     signature="wherever it was found",
-    sentence="a law in a table acts",
+    sentence=SENTENCE,
     acts={"housner": on_housner},
-    source="estimated from recordings that no other mechanism explains",
-    tabulated=True,
-)  # fmt: skip
+    source=SOURCE,
+    tabulated=TABLES,
+)
+OF_WALL = Mechanism(
+    name="table_force",
+    effect_class="open",
+    parameters=_parameters(ON_WALL),
+    equation="couples M g b [f_1(r) + f_2(r') + f_3(r) r' + f_4(r) s(r')] in the base (r = theta1) and in the top "
+    "joint (r = theta2 - theta1, m2 g bt), force m2 g [f_1(x) + f_2(x') + f_3(a)] on the block; f linear between rows, "
+    "constant beyond the last, without a jump at zero; s = r' over .02 of the reach of r', within -1 and 1",
+    signature="wherever it was found",
+    sentence=SENTENCE,
+    acts={"interface": on_interface},
+    source=SOURCE,
+    tabulated=ON_WALL,
+)

@@ -12,8 +12,9 @@ from grids.law_table import LAW_FILE, law_text, read_law
 from grids.specimen import read_specimen
 from grids.write_specimen import specimen_text
 from models.errors import InputError
-from models.mechanisms.table_force import KNOTS, MECHANISM, SIDES, row
+from models.mechanisms.table_force import MECHANISM, OF_WALL, ON_WALL, TABLES
 from models.shaking import Shaking
+from models.tables import KNOTS, SIDES, row
 from rocking import simulate
 
 BLOCK = {"width": 0.25, "height": 1.1, "mass": 120.0}
@@ -28,6 +29,23 @@ mass = 120.0
 [initial]
 rotation_1 = 0.07
 [mechanisms.table_force]
+"""
+OF_A_WALL = """title = "w"
+model = "interface"
+[parameters]
+wall_length = 0.72
+wall_height = 1.8
+wall_mass = 161.0
+top_mass = 5000.0
+top_length = 0.72
+top_height = 0.6
+layer_thickness = 0.01
+layer_modulus = 4.5e6
+damping_ratio = 0.05
+gravity = 9.81
+[initial]
+rotation_1 = 0.002
+rotation_2 = 0.002
 """
 
 
@@ -67,7 +85,7 @@ def test_a_table_at_impacts_is_a_factor_on_the_restitution() -> None:
 
 def test_a_law_reads_back_and_every_command_takes_it(tmp_path: Path) -> None:
     law = linear("rotation", 0.7, REACH) | {row("impact", side, k): -0.02 * k for side in SIDES for k in range(KNOTS)}
-    (tmp_path / LAW_FILE).write_text(law_text(law))
+    (tmp_path / LAW_FILE).write_text(law_text(law, TABLES))
     (tmp_path / "s.toml").write_text(HEAD + f'file = "{LAW_FILE}"\n')
     specimen = read_specimen(tmp_path / "s.toml")
     assert specimen.mechanisms["table_force"] == pytest.approx(law)
@@ -75,6 +93,29 @@ def test_a_law_reads_back_and_every_command_takes_it(tmp_path: Path) -> None:
     assert read_specimen(tmp_path / "again.toml") == specimen
     history = simulate(specimen, duration=1.5)
     np.testing.assert_allclose(history["rotation_1"][::5], rocked(law), atol=1e-7)
+
+
+def test_a_law_of_a_wall_reads_back_and_is_simulated(tmp_path: Path) -> None:
+    """A table of the wall's angular velocity is the dashpot that it stands for."""
+    at, reach = np.linspace(0.0, 1.0, KNOTS), 0.5
+    mass, half, couple = 5161.0, 0.36, 9000.0
+    law = OF_WALL.nulls | {
+        row("rate_base", side, k): sign * at[k] * reach * couple / (mass * 9.81 * half)
+        for side, sign in zip(SIDES, (1.0, -1.0), strict=True)
+        for k in range(KNOTS)
+    }
+    law["reach_rate_base"] = reach
+    (tmp_path / LAW_FILE).write_text(law_text(law, ON_WALL))
+    assert read_law(tmp_path / LAW_FILE, ON_WALL) == pytest.approx(law)
+    with pytest.raises(InputError, match="rate_base"):
+        read_law(tmp_path / LAW_FILE, TABLES)
+    file = tmp_path / "s.toml"
+    file.write_text(OF_A_WALL + f'[mechanisms.table_force]\nfile = "{LAW_FILE}"\n')
+    specimen = read_specimen(file)
+    found = simulate(specimen, duration=0.5)
+    file.write_text(OF_A_WALL + f"[mechanisms.viscous_damping]\ncouple_damping = {couple}\n")
+    dashpot = simulate(read_specimen(file), duration=0.5)
+    np.testing.assert_allclose(found["rotation_1"], dashpot["rotation_1"], rtol=0, atol=2e-8)
 
 
 @pytest.mark.parametrize(
@@ -90,7 +131,7 @@ def test_a_law_reads_back_and_every_command_takes_it(tmp_path: Path) -> None:
 def test_what_is_wrong_with_a_table_is_said(tmp_path: Path, text: str, sentence: str) -> None:
     (tmp_path / "law.csv").write_text(text)
     with pytest.raises(InputError, match=sentence):
-        read_law(tmp_path / "law.csv")
+        read_law(tmp_path / "law.csv", TABLES)
 
 
 def test_a_specimen_names_the_file_alone(tmp_path: Path) -> None:

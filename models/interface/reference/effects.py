@@ -14,13 +14,14 @@ import numpy as np
 
 from models.base import FloatArray
 from models.interface import resting, strip
-from models.interface.chain import ROTATIONS, SIZE, chain, free_coordinates, masses
+from models.interface.chain import ROTATIONS, SIZE, Chain, chain, free_coordinates, masses
 from models.interface.effects import CLOSED, OPENED
 from models.interface.layered import LayeredWall
 from models.interface.reference.account import Pair
 from models.interface.reference.equation import NONE, Both, Equation, Ground, Switch
 from models.interface.stored import frozen_share, static_compressions, stored, torn
 from models.interface.strip import Strip
+from models.interface.table import LawInTable
 
 COUPLE, SLIP = 0, 4
 """Coordinates that dry friction holds: theta1, x1."""
@@ -40,6 +41,7 @@ class EffectsEquation(Equation):
         self.rest = resting.at_rest(wall)
         self.turning = ROTATIONS.T @ (self.inertias[:, None] * ROTATIONS)
         self.static = static_compressions(wall)
+        self.law = LawInTable(self.wall) if self.effects.law else None
         self.closings, self.opened = 0.0, False
         dry = ((COUPLE, self.effects.dry_couple > 0.0), (SLIP, math.isfinite(self.effects.friction)))
         self.moving = {k: 0.0 for k, acts in dry if acts and np.any(self.free[k])}
@@ -153,6 +155,14 @@ class EffectsEquation(Equation):
         over = max(abs(q[0]) - e.couple_gap, 0.0)
         return float(e.couple_stiffness * math.copysign(over, q[0]) + e.couple_damping * v[0])
 
+    def in_table(self, at: Chain, q: Sequence[float], v: Sequence[float], a: float) -> tuple[float, float, float]:
+        """Couples (N m) in the base and the top joint, and force (N) on the block, of a law in a table."""
+        if self.law is None:
+            return 0.0, 0.0, 0.0
+        moving = float((at.jacobians[2].real @ np.asarray(v)).item())
+        block = float(at.places[2].real), moving
+        return self.law.forces((q[0], v[0]), (q[1] - q[6], v[1] - v[6]), block, a)
+
     def equations(
         self, q: Sequence[float], v: Sequence[float], ground: Ground, strips: Both
     ) -> tuple[FloatArray, FloatArray]:
@@ -170,12 +180,17 @@ class EffectsEquation(Equation):
             bending - base.moment * math.cos(q[0]) - self.couple(q, v), -couple, base.force, top.force, -shear[0],
             -shear[1], couple - bending, -bend * 2.0 * wall.base_stiffness * wall.base_half_width * q[7],
         )  # fmt: skip
+        if self.law is not None:
+            base_couple, top_couple, push = self.in_table(at, q, v, ground[0])
+            left += push * at.jacobians[2].real
+            left += (base_couple, top_couple, 0.0, 0.0, 0.0, 0.0, -top_couple, 0.0)
         mass = self._mass(at.jacobians)
         return self.free.T @ mass @ self.free, self.free.T @ left
 
     def pulls(self, q: Sequence[float], v: Sequence[float], second: Sequence[float], ground: Ground) -> Sequence[Pair]:
         at = chain(self.wall, np.asarray(q), np.asarray(v))
         forces = self.weights * (at.jacobians @ np.asarray(second) + at.bias + _frame(at.places, ground))
+        forces[2] -= self.in_table(at, q, v, ground[0])[2]
         return [(float(f.real), float(f.imag)) for f in forces]
 
     def leaning(self, q: Sequence[float], v: Sequence[float]) -> tuple[Pair, Pair]:

@@ -14,7 +14,8 @@ from diagnosis.forces.constancy import Constancy
 from grids.motions import read_motion
 from grids.recordings import Recording
 from grids.specimen import Specimen
-from models.mechanisms.table_force import KNOTS, MECHANISM, SIDES, row
+from models.mechanisms.table_force import MECHANISM
+from models.tables import KNOTS, SIDES, row
 
 WIDTH, HEIGHT, MASS = 0.25, 1.1, 120.0
 INSET = 0.12

@@ -16,7 +16,8 @@ from diagnosis.fit.unknowns import of_specimen
 from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.search.law import Law, estimate
 from diagnosis.search.refit import Explanation
-from models.mechanisms.table_force import KNOTS, MECHANISM, SIDES, row
+from models.mechanisms.table_force import MECHANISM
+from models.tables import KNOTS, SIDES, row
 from tests.diagnosis.made import SPECIMEN, TRUE, recording
 
 RATE = 0.6

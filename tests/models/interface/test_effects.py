@@ -15,6 +15,7 @@ from models.interface.reference import run as reference
 from models.rubber import LAWS
 from models.runs import Prescribed
 from models.shaking import Shaking
+from models.tables import KNOTS, SIDES, row
 from tests.models.interface.walls import LONG, SHORT, undamped, wall
 from tests.models.requests import asked
 
@@ -33,7 +34,19 @@ TYPICAL = {
     "bonded_layer": {"tearing_strain": 0.05},
     "wall_flexibility": {"flexural_stiffness_ratio": 5.0},
     "sliding": {"friction": 0.06},
-}
+    "table_force": {"reach_rotation_base": 0.01, "reach_rate_base": 0.1, "reach_rotation_top": 0.01}
+    | {"reach_rate_top": 0.1, "reach_displacement": 0.03, "reach_velocity": 0.2, "reach_base": 4.0}
+    | {
+        row(term, side, knot): size * np.sin(2.0 * knot + len(term) + (side == "above")) * (knot > 0)
+        for term, size in (
+            ("rotation_base", 0.1), ("rate_base", 0.05), ("damping_base", 0.5), ("friction_base", 0.03),
+            ("rotation_top", 0.05), ("rate_top", 0.05), ("damping_top", 0.5), ("friction_top", 0.03),
+            ("displacement_block", 0.03), ("velocity_block", 0.03), ("push_block", 0.03),
+        )
+        for side in SIDES
+        for knot in range(KNOTS)
+    },
+}  # fmt: skip
 TIME = 0.02 * np.arange(31)
 SHAKING = Shaking(0.02, 3.0 * np.sin(2 * np.pi * 2.0 * TIME))
 

@@ -13,9 +13,9 @@ import models
 from models.base import FloatArray
 from models.housner.lanes import run as lanes
 from models.housner.reference import run as reference
-from models.mechanisms.table_force import KNOTS, SIDES, row
 from models.runs import Request, Run
 from models.shaking import Shaking
+from models.tables import KNOTS, SIDES, row
 
 HOUSNER = models.get("housner")
 WALL = {"width": 0.5, "height": 2.0, "mass": 900.0}

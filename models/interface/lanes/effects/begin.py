@@ -25,6 +25,8 @@ def put(t: Table, m: More, lane: int, slot: int) -> None:
         t[e.X1 + k * W + slot] = m.given[lane, e.G_STATE + k]
     for k in range(4):
         t[e.CLOSINGS + k * W + slot] = m.given[lane, e.G_MEMORY + k]
+    for k in range(e.N_LAW):
+        t[e.REACH + k * W + slot] = m.given[lane, e.G_LAW + k]
     follow(t, slot)
     wear = 1.0 - t[e.LOSS + slot] * (1.0 - exponential_decay(t[e.CLOSINGS + slot] * t[e.PER_CLOSING + slot]))
     t[r.FACTOR_L * W + slot], t[r.FACTOR_R * W + slot] = wear * t[e.LEFT + slot], wear * t[e.RIGHT + slot]
@@ -42,6 +44,8 @@ def vacate(t: Table, slot: int) -> None:
     """A slot without a lane: bodies of unit mass that nothing turns."""
     for k in range(e.N_OWN):
         t[e.OWN + k * W + slot] = 0.0
+    for k in range(e.N_LAW + 2):
+        t[e.REACH + k * W + slot] = 0.0
     t[e.HALF_MASS + slot], t[e.HALF_INERTIA + slot], t[e.LENGTH + slot] = 1.0, 1.0, 1.0
 
 

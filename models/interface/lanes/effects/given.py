@@ -14,8 +14,10 @@ from models.interface.lanes.effects.rows import More
 from models.interface.lanes.rows import W
 from models.interface.layered import LayeredWall
 from models.interface.stored import static_compressions, stored
+from models.interface.table import TABLES, forces_of, merged
 from models.lanes.tables import filled
 from models.rubber import lanes as rubber
+from models.tables import KNOTS
 
 ACTS = {
     "table_pitch": e.PITCHES,
@@ -25,6 +27,7 @@ ACTS = {
     "contact_length": e.HALVES | e.FREEZES,
     "coulomb_damping": e.DRIES,
     "sliding": e.DRIES,
+    "table_force": e.TABLES_ACT,
 }
 """The parts of a step that a mechanism needs beside those that always run."""
 
@@ -63,6 +66,11 @@ def given_effects(
     half = np.where(effects.tearing > 0.0, wall.base_half_width, -wall.base_half_width)
     for k, (name, value) in enumerate(zip(MEMORIES, (0.0 * half, 0.0 * half, -half, half), strict=True)):
         table[:, e.G_MEMORY + k] = initial.get(name, value)
+    if effects.law:
+        scales = dict(zip(("base", "top", "block"), forces_of(wall), strict=True))
+        reaches = [(KNOTS - 1) / effects.law[variable.reach] for variable in TABLES.variables.values()]
+        values = [scales[one.port] * value for term, one in TABLES.terms.items() for value in merged(effects.law, term)]
+        table[:, e.G_LAW :] = np.stack([*reaches, *values], axis=1)
     acts = 0
     for part in effects.parts:
         acts |= ACTS.get(part, 0)

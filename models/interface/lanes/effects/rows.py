@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from models.interface.lanes.along import N_WORK_LAWS
 from models.interface.lanes.rows import W
+from models.interface.table import ONE_LINE, TABLES
 from models.lanes.arrays import Table
 
 UNBOUNDED = 1e300
@@ -57,16 +58,26 @@ _BODIES = _JOINTS + 20
 # couple on the wall and to a force along the base; then the matrix, 8 rows of 8
 _EQUATIONS = _BODIES + 25
 Q, V, ACC, D, F, HELD, HELD_BASE, MATRIX = _places(_EQUATIONS, 8 * SIZE)[::SIZE]
-N_TABLE = _EQUATIONS + 7 * SIZE + SIZE**2
 
-# --- given: constants in the order above, then coordinates, rates and memory at the start
+# --- a law in a table: one over the spacings, the values; its force on the block with that force's slope over d along
+# the base, and the block's motion along the base over q
+_LAW = _EQUATIONS + 7 * SIZE + SIZE**2
+N_REACHES, N_VALUES = len(TABLES.variables), len(TABLES.terms) * ONE_LINE
+N_LAW = N_REACHES + N_VALUES
+REACH, VALUES, PUSH, PUSHED, ALONG = (
+    (_LAW + k) * W for k in (0, N_REACHES, N_LAW, N_LAW + 1, N_LAW + 2)
+)  # fmt: skip
+N_TABLE = _LAW + N_LAW + 2 + SIZE
+
+# --- given: constants in the order above, then coordinates, rates and memory at the start, then the law in a table
 G_STATE = N_CONSTANTS
 G_MEMORY = G_STATE + 8
-N_GIVEN = G_MEMORY + 4
+G_LAW = G_MEMORY + 4
+N_GIVEN = G_LAW + N_LAW
 N_ENDED = 12
 
 # --- bits of what acts
-PITCHES, HALVES, BONDS, FREEZES, WEARS, DRIES = (1 << k for k in range(6))
+PITCHES, HALVES, BONDS, FREEZES, WEARS, DRIES, TABLES_ACT = (1 << k for k in range(7))
 
 
 class More(NamedTuple):

@@ -11,7 +11,7 @@ from typing import Any
 
 from models.interface.effects import CLOSED, OPENED
 from models.interface.lanes import rows as r
-from models.interface.lanes.effects import dry, joints, kinematics, solve
+from models.interface.lanes.effects import dry, joints, kinematics, solve, table
 from models.interface.lanes.effects import rows as e
 from models.interface.lanes.effects.rows import More
 from models.interface.lanes.reading import account_joints, read_bodies, read_joints
@@ -63,6 +63,8 @@ def step(t: Table, m: More, laws: Any) -> int:
         joints.freeze(t)
     solve.inertia(t)
     solve.forces(t)
+    if m.acts & e.TABLES_ACT:
+        table.act(t)
     solve.factor(t, m)
     solve.solve(t, m, e.F, e.D)
     if m.acts & e.DRIES:
@@ -166,7 +168,7 @@ def read(t: Table) -> int:
         z = t[e.ZB_1 + i] * d1 + t[e.ZB_2 + i] * d2 + t[e.ZB_Z2 + i] * d4 + t[e.ZB_X2 + i] * d6
         x += t[e.XB_M + i] * d7 + t[e.X_ZM + i] * d8 + base
         z += t[e.ZB_M + i] * d7 + t[e.Z_ZM + i] * d8 + t[r.FREE_B * W + i] * d3
-        x, z = t[e.P_XB + i] + m2 * x, t[e.P_ZB + i] + m2 * z
+        x, z = t[e.P_XB + i] + m2 * x - t[e.PUSH + i], t[e.P_ZB + i] + m2 * z
         whole = t[e.P_XL + i] + lower + t[e.P_XU + i] + upper + x
         push = x * t[e.CM + i] - z * t[e.SM + i]
         account_joints(t, i, whole, nb, push, nt, power_b, power_t)
