@@ -38,7 +38,7 @@ from diagnosis.search.budget import Budget
 from diagnosis.search.candidates import absent, candidates
 from diagnosis.search.found import Search, misfit_per_sample, rivals
 from diagnosis.search.ladder import Climbed, climb, rungs
-from diagnosis.search.law import Law, estimate
+from diagnosis.search.law import Law, missing_law
 from diagnosis.search.refit import Explanation, gain_by_window
 from diagnosis.search.select import first_effect, further_effects, take_best_single
 from diagnosis.search.weighing import evidence
@@ -154,7 +154,7 @@ def _assemble(
     law: Law | None = None
     if verdict == "not_in_library" and not unexplained:
         progress("the missing force as a model", 0.88)
-        law = stages.optional("the missing force as a model", lambda: estimate(chosen), lambda: None)
+        law = stages.optional("the missing force as a model", lambda: missing_law(chosen, found.errors), lambda: None)
     if law and to_show and worsens(chosen, law.explanation, to_show, found.errors):
         found.not_tried[law.mechanism.name] = "the tables that fit these recordings predict those held out worse"
         law = None

@@ -36,6 +36,7 @@ model = "interface"
 wall_length = 0.72
 wall_height = 1.8
 wall_mass = 161.0
+wall_thickness = 0.138
 top_mass = 5000.0
 top_length = 0.72
 top_height = 0.6

@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 
 from diagnosis.data.measured import Measured
+from diagnosis.errors.model import disturbance_about, refitted
 from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.setup import measure
 from diagnosis.fit.solver import fit
 from diagnosis.fit.unknowns import of_specimen
 from diagnosis.fit.whitening import sensor_noise_only
-from diagnosis.search.law import Law, estimate
+from diagnosis.search.law import Law, estimate, missing_law
 from diagnosis.search.refit import Explanation
 from models.mechanisms.table_force import MECHANISM
 from models.tables import KNOTS, SIDES, row
@@ -84,6 +85,21 @@ def test_laws_of_two_variables_are_found_and_predict(term: str, hidden: dict[str
     other = windows((3, 4), hidden, 1)
     before, after = chi2(plain, other), chi2(plain, other, law)
     assert before > 1.5 and (before - after) / (before - 1.0) > 0.7
+
+
+def test_a_law_that_the_errors_hold_is_found_and_predicts() -> None:
+    """Impacts on the right lose more: errors estimated without that take it for scatter of the impacts."""
+    hidden = MECHANISM.nulls | {row("impact", "above", k): -0.06 for k in range(KNOTS)}
+    plain = base(windows((1, 2), hidden, 0))
+    fitted, errors = refitted(plain.fitted, disturbance_about(plain.fitted))
+    held = Explanation((), fitted)
+    other = windows((3, 4), hidden, 1)
+    before = chi2(held, other)
+    without = estimate(held)
+    law = missing_law(held, errors)
+    assert law is not None and law.tables[0].term == "impact"
+    assert (before - chi2(held, other, law)) / (before - 1.0) > 0.8
+    assert without is None or chi2(held, other, law) <= chi2(held, other, without) + 0.05
 
 
 def test_noise_alone_asks_for_no_law() -> None:
