@@ -84,7 +84,11 @@ def fit_thoroughly(misfit: Misfit, u: FloatArray, states: FloatArray) -> Fitted:
 
 
 def scatter(found: Fitted, seed: int) -> FloatArray | None:
-    """States (W, S) with better ones for windows that misfit badly; None if there are none."""
+    """States (W, S) with better ones for windows that misfit badly; None if there are none.
+
+    Around where they are and around those measured: a fit may have left these for a motion with other events, under
+    parameters or errors that it no longer has, and lie many deviations away.
+    """
     misfit, m = found.misfit, found.measured
     if not found.states.shape[1]:
         return None
@@ -94,7 +98,8 @@ def scatter(found: Fitted, seed: int) -> FloatArray | None:
         return None
     draws = qmc.MultivariateNormalQMC(np.zeros(found.states.shape[1]), seed=seed).random(SCATTERED)
     width = m.state_size * np.where(np.arange(SCATTERED) % 2 == 0, 0.05, 0.25)[:, None]
-    trials = found.states[None] + (draws * width)[:, None, :]
+    around = np.where((np.arange(SCATTERED) // 2 % 2 == 0)[:, None, None], found.states, m.states)
+    trials = around + (draws * width)[:, None, :]
     losses = misfit.losses(misfit.residuals([misfit.point(found.u, x) for x in trials], only=bad))
     pick = np.argmin(losses, axis=0)
     better = bad & (losses.min(axis=0) < found.window_losses - 1.0)

@@ -48,6 +48,8 @@ LAG = np.sqrt(2.0) / (2.0 * np.pi * LOGGER)
 NEAR, NEAR_ADEQUATE = 0.2, 0.6
 """Share of the leader's gain from which a single is refitted from the leader's optimum too."""
 FIRST_POOL = 3
+STUCK = 1.0
+"""Gain of the base from a single's optimum from which on it was stuck."""
 
 
 def first_effect(found: Search, progress: Progress) -> Iterator[Search]:
@@ -119,12 +121,12 @@ def _singles(found: Search, progress: Progress) -> None:
         return
     if adequate(found.base) and found.gain(found.singles[0]) < FAINT:
         return
-    leader = found.singles[0] = again(reshaped(found.singles[0]))
-    if found.gain(leader) < MISSING:
+    found.singles[0] = again(reshaped(found.singles[0]))
+    if found.gain(found.singles[0]) < MISSING:
         return
-    restarted = from_other(found.base, leader)
-    if restarted.loss < found.base.loss - 1.0:
-        found.base = restarted
+    if led_by(found, found.singles[0]):
+        found.singles[0] = again(reshaped(found.singles[0]))
+    leader = found.singles[0]
     near = NEAR_ADEQUATE if adequate(leader) else NEAR
     for k, single in enumerate(found.singles[1:], start=1):
         if found.gain(single) > near * found.gain(leader) and found.affordable(single.names[0]):
@@ -132,6 +134,19 @@ def _singles(found: Search, progress: Progress) -> None:
     found.singles.sort(key=adjusted)
     found.singles[0] = with_memory(found.singles[0])
     found.tried += found.singles
+
+
+def led_by(found: Search, leader: Explanation) -> bool:
+    """Take the base to the leader's optimum, and all singles with it, if it was stuck; whether it was.
+
+    What one mechanism gains by freeing a window that was stuck says nothing for it: all others were fitted from there.
+    """
+    restarted = from_other(found.base, leader)
+    if restarted.loss >= found.base.loss - STUCK:
+        return False
+    found.base = restarted
+    found.singles = sorted((from_other(single, restarted) for single in found.singles), key=adjusted)
+    return True
 
 
 def _hidden_by_errors(found: Search, tried: Collection[Candidate], fewest: int) -> list[Score]:

@@ -1,0 +1,56 @@
+"""A window in which the base is stuck says nothing for the mechanism that happens to free it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from diagnosis.errors.model import disturbance_about, estimate
+from diagnosis.fit.setup import base_fit, measure
+from diagnosis.fit.solver import fit
+from diagnosis.search.candidates import candidates
+from diagnosis.search.found import Search
+from diagnosis.search.refit import Explanation, extend
+from diagnosis.search.select import led_by
+from diagnosis.search.weighing import reweighed
+from tests.diagnosis.made import SPECIMEN, recording
+
+AWAY = -8.0
+"""Rates from which windows end in other minima, over the scatter of the states' own."""
+
+
+@pytest.fixture(scope="module")
+def free() -> Search:
+    """With a mechanism that is there and one that is not, refitted alone."""
+    measured = measure(SPECIMEN, [recording("a", 4, {"tilt": {"tilt": 0.002}})])
+    some = {one.name: one for one in candidates(measured, SPECIMEN) if one.name in ("tilt", "gain")}
+    first = base_fit(SPECIMEN, measured)
+    errors = estimate(first, disturbance_about(first))
+    base = reweighed(Explanation((), first), errors)
+    return Search(
+        base, tuple(some.values()), errors, singles=[extend(base, some[name], some[name].null) for name in some]
+    )
+
+
+def stuck(explanation: Explanation) -> Explanation:
+    f = explanation.fitted
+    states = f.states.copy()
+    states[:, 1] += AWAY * f.measured.state_size[1]
+    return replace(explanation, fitted=fit(f.misfit, f.u, states))
+
+
+def test_what_frees_a_window_leads_the_base_and_all_others_out_of_it(free: Search) -> None:
+    tilt, gain = sorted(free.singles, key=lambda e: e.names[0] != "tilt")
+    found = replace(free, base=stuck(free.base), singles=[gain, stuck(tilt)])
+    assert found.gain(gain) > 1000.0 and found.gain(found.singles[1]) < found.gain(gain) - 500.0
+    assert led_by(found, gain)
+    assert found.base.loss < free.base.loss + 0.5
+    assert found.singles[0].names == ("tilt",)
+    assert found.gain(found.singles[0]) == pytest.approx(free.gain(tilt), abs=1.0)
+
+
+def test_a_base_that_is_not_stuck_stays(free: Search) -> None:
+    found = replace(free, singles=list(free.singles))
+    assert not led_by(found, free.singles[0])
+    assert found.base is free.base and found.singles == free.singles
