@@ -1,4 +1,4 @@
-"""Mechanisms refitted alone: none leads by a window that it happens to free, each counts events along its own motion."""
+"""Mechanisms refitted alone: none leads by a window that it happens to free, each counts along its own motion."""
 
 from __future__ import annotations
 
