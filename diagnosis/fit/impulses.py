@@ -35,13 +35,16 @@ class Impulses:
 
 
 def impulses(along: Along, ports: Sequence[Port]) -> Impulses:
-    """Of every window, about a motion."""
+    """Of every window, about a motion; a port whose impulses move nothing, as at a bonded joint, is left out."""
     m = along.predictor.measured
     duration = max(w.samples * m.recordings[w.recording].time_step for w in m.windows)
     offset = np.arange(0.0, duration, HALF_WIDTH)
-    found = {port.name: np.zeros((*m.values.shape, offset.size)) for port in ports}
     wall = m.model.build(without_instruments(along.point.values), along.predictor.options)
-    jumps = {port.name: port.jumps(wall) for port in ports}
+    every = {port.name: port.jumps(wall) for port in ports}
+    # a state that follows another one jumps with it
+    own = {name: {rate: jump for rate, jump in rates.items() if rate in m.free} for name, rates in every.items()}
+    jumps = {name: rates for name, rates in own.items() if any(rates.values())}
+    found = {name: np.zeros((*m.values.shape, offset.size)) for name in jumps}
     size = {name: CHANGE * _largest(along, rates) for name, rates in jumps.items()}
     length = np.array([window.samples for window in m.windows])
     for r in along.plain:
@@ -56,9 +59,9 @@ def impulses(along: Along, ports: Sequence[Port]) -> Impulses:
             for rate, jump in rates.items():
                 step_of = size[name] * jump * np.ones(window.size)
                 changed[rate] = changed[rate] + np.concatenate([step_of, -step_of])
-            every, since = np.tile(window, 2), np.tile(sample, 2)
-            ran = along.run(r, m.first[every] + since, m.values.shape[2], changed)
-            up, down = along.recorded(every, since, ran).reshape(2, window.size, *m.values.shape[1:])
+            both, since = np.tile(window, 2), np.tile(sample, 2)
+            ran = along.run(r, m.first[both] + since, m.values.shape[2], changed)
+            up, down = along.recorded(both, since, ran).reshape(2, window.size, *m.values.shape[1:])
             found[name][window, :, :, knot] = np.nan_to_num((up - down) / (2.0 * size[name]))
     return Impulses(offset, found)
 

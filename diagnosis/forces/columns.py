@@ -15,7 +15,7 @@ import numpy as np
 
 from diagnosis.errors.kicks import Kicks, kicks
 from diagnosis.fit.along import Along
-from diagnosis.fit.impulses import Impulses, impulses
+from diagnosis.fit.impulses import Impulses, impulses, jumps_at
 from diagnosis.fit.linearisation import Linearisation, linearise_about
 from diagnosis.fit.solver import Fitted
 from diagnosis.fit.whitening import HALF_WIDTH
@@ -41,8 +41,8 @@ class Forces:
 
     @property
     def kinds(self) -> tuple[Force, ...]:
-        """The kinds of force that the model declares."""
-        return self.fitted.measured.identification.forces
+        """The kinds of force that the model declares, at ports where a force moves something."""
+        return tuple(kind for kind in self.fitted.measured.identification.forces if kind.port.name in self.motions)
 
     @property
     def motion(self) -> Motion:
@@ -100,7 +100,7 @@ def forces(fitted: Fitted) -> Forces:
         fitted=fitted,
         screen=linearise_about(fitted),
         response=response,
-        motions=_motions(along),
+        motions={name: x for name, x in _motions(along).items() if name in response.values},
         time=m.first[:, None] * step + since,
         weight=pulses / np.maximum(pulses.sum(axis=2, keepdims=True), 1.0),
         events=kicks(predictor, fitted.point),

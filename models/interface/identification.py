@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from models.identification import Exposure, Force, Identification, Lead, Port, State, WindowLengths
-from models.interface.layered import LayeredWall
+from models.interface.layered import FREE, LayeredWall
 from models.unknown_forces import DEPENDENCES, PHASES, couples, over_largest_base, over_largest_rate, over_reach
 
 PROPERTIES = ("stiffness", "layer_modulus", "damping", "damping_ratio")
@@ -23,12 +23,17 @@ def _of_layer(joint: str) -> tuple[Exposure, Exposure]:
 
 
 def _jumps(wall: LayeredWall, couple_1: float, couple_2: float) -> dict[str, float]:
-    """Jumps of both angular velocities by an impulse that resists, of the generalised forces given, upright."""
+    """Jumps of both angular velocities by an impulse that resists, of the generalised forces given, upright.
+
+    Bodies that a bonded joint ties together turn as one, and what it ties to the ground stays.
+    """
     height = float((wall.height_1 + wall.top_thickness_in_height).item())
     m2, h2 = float(wall.mass_2.item()), float(wall.centre_2.item())
     lower = float((wall.inertia_1 + wall.mass_1 * wall.centre_1**2).item()) + m2 * height**2
     mass = np.array([[lower, m2 * height * h2], [m2 * height * h2, float(wall.inertia_2.item()) + m2 * h2**2]])
-    jumps = -np.linalg.solve(mass, [couple_1, couple_2])
+    free = FREE[wall.joints][:2, :]
+    free = free[:, np.any(free != 0.0, axis=0)]
+    jumps = -free @ np.linalg.solve(free.T @ mass @ free, free.T @ [couple_1, couple_2])
     return {"rotation_rate_1": float(jumps[0]), "rotation_rate_2": float(jumps[1])}
 
 

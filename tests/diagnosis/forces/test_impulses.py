@@ -12,6 +12,7 @@ from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.setup import measure
 from diagnosis.fit.solver import Fitted
 from diagnosis.forces.columns import Forces, forces
+from models.interface.layered import FREE
 from models.interface.reference.equation import Equation
 from tests.diagnosis.fit import test_walls as walls
 from tests.diagnosis.forces.test_scan import _fitted
@@ -62,10 +63,12 @@ def test_a_force_leaves_what_the_mechanism_that_is_this_force_leaves(which: str,
     assert expected @ column > 0.99 * np.sqrt((expected @ expected) * (column @ column))
 
 
-def test_an_impulse_turns_both_bodies_of_a_wall_as_their_mass_has_it() -> None:
-    """M(0) q'' of the full equations, the layers free, is the generalised force of each port."""
+@pytest.mark.parametrize("joints", ["both", "base", "top"])
+def test_an_impulse_turns_both_bodies_of_a_wall_as_their_mass_has_it(joints: str) -> None:
+    """M(0) q'' of the full equations, the layers free, is the generalised force of each port on what is not bonded."""
     model = models.get("interface")
-    wall = model.build(walls.TRUE)
+    wall = model.build(walls.TRUE, {"joints": joints})
+    free = FREE[joints] * [[1.0], [1.0], [0.0], [0.0]]
     equation = Equation(wall)
     at = equation.kinematics((0.0,) * 4, (0.0,) * 4)
     mass = equation.mass(at)
@@ -75,4 +78,6 @@ def test_an_impulse_turns_both_bodies_of_a_wall_as_their_mass_has_it() -> None:
     for name, port in ports.items():
         jumps = port.jumps(wall)
         rates = np.array([jumps["rotation_rate_1"], jumps["rotation_rate_2"], 0.0, 0.0])
-        np.testing.assert_allclose(mass @ rates, -np.array(wanted[name]), atol=1e-9 * max(np.abs(wanted[name])))
+        force = np.array(wanted[name])
+        np.testing.assert_allclose(free.T @ mass @ rates, -free.T @ force, atol=1e-9 * max(np.abs(force)))
+        np.testing.assert_allclose(free @ np.linalg.pinv(free) @ rates, rates, atol=1e-12 * max(np.abs(rates)))

@@ -14,6 +14,7 @@ from diagnosis.errors.model import Errors, calibrated
 from diagnosis.fit.setup import measure
 from diagnosis.fit.solver import Fitted, fit_thoroughly
 from diagnosis.fit.starts import best_start
+from diagnosis.forces.columns import forces
 from diagnosis.progress import silent
 from diagnosis.report import extend
 from diagnosis.search import ladder
@@ -62,6 +63,9 @@ def test_rubber_under_a_pier_is_named_with_its_stiffness_and_the_answer_is_a_spe
     tried = [(rung, ladder._weighed(ladder._fitted(rung, PIER, below, *below, fitted.measured.recordings, 0)))]
     climbed = confirmed(ladder.climb(found, tried, decisive=False), fitted.measured)
     assert climbed is not None and climbed.rung is rung and climbed.evidence > 3.0 * MISSING and climbed.inadequate
+    about = forces(climbed.after.chosen.fitted)  # none in the joint that is bonded
+    assert {kind.port.name for kind in about.kinds} == {"base", "block"}
+    assert all(np.all(np.isfinite(about.column(kind))) and np.any(about.column(kind)) for kind in about.kinds)
     other = other_model(climbed, climbed.after.chosen)
     assert other.parameters["base_stiffness"] == pytest.approx(MAT["base_stiffness"], rel=0.15)
     assert other.parameters["base_damping_ratio"] == pytest.approx(MAT["base_damping_ratio"], rel=0.4)
