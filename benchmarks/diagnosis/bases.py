@@ -90,7 +90,7 @@ def _case(design: suite.CaseDesign, seed: int, rng: np.random.Generator) -> Case
     return Case(_specimen(design.label, taken), sampling, channels, key)
 
 
-def _near(nominal: Mapping[str, float], rng: np.random.Generator) -> dict[str, float]:
+def near(nominal: Mapping[str, float], rng: np.random.Generator) -> dict[str, float]:
     """True values within the tolerance of the drawing."""
     return {name: value * (1.0 + TOLERANCE.get(name, 0.0) * float(rng.normal())) for name, value in nominal.items()}
 
@@ -105,7 +105,7 @@ def _channels(rng: np.random.Generator) -> tuple[str, ...]:
     return ROTATIONS if rng.uniform() < 0.5 else ROTATIONS[:1]
 
 
-def _two(rng: np.random.Generator, narrowest: float) -> dict[str, float]:
+def two_bodies(rng: np.random.Generator, narrowest: float) -> dict[str, float]:
     """A wall and a block on top, by its drawing."""
     height = round(float(rng.uniform(1.0, 1.8)), 2)
     length = round(height * float(rng.uniform(0.22, 0.4)), 3)
@@ -128,15 +128,15 @@ def _as_block(two: Mapping[str, float]) -> dict[str, float]:
 
 
 def _stack(rng: np.random.Generator) -> Taken:
-    nominal = _two(rng, 0.6)
-    return Taken("stacked", _near(nominal, rng), "stacked", nominal, ROTATIONS)
+    nominal = two_bodies(rng, 0.6)
+    return Taken("stacked", near(nominal, rng), "stacked", nominal, ROTATIONS)
 
 
 def _stack_as_block(rng: np.random.Generator) -> Taken:
     """A block on a wall, or a pier with a joint that nobody has seen."""
     if rng.uniform() < 0.5:
-        nominal = _two(rng, 0.6)
-        return Taken("stacked", _near(nominal, rng), "housner", _as_block(nominal), _channels(rng))
+        nominal = two_bodies(rng, 0.6)
+        return Taken("stacked", near(nominal, rng), "housner", _as_block(nominal), _channels(rng))
     block = specimens.draw(rng)
     return Taken(
         "stacked", _parted(block.true, float(rng.uniform(0.25, 0.75))), "housner", block.nominal, _channels(rng)
@@ -156,16 +156,16 @@ def _rubber_as_block(rng: np.random.Generator) -> Taken:
     """A pier on a mat, or, where both rotations are measured, a wall and a block on top between two layers."""
     channels = _channels(rng)
     if channels == ROTATIONS:
-        nominal = _two(rng, 0.8)
-        return Taken("interface", _on_rubber(_near(nominal, rng), rng), "housner", _as_block(nominal), channels)
+        nominal = two_bodies(rng, 0.8)
+        return Taken("interface", _on_rubber(near(nominal, rng), rng), "housner", _as_block(nominal), channels)
     block = specimens.draw(rng)
     true = _on_rubber(_parted(block.true, 0.5), rng, ("base",))
     return Taken("interface", true, "housner", block.nominal, channels, {"joints": "base"})
 
 
 def _rubber_as_stack(rng: np.random.Generator) -> Taken:
-    nominal = _two(rng, 0.8)
-    return Taken("interface", _on_rubber(_near(nominal, rng), rng), "stacked", nominal, ROTATIONS)
+    nominal = two_bodies(rng, 0.8)
+    return Taken("interface", _on_rubber(near(nominal, rng), rng), "stacked", nominal, ROTATIONS)
 
 
 def _on_rubber(

@@ -1,5 +1,5 @@
 """The benchmark of the diagnosis on concealed cases of our own: with white noise, with a
-laboratory's errors, with effects that begin, of walls on rubber, or of wrong base models.
+laboratory's errors, with effects that begin, of walls on rubber, of stacks, or of wrong base models.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from benchmarks.diagnosis import bases, beginnings, laboratory, report, runner, suite, walls
+from benchmarks.diagnosis import bases, beginnings, laboratory, report, runner, stacks, suite, walls
 from diagnosis.prove.answers import Answering, diagnosed, write_json
 from diagnosis.prove.figures import draw_confusion
 from diagnosis.prove.report import wrong as wrong_answers
@@ -31,7 +31,8 @@ BENCHES = {
     "diagnosis": Bench(suite.suite, report.grouped),
     "laboratory": Bench(laboratory.suite, report.by_imperfection),
     "beginnings": Bench(beginnings.suite, report.by_beginning),
-    "walls": Bench(walls.designs, report.of_all, ("walls.py", "fibre_wall.py")),
+    "walls": Bench(walls.designs, report.of_all, ("walls.py", "two_bodies.py", "fibre_wall.py")),
+    "stacks": Bench(stacks.designs, report.of_all, ("stacks.py", "two_bodies.py", "rigid_stack.py", "bases.py")),
     "bases": Bench(bases.designs, report.by_base, ("bases.py",)),
 }
 

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from pathlib import Path
 
-from benchmarks.diagnosis import bases, walls
+from benchmarks.diagnosis import bases, stacks, walls
 from benchmarks.diagnosis import cases as blocks
 from benchmarks.diagnosis.files import write_case
 from benchmarks.diagnosis.suite import CaseDesign
@@ -26,7 +26,7 @@ def made(design: CaseDesign, seed: int, cases: Path) -> tuple[Path, Path]:
     """Folder and key of a case, made unless it is there."""
     folder, key = cases / design.label, cases / "keys" / f"{design.label}.json"
     if not key.is_file():
-        makers = {walls.WallDesign: walls.make, bases.BaseDesign: bases.make}
+        makers = {walls.WallDesign: walls.make, stacks.StackDesign: stacks.make, bases.BaseDesign: bases.make}
         write_case(makers.get(type(design), blocks.make)(design, seed), folder, key)
     return folder, key
 

@@ -1,14 +1,15 @@
-"""Cases of walls on rubber, by seed: how many of what, how large an effect is, and that the chain can read them."""
+"""Cases of walls on rubber and of stacks by seed: how many of what, how large an effect is, that a chain reads them."""
 
 from __future__ import annotations
 
 from collections import Counter
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 import pytest
 
-from benchmarks.diagnosis import walls
+from benchmarks.diagnosis import stacks, two_bodies, walls
 from benchmarks.diagnosis.files import write_case
 from benchmarks.diagnosis.scene import Unsuitable
 from grids.instruments import INSTRUMENTS
@@ -16,54 +17,60 @@ from grids.recordings import read_recording
 from grids.specimen import read_specimen
 from models.shaking import Shaking
 
+MODULES = pytest.mark.parametrize("of", [walls, stacks], ids=["walls", "stacks"])
 
-def test_every_effect_is_asked_for_as_often_and_stands_in_the_catalogue() -> None:
-    asked = walls.designs(7)
-    assert Counter(design.kind for design in asked) == walls.COUNTS
+
+@MODULES
+def test_every_effect_is_asked_for_as_often_and_stands_in_the_catalogue(of: ModuleType) -> None:
+    asked = of.designs(7)
+    assert Counter(design.kind for design in asked) == two_bodies.COUNTS
     singles = Counter(design.names[0] for design in asked if design.kind == "single")
-    assert set(singles) == set(walls.CATALOGUE) and len(set(singles.values())) == 1
-    for name, row in walls.CATALOGUE.items():
-        known = (INSTRUMENTS if row.sensor else walls.MODEL.mechanisms)[name]
+    assert set(singles) == set(of.CATALOGUE) and len(set(singles.values())) == 1
+    for name, row in of.CATALOGUE.items():
+        known = (INSTRUMENTS if row.sensor else of.MODEL.mechanisms)[name]
         assert known.effect_class == row.effect_class and known.parameter(row.parameter).null == row.null
         low, high = known.parameter(row.parameter).low, known.parameter(row.parameter).high
         assert all(low <= end <= high for end in row.ends)
 
 
-def test_errors_are_shared_out_alike_and_pairs_are_of_two_classes() -> None:
-    asked = walls.designs(7)
-    for kind, count in walls.COUNTS.items():
+@MODULES
+def test_errors_are_shared_out_alike_and_pairs_are_of_two_classes(of: ModuleType) -> None:
+    asked = of.designs(7)
+    for kind, count in two_bodies.COUNTS.items():
         assert sum(bool(one.imperfection) for one in asked if one.kind == kind) == count // 2
     errors = Counter(one.imperfection for one in asked if one.imperfection)
-    assert set(errors) == set(walls.ERRORS)
+    assert set(errors) == set(two_bodies.ERRORS)
     for names in (one.names for one in asked if one.kind == "pair"):
-        assert len({walls.CATALOGUE[name].effect_class for name in names}) == 2
+        assert len({of.CATALOGUE[name].effect_class for name in names}) == 2
 
 
-def test_size_is_nothing_without_an_effect_and_grows_with_one() -> None:
+@MODULES
+def test_size_is_nothing_without_an_effect_and_grows_with_one(of: ModuleType) -> None:
     rng = np.random.default_rng(3)
     drawn: tuple[dict[str, float], tuple[str, Shaking, float]] | None = None
     while drawn is None:
         try:
-            true = walls._wall(rng)[1]
-            drawn = true, walls._motion(true, rng, 22.0)
+            true = of.BODIES.specimen(rng)[1]
+            drawn = true, of.BODIES.motion(true, rng, 22.0)
         except Unsuitable:
             continue
     true, (_, shaking, peak) = drawn
-    plain = walls.Truth(true, {}, apart=False)
-    assert walls.strength(plain, {}, shaking, peak) < 0.05
+    plain = two_bodies.Truth(of.BODIES, true, {}, apart=False)
+    assert two_bodies.strength(plain, {}, shaking, peak) < 0.05
     small, twice = (
-        walls.strength(plain, {"offset": {"offset_over_peak": share}}, shaking, peak) for share in (0.05, 0.1)
+        two_bodies.strength(plain, {"offset": {"offset_over_peak": share}}, shaking, peak) for share in (0.05, 0.1)
     )
     assert small > 1.0
     assert twice / small == pytest.approx(2.0, rel=0.1)  # an offset adds, and no refit takes it up
 
 
-def test_a_case_is_read_as_it_was_made(tmp_path: Path) -> None:
-    design = next(one for one in walls.designs(7) if one.kind == "null" and one.number % 2)
-    case = walls.make(design, 7)
+@MODULES
+def test_a_case_is_read_as_it_was_made(of: ModuleType, tmp_path: Path) -> None:
+    design = next(one for one in of.designs(7) if one.kind == "null" and one.number % 2)
+    case = of.make(design, 7)
     write_case(case, tmp_path / "case", tmp_path / "key.json")
     specimen, recording = read_specimen(tmp_path / "case/specimen.toml"), read_recording(tmp_path / "case/train_1.nc")
-    assert specimen.model == "interface" and set(specimen.calibrate) == set(walls.RANGES)
-    assert set(walls.ROTATIONS) <= set(recording.channels)
-    again = walls.make(design, 7).channels["train_1"]["rotation_1"]
+    assert specimen.model == of.MODEL.name and set(specimen.calibrate) == set(of.BODIES.calibrated)
+    assert set(two_bodies.ROTATIONS) <= set(recording.channels)
+    again = of.make(design, 7).channels["train_1"]["rotation_1"]
     np.testing.assert_array_equal(case.channels["train_1"]["rotation_1"], again)
