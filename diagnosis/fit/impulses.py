@@ -42,8 +42,8 @@ def impulses(along: Along, ports: Sequence[Port]) -> Impulses:
     wall = m.model.build(without_instruments(along.point.values), along.predictor.options)
     every = {port.name: port.jumps(wall) for port in ports}
     # a state that follows another one jumps with it
-    own = {name: {rate: jump for rate, jump in rates.items() if rate in m.free} for name, rates in every.items()}
-    jumps = {name: rates for name, rates in own.items() if any(rates.values())}
+    kept = {name: {rate: jump for rate, jump in rates.items() if rate in m.free} for name, rates in every.items()}
+    jumps = {name: rates for name, rates in kept.items() if any(rates.values())}
     found = {name: np.zeros((*m.values.shape, offset.size)) for name in jumps}
     size = {name: CHANGE * _largest(along, rates) for name, rates in jumps.items()}
     length = np.array([window.samples for window in m.windows])
