@@ -7,6 +7,10 @@ With the Gauss-Newton Hessian H and the windows' scores s_w (states eliminated) 
 which stays right when residuals within a window are correlated or the noise level is off; the larger
 of V and H^-1 is taken. The profile raises the loss by 3.84 V/H^-1 on either side, so a curved loss
 gives a lopsided interval. Where a profile falls under the optimum the fit goes on from there (`settled`).
+
+Where a fit works with another coordinate c than the model's own parameter x (`Identification.coordinates`: the slope of
+a layer under its load beside its stiffness), x depends on the other unknowns too, such as a law's: its interval is that
+of c, on a logarithmic scale, times sd(log x)/sd(log c), both from the gradients g and the covariance C, sd^2 = g'C g.
 """
 
 from __future__ import annotations
@@ -17,7 +21,7 @@ from typing import Literal
 
 import numpy as np
 
-from diagnosis.fit.misfit import reduce
+from diagnosis.fit.misfit import STEP, reduce
 from diagnosis.fit.solver import Fitted, fit, normal
 from diagnosis.fit.unknowns import Unknown
 from models.base import FloatArray
@@ -59,6 +63,13 @@ def covariances(fitted: Fitted) -> tuple[FloatArray, FloatArray]:
     return np.asarray(inverse @ (spread + precision) @ inverse)[:k, :k], inverse[:k, :k]
 
 
+def at_least(sandwich: FloatArray, laplace: FloatArray) -> FloatArray:
+    """The sandwich (k, k) with each standard deviation at least that of the inverse Hessian."""
+    naive, robust = (np.sqrt(np.maximum(np.diag(cover), 0.0)) for cover in (laplace, sandwich))
+    scale = np.maximum(naive, robust) / np.maximum(robust, 1e-300)
+    return np.asarray(sandwich * np.outer(scale, scale))
+
+
 def correlation(fitted: Fitted) -> FloatArray:
     """Correlation (k, k) of the estimates, from the sandwich."""
     cover, _ = covariances(fitted)
@@ -69,7 +80,7 @@ def correlation(fitted: Fitted) -> FloatArray:
 def estimates(fitted: Fitted, profiled: Sequence[str] = ()) -> dict[str, Estimate]:
     """Every unknown with its 95 % interval, in its own unit; a profile for the names in ``profiled``."""
     sandwich, laplace = covariances(fitted)
-    found, own = {}, fitted.point.values
+    found, own, wider = {}, fitted.point.values, _own_widths(fitted, at_least(sandwich, laplace))
     for i, unknown in enumerate(fitted.misfit.unknowns):
         naive = float(np.sqrt(max(laplace[i, i], 0.0)))
         sd = max(naive, float(np.sqrt(max(sandwich[i, i], 0.0))))
@@ -80,11 +91,41 @@ def estimates(fitted: Fitted, profiled: Sequence[str] = ()) -> dict[str, Estimat
         else:
             ends = (fitted.u[i] - QUANTILE * sd, fitted.u[i] + QUANTILE * sd)
         one = _estimate(unknown, float(fitted.u[i]), ends, fitted.at_bound(i))
-        # the model's own parameter goes in proportion with the fit's coordinate
-        share = own[unknown.name] / one.estimate if unknown.name in fitted.misfit.predictor.coordinates else 1.0
-        found[unknown.name] = replace(
-            one, estimate=share * one.estimate, low95=share * one.low95, high95=share * one.high95
-        )
+        if unknown.name in fitted.misfit.predictor.coordinates:
+            one = _as_own(one, own[unknown.name], wider[unknown.name])
+        found[unknown.name] = one
+    return found
+
+
+def _as_own(one: Estimate, own: float, wider: float) -> Estimate:
+    """The model's own parameter: its value, and the interval of the fit's coordinate ``wider`` in its logarithm."""
+    low, high = (own * (end / one.estimate) ** wider for end in (one.low95, one.high95))
+    return replace(one, estimate=own, low95=low, high95=high)
+
+
+def _own_widths(fitted: Fitted, cover: FloatArray) -> dict[str, float]:
+    """By coordinate: standard deviation of the logarithm of the model's own parameter over that of the coordinate."""
+    unknowns, predictor = fitted.misfit.unknowns, fitted.misfit.predictor
+    fitted_ones = [i for i, x in enumerate(unknowns) if x.name in predictor.coordinates]
+    if not fitted_ones:
+        return {}
+    bounds = np.array([x.bounds for x in unknowns])
+    steps = STEP * np.eye(len(unknowns))
+    ends = np.clip(np.stack([fitted.u - steps, fitted.u + steps], axis=1), bounds[:, 0], bounds[:, 1])
+    flat = ends.reshape(-1, len(unknowns))
+    moved = np.einsum("iji->ij", ends)
+    width = moved[:, 1] - moved[:, 0]
+    owns = predictor.declared([fitted.misfit.point(u, fitted.states) for u in flat])
+    found = {}
+    for i in fitted_ones:
+        name = unknowns[i].name
+        if cover[i, i] < UNINFORMED**2:
+            found[name] = 1.0
+            continue
+        own = np.log([point.values[name] for point in owns]).reshape(-1, 2)
+        slope = (own[:, 1] - own[:, 0]) / width
+        coordinate = np.log(unknowns[i].value(moved[i, 1]) / unknowns[i].value(moved[i, 0])) / width[i]
+        found[name] = float(np.sqrt((slope @ cover @ slope) / (coordinate**2 * cover[i, i])))
     return found
 
 

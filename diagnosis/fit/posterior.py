@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diagnosis.fit.intervals import UNINFORMED, covariances
+from diagnosis.fit.intervals import UNINFORMED, at_least, covariances
 from diagnosis.fit.solver import Fitted
 from models.base import FloatArray
 
@@ -26,9 +26,7 @@ def samples(fitted: Fitted, count: int = COUNT, seed: int = 0) -> dict[str, Floa
     bounds = np.array([x.bounds for x in unknowns])
     rng = np.random.default_rng(seed)
     sandwich, laplace = covariances(fitted)
-    naive, robust = (np.sqrt(np.maximum(np.diag(cover), 0.0)) for cover in (laplace, sandwich))
-    scale = np.maximum(naive, robust) / np.maximum(robust, 1e-300)
-    values, vectors = np.linalg.eigh(sandwich * np.outer(scale, scale))
+    values, vectors = np.linalg.eigh(at_least(sandwich, laplace))
     root = vectors * np.sqrt(np.maximum(values, 0.0))
     u = np.empty((count, len(unknowns)))
     again = np.arange(count)
@@ -38,12 +36,11 @@ def samples(fitted: Fitted, count: int = COUNT, seed: int = 0) -> dict[str, Floa
         if not again.size:
             break
     u = np.clip(u, bounds[:, 0], bounds[:, 1])
-    unknown = naive < UNINFORMED
+    unknown = np.sqrt(np.maximum(np.diag(laplace), 0.0)) < UNINFORMED
     u[:, unknown] = rng.uniform(bounds[unknown, 0], bounds[unknown, 1], (count, int(unknown.sum())))
-    found, own = {}, fitted.point.values
-    for k, x in enumerate(unknowns):
-        drawn = np.array([x.value(one) for one in u[:, k]])
-        # the model's own parameter goes in proportion with the fit's coordinate
-        inner = x.name in fitted.misfit.predictor.coordinates
-        found[x.name] = drawn * (own[x.name] / x.value(float(fitted.u[k]))) if inner else drawn
+    found = {x.name: np.array([x.value(one) for one in u[:, k]]) for k, x in enumerate(unknowns)}
+    predictor = fitted.misfit.predictor
+    if predictor.coordinates:  # the model's own parameters, that depend on the other unknowns too
+        own = predictor.declared([fitted.misfit.point(one, fitted.states) for one in u])
+        found |= {x: np.array([p.values[x] for p in own]) for x in predictor.coordinates if x in found}
     return found

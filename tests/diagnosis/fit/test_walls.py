@@ -12,8 +12,10 @@ from diagnosis import calibrate
 from diagnosis.answer.experiment import unrecorded
 from diagnosis.data.measured import Measured
 from diagnosis.fit.along import Along
+from diagnosis.fit.intervals import QUANTILE, at_least, covariances, estimates
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.misfit import Misfit
+from diagnosis.fit.posterior import samples
 from diagnosis.fit.prediction import Predictor
 from diagnosis.fit.setup import measure
 from diagnosis.fit.solver import fit
@@ -148,3 +150,21 @@ def test_a_fit_from_other_sizes_gets_along_a_bent_valley() -> None:
     sizes = found.fitted.values
     assert abs(sizes["viscous_damping.couple_damping"] / 3.0e5 - 1.0) < 0.1
     assert abs(sizes["base_damping"] - LAYERS["base_damping"]) < 0.7 * LAYERS["base_damping"]
+
+
+def test_the_interval_of_a_layer_knows_what_a_law_beside_it_may_be() -> None:
+    """What is told well is the slope under the load; how much of it is the stiffness depends on how it hardens."""
+    measured = measure(WALL, [recorded(1, (("hardening.beta2", 20.0),))])
+    (law,) = (c for c in candidates(measured, WALL) if [u.name for u in c.unknowns] == ["hardening.beta2"])
+    one = misfit(measured)
+    one = replace(one, unknowns=(*one.unknowns, *law.unknowns))
+    true = {**TRUE, "hardening.beta2": 20.0}
+    found = fit(one, np.array([x.coordinate(true[x.name]) for x in one.unknowns]), measured.states)
+    k = [x.name for x in one.unknowns].index("base_stiffness")
+    slope_alone = float(np.sqrt(at_least(*covariances(found))[k, k])) * one.unknowns[k].scale
+    interval, drawn = estimates(found)["base_stiffness"], samples(found, 2000)
+    assert interval.low95 < true["base_stiffness"] < interval.high95
+    width = np.log(interval.high95 / interval.low95) / (2.0 * QUANTILE)
+    assert width > 1.3 * slope_alone
+    assert abs(np.std(np.log(drawn["base_stiffness"])) / width - 1.0) < 0.1
+    assert np.corrcoef(drawn["base_stiffness"], drawn["hardening.beta2"])[0, 1] < -0.6
