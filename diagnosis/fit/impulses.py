@@ -34,16 +34,22 @@ class Impulses:
     values: Mapping[str, FloatArray]
 
 
+def jumps_at(along: Along, ports: Sequence[Port]) -> dict[str, dict[str, float]]:
+    """By port, by how much an impulse of one changes the free rates; ports that move nothing are left out."""
+    m = along.predictor.measured
+    wall = m.model.build(without_instruments(along.point.values), along.predictor.options)
+    every = {port.name: port.jumps(wall) for port in ports}
+    # a state that follows another one jumps with it
+    own = {name: {rate: jump for rate, jump in rates.items() if rate in m.free} for name, rates in every.items()}
+    return {name: rates for name, rates in own.items() if any(rates.values())}
+
+
 def impulses(along: Along, ports: Sequence[Port]) -> Impulses:
     """Of every window, about a motion; a port whose impulses move nothing, as at a bonded joint, is left out."""
     m = along.predictor.measured
     duration = max(w.samples * m.recordings[w.recording].time_step for w in m.windows)
     offset = np.arange(0.0, duration, HALF_WIDTH)
-    wall = m.model.build(without_instruments(along.point.values), along.predictor.options)
-    every = {port.name: port.jumps(wall) for port in ports}
-    # a state that follows another one jumps with it
-    kept = {name: {rate: jump for rate, jump in rates.items() if rate in m.free} for name, rates in every.items()}
-    jumps = {name: rates for name, rates in kept.items() if any(rates.values())}
+    jumps = jumps_at(along, ports)
     found = {name: np.zeros((*m.values.shape, offset.size)) for name in jumps}
     size = {name: CHANGE * _largest(along, rates) for name, rates in jumps.items()}
     length = np.array([window.samples for window in m.windows])

@@ -70,13 +70,18 @@ class Forces:
 
 
 def motions_of(fitted: Fitted) -> dict[str, Motion]:
-    """By port of the model, its coordinate along the windows of a fit."""
+    """By port of the model at which a force moves something, its coordinate along the windows of a fit."""
     return _motions(Along(fitted.misfit.predictor, fitted.point))
 
 
+def _ports(along: Along) -> list[Port]:
+    return list({kind.port.name: kind.port for kind in along.predictor.measured.identification.forces}.values())
+
+
 def _motions(along: Along) -> dict[str, Motion]:
-    ports = {kind.port.name: kind.port for kind in along.predictor.measured.identification.forces}
-    return {name: _motion(along, along.observed(port.coordinate)) for name, port in ports.items()}
+    ports = _ports(along)
+    acting = jumps_at(along, ports)
+    return {port.name: _motion(along, along.observed(port.coordinate)) for port in ports if port.name in acting}
 
 
 def _motion(along: Along, coordinate: FloatArray) -> Motion:
@@ -90,8 +95,7 @@ def forces(fitted: Fitted) -> Forces:
     """The force columns about a fit."""
     predictor, m = fitted.misfit.predictor, fitted.measured
     mask, along = m.mask[:, m.lead], Along(fitted.misfit.predictor, fitted.point)
-    ports = list({kind.port.name: kind.port for kind in m.identification.forces}.values())
-    response = impulses(along, ports)
+    response = impulses(along, _ports(along))
     step = np.array([m.recordings[w.recording].time_step for w in m.windows])[:, None]
     since = np.arange(m.values.shape[2])[None] * step
     pulses = np.maximum(0.0, 1.0 - np.abs(since[:, None, :] - response.offset[None, :, None]) / HALF_WIDTH)
@@ -100,7 +104,7 @@ def forces(fitted: Fitted) -> Forces:
         fitted=fitted,
         screen=linearise_about(fitted),
         response=response,
-        motions={name: x for name, x in _motions(along).items() if name in response.values},
+        motions=_motions(along),
         time=m.first[:, None] * step + since,
         weight=pulses / np.maximum(pulses.sum(axis=2, keepdims=True), 1.0),
         events=kicks(predictor, fitted.point),
