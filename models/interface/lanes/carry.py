@@ -17,7 +17,7 @@ from models.interface.lanes.effects import rows as e
 from models.interface.lanes.effects.begin import follow, load_pitch, pitch_on, vacate
 from models.interface.lanes.effects.step import predict, step, strips_of_fibres
 from models.interface.lanes.fibres import fibres_all, sided_fibres
-from models.interface.lanes.rows import GROWTH_A, GROWTH_V, N_RESULT, Q_STEPS, RA, RV, T1, W
+from models.interface.lanes.rows import GROWTH_A, GROWTH_V, N_RESULT, Q_STEPS, RA, RV, T1, V1, W
 from models.interface.lanes.settle import empty, load, start, table_for
 from models.interface.lanes.step import step_all
 from models.lanes.arrays import Counts, Record, Table
@@ -71,10 +71,11 @@ def carry(
         for i in range(end + 1):
             for slot in range(count):
                 row = motion[along[begin + slot], min(i, motion.shape[1] - 1)]
+                turn, rate = w[T1, slot], w[V1, slot]
                 for k in range(held.size):
                     w[T1 + held[k], slot] = row[k]
                 if more is not None:
-                    follow(flat, slot)
+                    follow(flat, slot, w[T1, slot] - turn, w[V1, slot] - rate)
             while mark < marks.size and marks[mark] == i:
                 for slot in range(count):
                     for k in range(states.shape[2]):

@@ -33,7 +33,7 @@ def recording(seed: int, effect: Mapping[str, float]) -> Recording:
     """Both rotations with white noise of 1 % of their peaks."""
     base = motion(seed, pga=6.0)
     ran = models.get("stacked").simulate({**TRUE, **effect}, base, duration=base.duration)
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(seed + 1000)  # not the one that made the motion: noise would go with it
     channels = {"base_acceleration_x": base.horizontal}
     for name in ("rotation_1", "rotation_2"):
         true = ran.channels[name]

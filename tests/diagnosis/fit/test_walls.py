@@ -143,10 +143,13 @@ def test_a_fit_from_other_sizes_gets_along_a_bent_valley() -> None:
     one = misfit(measured)
     base = fit(one, start_of(one.unknowns), measured.states)
     (law,) = (c for c in candidates(measured, WALL) if c.name == "viscous_damping")
-    share = 0.02 * (law.unknowns[0].bounds[1] - law.null)
-    crawled = further(extend(Explanation((), base), law, law.null + share))
-    found = resized(crawled)
-    assert found.loss < crawled.loss - 3.0
+    reach = law.unknowns[0].bounds[1] - law.null
+    crawled = [further(extend(Explanation((), base), law, law.null + share * reach)) for share in (0.005, 0.05)]
+    ended = [resized(one) for one in crawled]
+    # where a fit crawls to is a matter of rounding; where it gets to from other sizes is not
+    assert abs(ended[0].loss - ended[1].loss) < 0.5
+    assert max(one.loss for one in crawled) > max(one.loss for one in ended) + 1.0
+    found = ended[0]
     sizes = found.fitted.values
     assert abs(sizes["viscous_damping.couple_damping"] / 3.0e5 - 1.0) < 0.1
     assert abs(sizes["base_damping"] - LAYERS["base_damping"]) < 0.7 * LAYERS["base_damping"]

@@ -64,17 +64,20 @@ def test_windows_from_carried_states_are_parts_of_the_run(law: dict[str, float])
     assert relaxed > (0.02 if law else 1e-3) * peak
 
 
+def seen(channels: Any, kept: slice = slice(None)) -> dict[str, np.ndarray]:
+    """Rotations with noise, smoothed, and their rates; of the samples ``kept``."""
+    rng, motion = np.random.default_rng(1), {}
+    for name, rate in zip(HELD[:2], RATES, strict=True):
+        noisy = channels[name] + NOISE * np.max(np.abs(channels[name])) * rng.normal(size=COUNT)
+        motion[name] = savgol_filter(noisy, 31, 3)[None, kept]
+        motion[rate] = savgol_filter(noisy, 31, 3, deriv=1, delta=STEP)[None, kept]
+    return motion
+
+
 def test_noise_of_the_measured_motion_hardly_enters_what_is_carried() -> None:
     values = WALL | MAXWELL
     channels = MODEL.simulate(values, shaking()).channels
-    rng = np.random.default_rng(1)
-    motion = {}
-    for name, rate in zip(HELD[:2], RATES, strict=True):
-        sigma = NOISE * np.max(np.abs(channels[name]))
-        noisy = channels[name] + sigma * rng.normal(size=COUNT)
-        motion[name] = savgol_filter(noisy, 31, 3)[None]
-        motion[rate] = savgol_filter(noisy, 31, 3, deriv=1, delta=STEP)[None]
-    wrong = in_windows(values, channels, carried(values, motion)) - recorded(channels)
+    wrong = in_windows(values, channels, carried(values, seen(channels))) - recorded(channels)
     sigma = NOISE * np.max(np.abs(recorded(channels)))
     assert np.sqrt(np.mean(wrong**2)) < 0.2 * sigma
 
@@ -132,3 +135,50 @@ def test_walls_along_motions_of_their_own_are_carried_as_each_alone_to_its_last_
         for k, count in enumerate((MARKS.size, 2, MARKS.size)):
             alone = carried(values, motions[row[k]])[name][0]
             np.testing.assert_array_equal(x[k, :count], alone[:count])
+
+
+@pytest.mark.parametrize(
+    "effect",
+    [
+        {"wall_flexibility.flexural_stiffness_ratio": 10.0}, {"wall_flexibility.flexural_stiffness_ratio": 400.0},
+        {"interface_shear.shear_over_normal": 0.5}, {"interface_shear.shear_over_normal": 20.0},
+        {"sliding.friction": 1.5}, {"coulomb_damping.over_m_g_b": 0.03},
+    ],
+    ids=str,
+)  # fmt: skip
+def test_coordinates_beside_the_prescribed_rotations_stay_with_them_however_stiff(effect: dict[str, float]) -> None:
+    """A bend that every setting of the lower half changed rang; a base that friction held began with a push."""
+    values = WALL | effect
+    channels = MODEL.simulate(values, shaking()).channels
+    exact = {name: channels[name][None] for name in HELD}
+    wrong = in_windows(values, channels, carried(values, exact)) - recorded(channels)
+    assert np.max(np.abs(wrong)) < 1e-4 * np.max(np.abs(channels["rotation_1"]))
+    wrong = in_windows(values, channels, carried(values, seen(channels))) - recorded(channels)
+    assert np.sqrt(np.mean(wrong**2)) < 0.6 * NOISE * np.max(np.abs(recorded(channels)))
+
+
+def test_a_base_that_slips_is_carried_along_its_motion() -> None:
+    """Without noise only: where slip begins and ends is a matter of less than the noise of the rotations."""
+    values = WALL | {"sliding.friction": 0.06}
+    channels = MODEL.simulate(values, shaking()).channels
+    found = carried(values, {name: channels[name][None] for name in HELD})
+    peak = np.max(np.abs(channels["rotation_1"]))
+    assert np.max(np.abs(in_windows(values, channels, found) - recorded(channels))) < 1e-4 * peak
+    assert np.max(np.abs(found["velocity_x_1"])) > 1e-2
+
+
+@pytest.mark.parametrize("name, nearly", [("wall_flexibility", 400.0), ("interface_shear", 1e4), ("sliding", 60.0)])
+def test_windows_of_a_wall_that_is_nearly_stiff_are_those_of_the_plain_wall(name: str, nearly: float) -> None:
+    """At a step as coarse as a logger's, and from rotations with noise."""
+    channels = MODEL.simulate(WALL, shaking()).channels
+    motion = seen(channels, slice(None, None, 5))
+    base = replace(shaking(), time_step=5 * STEP, horizontal=shaking().horizontal[::5])
+    asked, values = Prescribed(motion, MARKS // 5, np.zeros(1, np.int64)), {}
+    (parameter,) = (p.name for p in MODEL.mechanisms[name].parameters)
+    values[f"{name}.{parameter}"] = nearly
+    ran = []
+    for own in (WALL, WALL | values):
+        held = {name: x[0, MARKS // 5] for name, x in motion.items()}
+        initial = held | {name: x[0] for name, x in MODEL.carry(own, base, asked).items()}
+        ran.append(MODEL.trajectories(own, base, first=MARKS // 5, samples=AHEAD // 5, initial=initial)["rotation_1"])
+    assert np.max(np.abs(ran[1] - ran[0])) < 0.02 * np.max(np.abs(channels["rotation_1"]))

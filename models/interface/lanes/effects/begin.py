@@ -27,16 +27,19 @@ def put(t: Table, m: More, lane: int, slot: int) -> None:
         t[e.CLOSINGS + k * W + slot] = m.given[lane, e.G_MEMORY + k]
     for k in range(e.N_LAW):
         t[e.REACH + k * W + slot] = m.given[lane, e.G_LAW + k]
-    follow(t, slot)
+    follow(t, slot, 0.0, 0.0)
     wear = 1.0 - t[e.LOSS + slot] * (1.0 - exponential_decay(t[e.CLOSINGS + slot] * t[e.PER_CLOSING + slot]))
     t[r.FACTOR_L * W + slot], t[r.FACTOR_R * W + slot] = wear * t[e.LEFT + slot], wear * t[e.RIGHT + slot]
 
 
 @called
-def follow(t: Table, slot: int) -> None:
-    """The upper half of a wall that does not bend goes with the lower one."""
+def follow(t: Table, slot: int, turn: float, rate: float) -> None:
+    """The upper half of a wall goes with the lower one, set anew by ``turn`` (rad) and ``rate``: its bend stays."""
     if t[e.FREE_M + slot] == 0.0:
         t[e.TM + slot], t[e.VTM + slot] = t[r.T1 * W + slot], t[r.V1 * W + slot]
+    else:
+        t[e.TM + slot] += turn
+        t[e.VTM + slot] += rate
 
 
 @called

@@ -16,6 +16,9 @@ from models.lanes.compiler import called
 
 SWEEPS = 6
 HUGE = 1e300
+STUCK = 1e-9
+"""m/s: what rounding leaves of the velocity along a base that friction holds. Where a run begins it is no slip, whose
+friction would be that of the whole weight in a direction of chance."""
 
 
 @called
@@ -51,11 +54,9 @@ def hold(t: Table, m: More) -> None:
                 d2 += t[e.HELD + 2 * W + i] * couple + t[e.HELD_BASE + 2 * W + i] * push
                 normal = t[e.N_B + i] - t[e.D1_B + i] * d2 + t[e.D2_B + i] * t[e.C1 + i] * d0
                 most = t[e.SLIDES + i] * t[e.FRICTION + i] * max(normal, 0.0)
-                rest = (
-                    t[e.D + 4 * W + i]
-                    + t[e.HELD + 4 * W + i] * couple
-                    + min(max(t[e.V + 4 * W + i] * per, -HUGE), HUGE)
-                )
+                slip = t[e.V + 4 * W + i]
+                slip = slip if abs(slip) > STUCK else 0.0
+                rest = t[e.D + 4 * W + i] + t[e.HELD + 4 * W + i] * couple + min(max(slip * per, -HUGE), HUGE)
                 t[e.HELD_X + i] = min(max(-rest / (t[e.HELD_BASE + 4 * W + i] + 1.0 - t[e.SLIDES + i]), -most), most)
     for j in range(m.size):
         for i in range(lanes):

@@ -1,0 +1,101 @@
+"""Walls on rubber: every mechanism, simulated, is seen by the screen and recovered by its own refit."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+import models
+from diagnosis.fit.setup import measure
+from diagnosis.fit.solver import fit, fit_thoroughly
+from diagnosis.search.refit import Explanation
+from grids.instruments import INSTRUMENTS
+from grids.recordings.base import Recording
+from models.shaking import Shaking
+from tests.diagnosis.fit.test_walls import TRUE, WALL, misfit
+from tests.diagnosis.made import motion
+from tests.diagnosis.search.recovered import (
+    SENSORS,
+    assert_directions,
+    assert_recovered,
+    own_candidates,
+    simulated,
+    true_value,
+)
+
+EFFECTS: dict[str, dict[str, float]] = {
+    "vertical_acceleration": {"kappa": 1.0},
+    "sliding": {"friction": 0.085},
+    "pivot_inset": {"inset_over_half_width": 0.08},
+    "tilt": {"tilt": 0.004},
+    "eccentricity": {"offset_top": 0.02},
+    "contact_length": {"frozen": 0.2},
+    "added_stiffness": {"couple_stiffness": 2e5, "gap": 0.0},
+    "one_sided_stiffness": {"right_over_left": 1.25},
+    "table_pitch": {"pitch_per_acceleration": 0.0005, "low_pass_hz": 8.0},
+    "viscous_damping": {"couple_damping": 3e4},
+    "coulomb_damping": {"over_m_g_b": 0.02},
+    "degradation": {"final_loss": 0.3, "cycles": 5.0},
+    "hardening": {"beta2": 15.0},
+    "locking": {"lock_strain": 0.8},
+    "maxwell": {"arm_stiffness_ratio": 0.3, "relaxation_time": 0.1},
+    "bouc_wen": {"post_yield_ratio": 0.6, "yield_compression": 0.001, "exponent": 1.0},
+    "mullins": {"softening": 0.2, "strain": 0.2},
+    "permanent_set": {"rate": 2.0, "strain_limit": 0.3},
+    "interface_shear": {"shear_over_normal": 1.0},
+    "bonded_layer": {"tearing_strain": 0.02},
+    "wall_flexibility": {"flexural_stiffness_ratio": 10.0},
+    **SENSORS,
+}
+NOT_HERE = {"integrated_displacement": "it acts on whole recordings, and walls are compared in windows"}
+SLIPS = "sliding"
+"""It has no slope at its null, and where a base slips the windows of the plain wall end far from their states."""
+SPECIMEN = replace(WALL, vertical=False)
+
+
+def recorded(name: str, seed: int) -> Recording:
+    base = motion(seed, pga=3.0)
+    if name == "vertical_acceleration":
+        base = Shaking(base.time_step, base.horizontal, motion(seed + 50, pga=4.0).horizontal, vertical_acts=False)
+    return simulated("interface", TRUE, {name: EFFECTS[name]}, base, seed)
+
+
+@cache
+def base(name: str) -> Explanation:
+    """Fitted from the true layers: how the search comes there is another test's."""
+    measured = measure(SPECIMEN, [recorded(name, seed) for seed in (1, 2)])
+    one = misfit(measured)
+    return Explanation((), fit(one, np.array([x.coordinate(TRUE[x.name]) for x in one.unknowns]), measured.states))
+
+
+def test_every_mechanism_of_walls_and_their_sensors_is_here() -> None:
+    own = {name for name, one in models.get("interface").mechanisms.items() if not one.tabulated}
+    assert set(EFFECTS) | set(NOT_HERE) == own | set(INSTRUMENTS)
+
+
+@pytest.mark.parametrize("name", [name for name in EFFECTS if name != SLIPS])
+def test_the_direction_of_the_score_is_a_finite_difference(name: str) -> None:
+    own = own_candidates(base(name), SPECIMEN, name, EFFECTS[name])
+    assert_directions(base(name).fitted, own, 0.95 if name == "locking" else 0.99)  # stresses grow faster than the step
+
+
+@pytest.mark.parametrize("name", [name for name in EFFECTS if name != SLIPS])
+def test_a_simulated_effect_is_seen_and_recovered(name: str) -> None:
+    before = base(name)
+    assert_recovered(
+        before, own_candidates(before, SPECIMEN, name, EFFECTS[name]), true_value(before, name, EFFECTS[name])
+    )
+
+
+def test_a_base_that_slips_is_recovered_from_measured_states() -> None:
+    before, (slip,) = base(SLIPS), own_candidates(base(SLIPS), SPECIMEN, SLIPS, EFFECTS[SLIPS])
+    one, friction = before.fitted.misfit, EFFECTS[SLIPS]["friction"]
+    one = replace(one, unknowns=(*one.unknowns, *slip.unknowns))
+    true = {**TRUE, f"{SLIPS}.friction": 1.03 * friction}
+    start = np.array([x.coordinate(true[x.name]) for x in one.unknowns])
+    found = fit_thoroughly(one, start, before.measured.states)
+    assert before.loss - found.loss > 10_000.0
+    assert found.values[f"{SLIPS}.friction"] == pytest.approx(friction, rel=0.01)
