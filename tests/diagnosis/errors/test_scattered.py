@@ -91,7 +91,8 @@ def test_an_estimate_about_the_events_as_they_were_stays() -> None:
     """Linear about a motion without scatter, it went back and forth by up to four of its standard deviations."""
     fitted, errors = scene()
     again, _ = refitted(fitted, errors.base, errors, 1)
-    sd = np.sqrt(np.diag(covariances(fitted)[0]))
+    # of both: where an impact comes or goes within a difference step one of them is far too small
+    sd = np.max([np.sqrt(np.diag(covariances(one)[0])) for one in (fitted, again)], axis=0)
     assert np.all(np.abs(again.u - fitted.u) < 0.5 * sd)
     assert abs(errors.scatter - SCATTER) < 0.5 * SCATTER
 

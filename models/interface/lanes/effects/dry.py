@@ -55,7 +55,7 @@ def hold(t: Table, m: More) -> None:
                 normal = t[e.N_B + i] - t[e.D1_B + i] * d2 + t[e.D2_B + i] * t[e.C1 + i] * d0
                 most = t[e.SLIDES + i] * t[e.FRICTION + i] * max(normal, 0.0)
                 slip = t[e.V + 4 * W + i]
-                slip = slip if abs(slip) > STUCK else 0.0
+                slip = slip if far > 0.0 or abs(slip) > STUCK else 0.0
                 rest = t[e.D + 4 * W + i] + t[e.HELD + 4 * W + i] * couple + min(max(slip * per, -HUGE), HUGE)
                 t[e.HELD_X + i] = min(max(-rest / (t[e.HELD_BASE + 4 * W + i] + 1.0 - t[e.SLIDES + i]), -most), most)
     for j in range(m.size):
