@@ -279,7 +279,8 @@ class Rung:
 class Identification:
     """The declaration of one model.
 
-    ``chaotic``: neighbouring trajectories diverge quickly, so that runs from rest show little. ``windows`` None: the
+    ``chaotic``: neighbouring trajectories diverge quickly, so that runs from rest show little. ``elastic``: the bodies
+    move with every motion of the base, and are still only where it is. ``windows`` None: the
     model runs through whole recordings (``stretches``). ``forces`` empty: laws outside the library are not tested for.
     ``phases``: every phase word in plain English. ``scatter`` None: events are taken to repeat exactly.
     ``most_effects``: how many a search adds at most; ``speed``: lane-steps a second of the model's kernel over those of
@@ -315,6 +316,7 @@ class Identification:
     same: Mapping[str, str] = field(default_factory=dict)
     ladder: tuple[Rung, ...] = ()
     exposures: tuple[Exposure, ...] = ()
+    elastic: bool = False
 
     def seen(self, observed: Mapping[str, FloatArray]) -> Mapping[str, FloatArray]:
         """The observables of a run, with those that `same` makes of them."""

@@ -10,6 +10,8 @@ level is that of the record's quietest tenth; it acts on the model as a disturba
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from grids.recordings.base import REQUIRED, FloatArray, Recording
@@ -23,6 +25,8 @@ BAND = 15.0
 """Hz, below which the effects of mechanisms lie."""
 STILL, FEWEST = 0.35, 3
 """s that nothing moves, and how many such stretches must follow one another."""
+CALM = 10.0
+"""Range of the base's acceleration over its noise while nothing shakes it."""
 LIKE = 1.5
 """Range of a still stretch over that of the stillest ones."""
 MOST = 200.0
@@ -61,9 +65,28 @@ def density_level(values: FloatArray, time_step: float) -> float:
     return float(np.sqrt(mean))
 
 
+def _block(time_step: float) -> int:
+    """Samples of which a range is taken."""
+    return max(8, round(STILL / time_step))
+
+
+def calm(stretches: Sequence[slice], recording: Recording) -> list[slice]:
+    """The parts of ``stretches`` in which the base, for as long as counts as still, moves by no more than its noise."""
+    base, size = recording.channels[REQUIRED], _block(recording.time_step)
+    most, reach = CALM * base_noise(recording), FEWEST * size
+    found: list[slice] = []
+    for stretch in stretches:
+        for k in range(stretch.start, stretch.stop - reach + 1, size):
+            if np.ptp(base[k : k + reach]) > most:
+                continue
+            begin = k if not found else max(k, found[-1].stop)
+            found.append(slice(begin, k + reach))
+    return found
+
+
 def still(values: FloatArray, time_step: float) -> list[slice]:
     """Stretches at one level in which the channel's range stays like that of its stillest second."""
-    size = max(8, round(STILL / time_step))
+    size = _block(time_step)
     blocks = values[: values.size // size * size].reshape(-1, size)
     if len(blocks) < FEWEST:
         return []

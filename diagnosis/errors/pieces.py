@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.data.measured import Measured
-from diagnosis.data.noise import base_noise, still
+from diagnosis.data.noise import calm, still
 from diagnosis.errors.components import Component, Diagonal, Kind, LowRank, Part, Stationary
 from diagnosis.errors.drifts import Knots, knots_of
 from diagnosis.errors.likelihood import Piece, Prior
@@ -22,13 +22,10 @@ from diagnosis.errors.own import own_error
 from diagnosis.fit.misfit import Linear, Misfit
 from diagnosis.fit.solver import Fitted
 from diagnosis.fit.whitening import Whitening
-from grids.recordings.base import REQUIRED
 from models.base import FloatArray
 
 LONGEST_STILL = 300
 """Averages of a still stretch that are used: the first and the last half of them."""
-CALM = 10.0
-"""Range of the base's acceleration over its noise while nothing shakes it."""
 LARGEST_DRIFT = 1.0
 """Variance of a drift over that of the noise; a sensor that is knocked goes further."""
 LARGEST: dict[Kind, float] = {"scatter": 0.03**2}
@@ -127,8 +124,8 @@ def windows(scene: Scene, components: Sequence[Component]) -> list[Piece]:
 def stills(scene: Scene, components: Sequence[Component]) -> list[Piece]:
     """One piece a channel and recording, of all that is still there; its level is unknown.
 
-    Accelerometers and load cells read the base's acceleration though nothing moves on it: they are still where the base
-    is.
+    Accelerometers and load cells read the base's acceleration though nothing moves on it, and a wall on rubber sways
+    slowly with a base that moves little: they are still where the base is.
     """
     m = scene.fitted.measured
     found = []
@@ -140,9 +137,8 @@ def stills(scene: Scene, components: Sequence[Component]) -> list[Piece]:
         size = int(m.strides[own[0]])
         for c, name in enumerate(m.channels):
             values, quiet = recording.channels[name], still(recording.channels[name], recording.time_step)
-            if name in m.places and m.places[name].absolute:
-                calm = CALM * base_noise(recording)
-                quiet = [s for s in quiet if np.ptp(recording.channels[REQUIRED][s]) < calm]
+            if m.identification.elastic or (name in m.places and m.places[name].absolute):
+                quiet = calm(quiet, recording)
             at = np.array([i for s in quiet for i in range(-(-s.start // size), s.stop // size)], np.int64)
             if at.size < 8:
                 continue

@@ -1,0 +1,44 @@
+"""What is still in a recording: a wall on rubber only while its base is."""
+
+from __future__ import annotations
+
+import numpy as np
+
+import models
+from diagnosis.errors.components import Component
+from diagnosis.errors.pieces import Piece, opened, stills
+from diagnosis.fit.setup import measure
+from diagnosis.fit.solver import fit
+from grids.recordings.base import Recording
+from models.shaking import Shaking
+from tests.diagnosis.fit.test_walls import TRUE, WALL, misfit
+from tests.diagnosis.made import TIME_STEP, motion
+
+REST = 1.5
+
+
+def recorded(rest: float) -> Recording:
+    """A wall that the table first moves slowly, so that it sways by less than the noise of its sensors."""
+    strong, lead = motion(1, pga=3.0).horizontal, np.zeros(round(rest / TIME_STEP))
+    slow = 0.02 * np.sin(2.0 * np.pi * 0.3 * TIME_STEP * np.arange(round(3.0 / TIME_STEP)))
+    base = Shaking(TIME_STEP, np.concatenate([lead, slow, strong]))
+    ran, rng = models.get("interface").simulate(TRUE, base, duration=base.duration), np.random.default_rng(8)
+    channels = {"base_acceleration_x": base.horizontal + 0.002 * rng.normal(size=base.horizontal.size)}
+    for name in ("rotation_1", "rotation_2"):
+        true = np.asarray(ran.channels[name])
+        channels[name] = true + 0.01 * np.max(np.abs(true)) * rng.normal(size=true.size)
+    return Recording("run", TIME_STEP, base.time, channels)
+
+
+def quiet(rest: float) -> list[Piece]:
+    measured = measure(WALL, [recorded(rest)])
+    one = misfit(measured)
+    found = fit(one, np.array([x.coordinate(TRUE[x.name]) for x in one.unknowns]), measured.states, 1)
+    nothing = np.zeros((*measured.values.shape, 0))
+    return stills(opened(found, nothing, nothing), [Component("white", 0)])
+
+
+def test_a_wall_on_rubber_is_still_only_while_its_base_is() -> None:
+    assert not quiet(0.0)  # swaying by less than the noise is no noise
+    rested = quiet(REST)
+    assert rested and all(piece.time.max() < REST for piece in rested)
