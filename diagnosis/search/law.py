@@ -109,7 +109,7 @@ def estimate(explanation: Explanation, errors: Errors | None = None) -> Law | No
     if form is None or form.tabulated is None:
         return None
     tables, motions = form.tabulated, motions_of(fitted)
-    if set(motions) < {one.port for one in tables.terms.values()}:  # a law of a joint that is bonded
+    if not {one.port for one in tables.terms.values()} <= set(motions):  # a joint is bonded
         return None
     unknowns = {term: _unknowns(form, term, motions[one.port], fitted) for term, one in tables.terms.items()}
     reaches = _reaches(tables, motions)
