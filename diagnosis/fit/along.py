@@ -94,6 +94,11 @@ class Along:
             shaking = replace(shaking, horizontal=shaking.horizontal + push)
         parts = predictor.parts(values, recording)
         instants = np.tile(np.array([part.first for part in parts[1:]], np.int64), (first.size, 1))
+        # behind its window nothing of a run is compared: it need not be cut there
+        own = self.windows(r)
+        held = own[np.maximum(np.searchsorted(m.first[own], first, side="right") - 1, 0)]
+        end = m.first[held] + np.array([m.windows[w].samples for w in held])
+        instants = np.where(instants >= end[:, None], first[:, None] + samples, instants)
         initial = dict(initial) | {s: initial[of] for s, of in m.alike.items() if s not in initial}
         ran = trajectories(
             m.model, [part.values for part in parts], instants, shaking, first=first, samples=samples,

@@ -9,6 +9,7 @@ import pytest
 
 import models
 from diagnosis.answer.whole_runs import sensed_run
+from diagnosis.errors.kicks import kicks
 from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.setup import base_fit, measure
 from diagnosis.search.refit import Explanation
@@ -91,3 +92,16 @@ def test_a_specimen_with_stages_is_fitted_as_it_acts() -> None:
     peak = np.max(np.abs(recording.channels["rotation_1"]))
     np.testing.assert_allclose(seen[:400], recording.channels["rotation_1"][:400], atol=0.02 * peak)
     assert 598 <= int(np.argmax(np.abs(np.diff(seen, 2)))) <= 599  # the sensor's jump stands where it begins
+
+
+def test_a_change_of_an_impact_is_run_to_the_end_of_its_window_where_the_next_one_is_another() -> None:
+    """With a table that pitches from that window on a run cannot be cut at an instant."""
+    recording, states = made(100_000)
+    measured = measure(SPECIMEN, [recording])
+    begins = measured.first[len(measured.first) // 2]
+    stages = {"table_pitch": (Stage("shake_2", (begins - 0.5) * TIME_STEP),)}
+    point = Point({**TRUE, "table_pitch.pitch_per_acceleration": 1e-4}, states[measured.first])
+    found = kicks(Predictor(measured, stages=stages), point)
+    before, plain = measured.first < begins, kicks(Predictor(measured), Point({**TRUE}, states[measured.first]))
+    np.testing.assert_allclose(found.columns[before], plain.columns[before], atol=1e-12)
+    assert np.any(plain.columns[before]) and np.any(found.columns[~before])
