@@ -18,6 +18,7 @@ from grids.instruments.base import Level, Surroundings
 from grids.recordings.base import Recording
 from grids.specimen import Specimen
 from models.shaking import Shaking
+from tests.diagnosis.made import motion
 
 NOISE = 0.01
 """Of each rotation's peak."""
@@ -42,9 +43,15 @@ SENSORS: dict[str, dict[str, float]] = {
 
 
 def simulated(
-    model: str, true: Mapping[str, float], effect: Mapping[str, Mapping[str, float]], base: Shaking, seed: int
+    model: str, true: Mapping[str, float], effect: Mapping[str, Mapping[str, float]], seed: int, pga: float
 ) -> Recording:
-    """Both rotations of two blocks, by the lanes and the instruments, with white noise."""
+    """Both rotations of two blocks, by the lanes and the instruments, with white noise; ``pga`` in m s-2.
+
+    The base moves vertically where the effect is that this was left out.
+    """
+    base = motion(seed, pga=pga)
+    if "vertical_acceleration" in effect:
+        base = Shaking(base.time_step, base.horizontal, motion(seed + 50, pga=4.0).horizontal, vertical_acts=False)
     own = {f"{m}.{k}": v for m, values in effect.items() if m not in INSTRUMENTS for k, v in values.items()}
     ran = models.get(model).simulate({**true, **own}, moved(base, effect), duration=base.duration)
     names = ("rotation_1", "rotation_2")

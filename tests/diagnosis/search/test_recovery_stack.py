@@ -11,9 +11,7 @@ from diagnosis.fit.setup import base_fit, measure
 from diagnosis.search.refit import Explanation
 from grids.instruments import INSTRUMENTS
 from grids.recordings.base import Recording
-from models.shaking import Shaking
 from tests.diagnosis.fit.test_two_blocks import TRUE, WALL
-from tests.diagnosis.made import motion
 from tests.diagnosis.search.recovered import (
     SENSORS,
     assert_directions,
@@ -38,10 +36,7 @@ NOT_HERE = {"integrated_displacement": "it acts on whole recordings, and blocks 
 
 
 def recorded(name: str, seed: int) -> Recording:
-    base = motion(seed, pga=6.0)
-    if name == "vertical_acceleration":
-        base = Shaking(base.time_step, base.horizontal, motion(seed + 50, pga=4.0).horizontal, vertical_acts=False)
-    return simulated("stacked", TRUE, {name: EFFECTS[name]}, base, seed)
+    return simulated("stacked", TRUE, {name: EFFECTS[name]}, seed, 6.0)
 
 
 @cache

@@ -14,9 +14,7 @@ from diagnosis.fit.solver import fit, fit_thoroughly
 from diagnosis.search.refit import Explanation
 from grids.instruments import INSTRUMENTS
 from grids.recordings.base import Recording
-from models.shaking import Shaking
 from tests.diagnosis.fit.test_walls import TRUE, WALL, misfit
-from tests.diagnosis.made import motion
 from tests.diagnosis.search.recovered import (
     SENSORS,
     assert_directions,
@@ -57,10 +55,7 @@ SPECIMEN = replace(WALL, vertical=False)
 
 
 def recorded(name: str, seed: int) -> Recording:
-    base = motion(seed, pga=3.0)
-    if name == "vertical_acceleration":
-        base = Shaking(base.time_step, base.horizontal, motion(seed + 50, pga=4.0).horizontal, vertical_acts=False)
-    return simulated("interface", TRUE, {name: EFFECTS[name]}, base, seed)
+    return simulated("interface", TRUE, {name: EFFECTS[name]}, seed, 3.0)
 
 
 @cache

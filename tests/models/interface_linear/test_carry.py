@@ -10,19 +10,8 @@ from scipy.signal import savgol_filter
 
 from models.runs import Prescribed
 from models.shaking import Shaking
+from tests.models.interface.test_carry import AHEAD, COUNT, HELD, MARKS, NOISE, RATES, STEP, WALL
 from tests.models.interface_linear.walls import MODEL
-
-STEP, COUNT, NOISE = 0.002, 3500, 0.01
-MARKS = np.arange(500, 3001, 250)
-AHEAD = 400
-"""Samples of a window."""
-WALL: dict[str, Any] = {
-    "wall_length": 0.72, "wall_height": 1.8, "wall_mass": 161.0, "top_mass": 5000.0, "top_length": 0.72,
-    "top_height": 0.6, "layer_thickness": 0.01, "base_stiffness": 4.0e7, "top_stiffness": 4.4e7, "base_damping": 8.7e5,
-    "top_damping": 4.0e5,
-}  # fmt: skip
-RATES = ("rotation_rate_1", "rotation_rate_2")
-HELD = ("rotation_1", "rotation_2", *RATES)
 
 
 def shaking(vertical: bool = False) -> Shaking:
