@@ -41,6 +41,7 @@ from diagnosis.search.ladder import Climbed, climb, rungs
 from diagnosis.search.law import Law, missing_law
 from diagnosis.search.refit import Explanation, gain_by_window
 from diagnosis.search.select import first_effect, further_effects, take_best_single
+from diagnosis.search.variants import held_numbers, widened
 from diagnosis.search.weighing import evidence
 from grids.instruments import INSTRUMENTS
 from grids.recordings.base import Recording
@@ -259,8 +260,10 @@ def _estimates(
     if progress:
         progress("intervals", 0.9)
     named = [x.name for c in chosen.candidates for x in c.unknowns[:1]]
-    fitted, values = settled(chosen.fitted, named if progress else ())
+    shapes = [x.name for c in chosen.candidates for x in c.unknowns[1:]]
+    fitted, values = settled(chosen.fitted, named, shapes) if progress else settled(chosen.fitted, ())
     chosen = replace(chosen, fitted=fitted)
+    values, whole = widened(values, chosen, found.tried), held_numbers(chosen, found.tried)
     chances = p_of_effects(found, gains)
     if len(chances) == 1 and p_missing is not None:  # of the one effect it may be the bootstrap's
         chances = [p_missing]
@@ -268,9 +271,7 @@ def _estimates(
     order = sorted(zip(chosen.candidates, gains, chances, strict=True), key=lambda entry: -entry[1])
     for candidate, gain, chance in order:
         parameters = {x.name.partition(".")[2]: values.pop(x.name) for x in candidate.unknowns}
-        for name, value in candidate.held.items():
-            short = name.partition(".")[2]
-            parameters[short] = Estimate(value, value, value, candidate.mechanism.parameter(short).unit)
+        parameters |= {name.partition(".")[2]: whole[name] for name in candidate.held}
         parameters = over_peak(parameters, candidate, chosen.measured.reference_peak, peak)
         stages = stages_of(chosen, candidate)
         effects.append(Effect(candidate.name, candidate.effect_class, parameters, gain, chance, stages))

@@ -6,7 +6,8 @@ With the Gauss-Newton Hessian H and the windows' scores s_w (states eliminated) 
 
 which stays right when residuals within a window are correlated or the noise level is off; the larger
 of V and H^-1 is taken. The profile raises the loss by 3.84 V/H^-1 on either side, so a curved loss
-gives a lopsided interval. Where a profile falls under the optimum the fit goes on from there (`settled`).
+gives a lopsided interval; a parameter that shapes an effect has one where its symmetric interval is
+wide. Where a profile falls under the optimum the fit goes on from there (`settled`).
 
 Where a fit works with another coordinate c than the model's own parameter x (`Identification.coordinates`: the slope of
 a layer under its load beside its stiffness), x depends on the other unknowns too, such as a law's: its interval is that
@@ -33,6 +34,8 @@ PROFILE_TRIES = 3
 BETTER = 1.0
 """Fall of the loss along a profile that makes its point a better start of the fit."""
 RETURNS = 3
+WIDE = 0.25
+"""Share of its range from which the symmetric interval of a shape is no guide, as where it leaves the range."""
 UNINFORMED = 1e-9
 """Standard deviation of a coordinate that the pseudo-inverse gives when nothing depends on it."""
 
@@ -77,8 +80,11 @@ def correlation(fitted: Fitted) -> FloatArray:
     return np.asarray(cover / np.outer(sd, sd))
 
 
-def estimates(fitted: Fitted, profiled: Sequence[str] = ()) -> dict[str, Estimate]:
-    """Every unknown with its 95 % interval, in its own unit; a profile for the names in ``profiled``."""
+def estimates(fitted: Fitted, profiled: Sequence[str] = (), where_wide: Sequence[str] = ()) -> dict[str, Estimate]:
+    """Every unknown with its 95 % interval, in its own unit.
+
+    A profile for the names in ``profiled``, and for those of ``where_wide`` whose symmetric interval is wide.
+    """
     sandwich, laplace = covariances(fitted)
     found, own, wider = {}, fitted.point.values, _own_widths(fitted, at_least(sandwich, laplace))
     for i, unknown in enumerate(fitted.misfit.unknowns):
@@ -86,7 +92,7 @@ def estimates(fitted: Fitted, profiled: Sequence[str] = ()) -> dict[str, Estimat
         sd = max(naive, float(np.sqrt(max(sandwich[i, i], 0.0))))
         if naive < UNINFORMED:
             ends = unknown.bounds
-        elif unknown.name in profiled:
+        elif unknown.name in profiled or (unknown.name in where_wide and _wide(fitted, i, sd)):
             ends = _profile(fitted, i, sd, (sd / naive) ** 2)
         else:
             ends = (fitted.u[i] - QUANTILE * sd, fitted.u[i] + QUANTILE * sd)
@@ -95,6 +101,12 @@ def estimates(fitted: Fitted, profiled: Sequence[str] = ()) -> dict[str, Estimat
             one = _as_own(one, own[unknown.name], wider[unknown.name])
         found[unknown.name] = one
     return found
+
+
+def _wide(fitted: Fitted, index: int, sd: float) -> bool:
+    low, high = fitted.misfit.unknowns[index].bounds
+    half = QUANTILE * sd
+    return bool(fitted.u[index] - half < low or fitted.u[index] + half > high or 2.0 * half > WIDE * (high - low))
 
 
 def _as_own(one: Estimate, own: float, wider: float) -> Estimate:
@@ -136,11 +148,13 @@ class _Better(Exception):
         self.fitted = fitted
 
 
-def settled(fitted: Fitted, profiled: Sequence[str]) -> tuple[Fitted, dict[str, Estimate]]:
+def settled(
+    fitted: Fitted, profiled: Sequence[str], where_wide: Sequence[str] = ()
+) -> tuple[Fitted, dict[str, Estimate]]:
     """The fit and its `estimates`; where a profile finds a better optimum the fit goes on from there."""
     for _ in range(RETURNS):
         try:
-            return fitted, estimates(fitted, profiled)
+            return fitted, estimates(fitted, profiled, where_wide)
         except _Better as found:
             fitted = found.fitted
     return fitted, estimates(fitted)

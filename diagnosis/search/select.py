@@ -32,6 +32,7 @@ from diagnosis.search.refit import (
     with_memory,
 )
 from diagnosis.search.screen import Score, score
+from diagnosis.search.variants import with_other_numbers
 from diagnosis.search.weighing import as_white_noise, by_white_noise, weigh_again
 
 FAINT = 8.0
@@ -89,6 +90,7 @@ def further_effects(found: Search, progress: Progress) -> Iterator[Search]:
         if found.best.candidates != found.weighed:
             found.errors = estimate(found.best.fitted, found.errors.base, found.errors)
         drop(found)  # errors estimated with both, and fits taken further, may ask for one only
+        with_other_numbers(found)
     yield found
 
 

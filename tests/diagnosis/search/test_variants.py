@@ -1,0 +1,64 @@
+"""Whole numbers, such as the order of a filter, have intervals too."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diagnosis.errors.model import disturbance_about, estimate
+from diagnosis.fit.intervals import estimates
+from diagnosis.fit.setup import base_fit, measure
+from diagnosis.search.candidates import candidates
+from diagnosis.search.found import Search
+from diagnosis.search.refit import Explanation, extend
+from diagnosis.search.variants import held_numbers, variants, widened, with_other_numbers
+from diagnosis.search.weighing import reweighed
+from tests.diagnosis.made import SPECIMEN, recording
+
+ORDER = 2.0
+
+
+def search(corner: float, order: float) -> Search:
+    """Recordings through a low-pass of ORDER, that was found with ``order``."""
+    true = {"filter": {"corner_hz": corner, "order": ORDER}}
+    measured = measure(SPECIMEN, [recording(f"run_{seed}", seed, true) for seed in (1, 2)])
+    filters = [c for c in candidates(measured, SPECIMEN) if c.unknowns[0].name == "filter.corner_hz"]
+    base = Explanation((), base_fit(SPECIMEN, measured))
+    (own,) = [c for c in filters if c.held["filter.order"] == ORDER]
+    errors = estimate(extend(base, own, own.null).fitted, disturbance_about(base.fitted))
+    found = Search(reweighed(base, errors), tuple(filters), errors)
+    (one,) = [c for c in filters if c.held["filter.order"] == order]
+    found.best = extend(found.base, one, np.array([one.unknowns[0].coordinate(corner)]))
+    return found
+
+
+@pytest.mark.parametrize(("corner", "known"), [(10.0, True), (60.0, False)], ids=["strong", "weak"])
+def test_the_likeliest_order_is_taken_and_its_interval_holds_those_that_fit_as_well(corner: float, known: bool) -> None:
+    found = search(corner, 4.0)
+    with_other_numbers(found)
+    best = found.best
+    assert best is not None
+    assert {c.held["filter.order"] for e in [best, *variants(best, found.tried)] for c in e.candidates} == {1, 2, 4}
+    order = held_numbers(best, found.tried)["filter.order"]
+    assert order.low95 <= ORDER <= order.high95
+    assert (order.low95 == order.high95) is known
+    if known:
+        assert order.estimate == ORDER
+    alone = estimates(best.fitted)
+    wider = widened(alone, best, found.tried)
+    held = wider["filter.corner_hz"]
+    assert held.low95 <= corner <= held.high95
+    assert (wider == alone) is known
+
+
+def test_fits_under_other_errors_are_no_variants() -> None:
+    found = search(10.0, ORDER)
+    with_other_numbers(found)
+    best = found.best
+    assert best is not None
+    (other, *_) = variants(best, found.tried)
+    whitening = other.fitted.misfit.whitening
+    moved = replace(other.fitted.misfit, whitening=replace(whitening, sensor=whitening.sensor * 0.5))
+    assert not variants(best, [replace(other, fitted=replace(other.fitted, misfit=moved))])
