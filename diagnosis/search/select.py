@@ -11,7 +11,7 @@ from collections.abc import Collection, Iterator
 import numpy as np
 
 from diagnosis.errors.model import estimate
-from diagnosis.fit.linearisation import linearise_about
+from diagnosis.fit.linearisation import Linearisation, linearise_about
 from diagnosis.progress import Progress
 from diagnosis.search.beside import POOL_SHARE, THOROUGH, extended, seconds, starts_of, worth_a_refit
 from diagnosis.search.budget import FURTHER
@@ -32,6 +32,7 @@ from diagnosis.search.refit import (
     with_memory,
 )
 from diagnosis.search.screen import Score, score
+from diagnosis.search.thresholds import from_measured, misfits, setting_in
 from diagnosis.search.variants import with_other_numbers
 from diagnosis.search.weighing import as_white_noise, by_white_noise, weigh_again
 
@@ -110,14 +111,23 @@ def _singles(found: Search, progress: Progress) -> None:
     found.null = null_distribution(opened, found.scores)
     fewest = FEWEST_ADEQUATE if adequate(found.base) else FEWEST
     wanted = worth_a_refit(found.scores, fewest, SHARE_OF_FIRST)[:MOST]
+    late: list[Candidate] = []
     if found.measured.stretches is None:
-        wanted += _hidden_by_errors(found, {entry.candidate for entry in wanted}, fewest)
+        white = linearise_about(as_white_noise(found.base.fitted, found.errors))
+        wanted += _hidden_by_errors(found, white, {entry.candidate for entry in wanted}, fewest)
+        if misfits(white.fitted):
+            late = setting_in(found.base, found.candidates)
+            tried = {entry.candidate for entry in wanted}
+            wanted = [e for e in found.scores if e.candidate in late and e.candidate not in tried] + wanted
     for k, entry in enumerate(wanted):
         if not found.affordable(entry.candidate.name):
             continue
         progress(f"refitting {entry.candidate.name}", 0.15 + 0.3 * k / len(wanted))
         fits = [extend(found.base, entry.candidate, start, QUICK) for start in starts_of(entry, found.scores)]
-        found.singles.append(by_white_noise(best_of(fits), found.errors))
+        if entry.candidate in late:
+            fits += from_measured(found.base, entry.candidate)
+        if fits:
+            found.singles.append(by_white_noise(best_of(fits), found.errors))
     found.singles.sort(key=adjusted)
     if not found.singles:
         return
@@ -152,13 +162,12 @@ def led_by(found: Search, leader: Explanation) -> bool:
     return True
 
 
-def _hidden_by_errors(found: Search, tried: Collection[Candidate], fewest: int) -> list[Score]:
+def _hidden_by_errors(found: Search, white: Linearisation, tried: Collection[Candidate], fewest: int) -> list[Score]:
     """The strongest of a screen against white noise that were not tried.
 
     Errors about the base model hold part of what is missing: scatter of events much of a wrong law of them. Such a
     mechanism has no score under these errors until it is in.
     """
-    white = linearise_about(as_white_noise(found.base.fitted, found.errors))
     strongest = worth_a_refit(score(white, found.candidates), fewest, SHARE_OF_FIRST)[:fewest]
     return [entry for entry in strongest if entry.candidate not in tried]
 

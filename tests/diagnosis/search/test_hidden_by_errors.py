@@ -10,6 +10,7 @@ from diagnosis.search.found import Search
 from diagnosis.search.refit import Explanation
 from diagnosis.search.screen import score
 from diagnosis.search.select import _hidden_by_errors
+from diagnosis.search.weighing import as_white_noise
 from tests.diagnosis.made import SPECIMEN, recording
 
 NAMES = ("restitution", "velocity_restitution", "tilt", "gain")
@@ -23,7 +24,8 @@ def test_a_mechanism_that_the_errors_hold_is_found_by_a_screen_against_white_noi
     scores = {one.candidate.name: one for one in score(linearise_about(fitted), some)}
     held, other = scores["restitution"], scores["velocity_restitution"]
     found = Search(Explanation((), fitted), some, errors)
-    (hidden,) = _hidden_by_errors(found, {other.candidate}, 1)
+    white = linearise_about(as_white_noise(fitted, errors))
+    (hidden,) = _hidden_by_errors(found, white, {other.candidate}, 1)
     assert hidden.candidate.name == "restitution"
     assert hidden.statistic > 10.0 * held.statistic  # scatter of impacts under these errors
-    assert _hidden_by_errors(found, {hidden.candidate}, 1) == []
+    assert _hidden_by_errors(found, white, {hidden.candidate}, 1) == []

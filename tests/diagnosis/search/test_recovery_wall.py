@@ -10,8 +10,10 @@ import pytest
 
 import models
 from diagnosis.fit.setup import measure
-from diagnosis.fit.solver import fit, fit_thoroughly
+from diagnosis.fit.solver import fit
+from diagnosis.search.candidates import candidates
 from diagnosis.search.refit import Explanation
+from diagnosis.search.thresholds import from_measured, misfits, setting_in
 from grids.instruments import INSTRUMENTS
 from grids.recordings.base import Recording
 from tests.diagnosis.fit.test_walls import TRUE, WALL, misfit
@@ -50,7 +52,8 @@ EFFECTS: dict[str, dict[str, float]] = {
 }
 NOT_HERE = {"integrated_displacement": "it acts on whole recordings, and walls are compared in windows"}
 SLIPS = "sliding"
-"""It has no slope at its null, and where a base slips the windows of the plain wall end far from their states."""
+"""It has no slope at its null, and where a base slips the windows of the plain wall end far from their states: fitted
+from the measured ones."""
 SPECIMEN = replace(WALL, vertical=False)
 
 
@@ -87,10 +90,15 @@ def test_a_simulated_effect_is_seen_and_recovered(name: str) -> None:
 
 def test_a_base_that_slips_is_recovered_from_measured_states() -> None:
     before, (slip,) = base(SLIPS), own_candidates(base(SLIPS), SPECIMEN, SLIPS, EFFECTS[SLIPS])
-    one, friction = before.fitted.misfit, EFFECTS[SLIPS]["friction"]
-    one = replace(one, unknowns=(*one.unknowns, *slip.unknowns))
-    true = {**TRUE, f"{SLIPS}.friction": 1.03 * friction}
-    start = np.array([x.coordinate(true[x.name]) for x in one.unknowns])
-    found = fit_thoroughly(one, start, before.measured.states)
+    others = [c for c in candidates(before.measured, SPECIMEN) if c.name in ("filter", "wall_flexibility")]
+    assert misfits(before.fitted)
+    assert setting_in(before, [slip, *others]) == [slip]
+    found = min(from_measured(before, slip), key=lambda e: e.loss)
     assert before.loss - found.loss > 10_000.0
-    assert found.values[f"{SLIPS}.friction"] == pytest.approx(friction, rel=0.01)
+    assert found.fitted.values[f"{SLIPS}.friction"] == pytest.approx(EFFECTS[SLIPS]["friction"], rel=0.01)
+
+
+def test_friction_that_never_slips_is_not_fitted() -> None:
+    before, (slip,) = base("tilt"), own_candidates(base("tilt"), SPECIMEN, SLIPS, EFFECTS[SLIPS])
+    never = replace(slip, unknowns=(replace(slip.unknowns[0], low=1.0),))
+    assert not from_measured(before, never)
