@@ -20,7 +20,7 @@ GRID = (0.03, 0.1, 0.3, 0.6, 0.95)
 FINE_GRID = tuple(np.geomspace(0.01, 0.95, 32).tolist())
 """The same where the effect sets in at a threshold somewhere on the way."""
 SHAPE_GRID = 3
-ORDERS = (1.0, 2.0, 4.0)
+ORDERS = (1.0, 2.0, 3.0, 4.0)
 
 
 @dataclass(frozen=True, eq=False)
