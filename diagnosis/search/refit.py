@@ -14,7 +14,7 @@ from diagnosis.search.candidates import Candidate
 from diagnosis.search.spells import in_spell
 from models.base import FloatArray
 
-RECOUNTS = 4
+RECOUNTS = 8
 SHAPES, QUICK = 5, 6
 """Values of a shape tried anew, and the iterations of each."""
 SIZES = (0.4, 1.6, 2.5)
@@ -166,7 +166,7 @@ def reshaped(explanation: Explanation) -> Explanation:
 def with_memory(explanation: Explanation) -> Explanation:
     """The same model refitted with the events before each window counted along its own motion, if that is better.
 
-    Counts and parameters depend on each other: repeated until the loss stays.
+    Counts and parameters depend on each other: repeated until the loss stays, stuck windows started again.
     """
     fitted = explanation.fitted
     for _ in range(RECOUNTS):
@@ -174,7 +174,7 @@ def with_memory(explanation: Explanation) -> Explanation:
         point = fitted.point
         measured = counted(fitted.misfit.predictor, point)
         misfit = replace(fitted.misfit, predictor=replace(fitted.misfit.predictor, measured=measured))
-        fitted = fit(misfit, fitted.u, fitted.states)
+        fitted = fit_thoroughly(misfit, fitted.u, fitted.states)
         if abs(before - fitted.loss) < 0.5:
             break
     return replace(explanation, fitted=fitted) if fitted.loss < explanation.loss else explanation

@@ -143,7 +143,7 @@ def _singles(found: Search, progress: Progress) -> None:
     for k, single in enumerate(found.singles[1:], start=1):
         if found.gain(single) > near * found.gain(leader) and found.affordable(single.names[0]):
             found.singles[k] = from_other(again(single) if k < THOROUGH else single, leader)
-    least = near * found.gain(leader)
+    least = NEAR * found.gain(leader)  # of a law with a memory counts along its own motion may add much
     found.singles = [with_memory(single) if found.gain(single) > least else single for single in found.singles]
     found.singles.sort(key=adjusted)
     found.tried += found.singles
