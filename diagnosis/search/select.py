@@ -116,9 +116,9 @@ def _singles(found: Search, progress: Progress) -> None:
         white = linearise_about(as_white_noise(found.base.fitted, found.errors))
         wanted += _hidden_by_errors(found, white, {entry.candidate for entry in wanted}, fewest)
         if misfits(white.fitted):
-            late = setting_in(found.base, found.candidates)
-            tried = {entry.candidate for entry in wanted}
-            wanted = [e for e in found.scores if e.candidate in late and e.candidate not in tried] + wanted
+            late = setting_in(found.base, [entry.candidate for entry in found.scores])
+            first = [entry for entry in found.scores if entry.candidate in late]
+            wanted = first + [entry for entry in wanted if entry.candidate not in late]
     for k, entry in enumerate(wanted):
         if not found.affordable(entry.candidate.name):
             continue
