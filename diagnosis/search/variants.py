@@ -76,10 +76,8 @@ def _near(explanation: Explanation, tried: Sequence[Explanation]) -> list[Explan
 
 def _changed(best: Explanation, k: int, other: Candidate) -> Explanation:
     """The best explanation refitted with ``other`` in the place of its ``k``-th mechanism."""
-    mine = best.candidates[k]
     misfit = replace(best.fitted.misfit, fixed={**best.fitted.misfit.fixed, **other.held})
-    candidate = replace(other, spell=mine.spell, price=mine.price)
-    grown = (*best.candidates[:k], candidate, *best.candidates[k + 1 :])
+    grown = (*best.candidates[:k], other, *best.candidates[k + 1 :])
     tried = further(Explanation(grown, replace(best.fitted, misfit=misfit)), QUICK)
     return again(tried) if tried.loss < best.loss + GAP else tried
 
