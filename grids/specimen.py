@@ -181,7 +181,7 @@ def _mechanisms(file: SpecimenFile, targets: Targets, folder: Path) -> dict[str,
         if not values:
             raise InputError(f"[mechanisms.{name}] is empty; give its parameters or leave the table out.")
         if mechanism.tabulated is not None:
-            mechanisms[name] = _law(name, values, mechanism.tabulated, folder)
+            mechanisms[name] = _law(name, values, mechanism.tabulated, folder, targets)
             continue
         mechanisms[name] = {}
         for parameter, value in values.items():
@@ -201,11 +201,19 @@ def _stages(file: SpecimenFile) -> dict[str, tuple[Stage, ...]]:
     return found
 
 
-def _law(name: str, table: Mapping[str, Any], tables: Tables, folder: Path) -> dict[str, float]:
-    """The values of a law in a table, from its file."""
-    if list(table) != ["file"] or not isinstance(table["file"], str):
-        raise InputError(f'[mechanisms.{name}] has {", ".join(table)}: give file = "law.csv", and nothing else.')
-    return read_law(folder / table["file"], tables)
+def _law(
+    name: str, table: Mapping[str, Any], tables: Tables, folder: Path, targets: Targets
+) -> dict[str, float]:  # fmt: skip
+    """The values of a law in a table, from its file, and of the oscillator beside it."""
+    beside = {key: value for key, value in table.items() if key in tables.oscillator}
+    if not isinstance(table.get("file"), str) or table.keys() - beside.keys() != {"file"}:
+        more = f" and, for an oscillator, {', '.join(tables.oscillator)}" if tables.oscillator else ""
+        raise InputError(f'[mechanisms.{name}] has {", ".join(table)}: give file = "law.csv"{more}, and nothing else.')
+    found = read_law(folder / table["file"], tables)
+    for key, value in beside.items():
+        where = f"[mechanisms.{name}] {key}"
+        found[key] = targets.find(f"{name}.{key}", where).number(value, where)
+    return found
 
 
 def _tolerance(file: SpecimenFile, parameters: Mapping[str, float], targets: Targets) -> dict[str, float]:

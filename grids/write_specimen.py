@@ -33,7 +33,10 @@ def specimen_text(specimen: Specimen) -> str:
     parts += [f"[channels.{name}]\n{_lines(attributes(place))}" for name, place in specimen.places.items()]
     for name, values in specimen.mechanisms.items():
         known = acting_on(specimen.model).get(name)
-        named = {"file": LAW_FILE} if known is not None and known.tabulated is not None else values
+        named: Mapping[str, Any] = values
+        if known is not None and known.tabulated is not None:
+            beside = {key: values[key] for key in known.tabulated.oscillator if key in values}
+            named = {"file": LAW_FILE} | (beside if any(beside[key] for key in known.tabulated.oscillator[:2]) else {})
         parts.append(f"[mechanisms.{name}]\n{_lines(named)}")
         parts += [f"[[mechanisms.{name}.stages]]\n{_lines(vars(one))}" for one in specimen.stages.get(name, ())]
     return "\n".join(parts)

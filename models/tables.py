@@ -30,25 +30,31 @@ class Variable:
 class Term:
     """One table: over ``variable``, at the ``port`` of the model; its values, in ``unit``, are times ``factor``.
 
-    ``factor``: the rate of the port's coordinate, its sign (``direction``), or nothing. ``event``: it acts at the
-    events of the model and not between them.
+    ``factor``: the rate of the port's coordinate, its sign (``direction``), the rate while the coordinate grows away
+    from zero and 0 while it comes back (``outward``), or nothing. ``event``: it acts at the events of the model and not
+    between them.
     """
 
     variable: str
     meaning: str
     unit: str
     port: str
-    factor: Literal["", "rate", "direction"] = ""
+    factor: Literal["", "rate", "direction", "outward"] = ""
     event: bool = False
 
 
 @dataclass(frozen=True)
 class Tables:
-    """The terms of a law by name, and the variables. ``jumps``: variables of tables that may jump at zero."""
+    """The terms of a law by name, and the variables. ``jumps``: variables of tables that may jump at zero.
+
+    ``oscillator``: the parameters of an oscillator beside the tables (motion, force, frequency and damping as in
+    `models.oscillator`), where the model has one.
+    """
 
     terms: Mapping[str, Term]
     variables: Mapping[str, Variable]
     jumps: tuple[str, ...] = ()
+    oscillator: tuple[str, ...] = ()
 
     def variable(self, term: str) -> Variable:
         """What the table of a term runs over."""

@@ -38,9 +38,10 @@ from diagnosis.search.budget import Budget
 from diagnosis.search.candidates import absent, candidates
 from diagnosis.search.found import Search, misfit_per_sample, rivals
 from diagnosis.search.ladder import Climbed, climb, rungs
-from diagnosis.search.law import Law, missing_law
+from diagnosis.search.law import missing_law
 from diagnosis.search.refit import Explanation, gain_by_window
 from diagnosis.search.select import first_effect, further_effects, take_best_single
+from diagnosis.search.tables import Law
 from diagnosis.search.variants import held_numbers, widened
 from diagnosis.search.weighing import evidence
 from grids.instruments import INSTRUMENTS
@@ -155,12 +156,15 @@ def _assemble(
     law: Law | None = None
     if verdict == "not_in_library" and not unexplained:
         progress("the missing force as a model", 0.88)
-        law = stages.optional("the missing force as a model", lambda: missing_law(chosen, found.errors), lambda: None)
+        law = stages.optional(
+            "the missing force as a model", lambda: missing_law(chosen, found.base, found.errors), lambda: None
+        )
     if law and to_show and worsens(chosen, law.explanation, to_show, found.errors):
         found.not_tried[law.mechanism.name] = "the tables that fit these recordings predict those held out worse"
         law = None
     final = law.explanation if law else chosen
     if law:
+        gains = [gain for c, gain in zip(chosen.candidates, gains, strict=True) if c in final.candidates]
         shown = [stages.needed(lambda: compare(found.base, final, measured, found.errors))]
     settled_at, effects, base = stages.optional(
         "the profile likelihood (the intervals are symmetric instead)",

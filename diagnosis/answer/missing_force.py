@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 
 from diagnosis.forces.action import Action, action
 from diagnosis.search.found import Search, adjusted
-from diagnosis.search.law import Law, Table
 from diagnosis.search.refit import Explanation
+from diagnosis.search.tables import Law, Table
 from grids.instruments import INSTRUMENTS
 from models.base import FloatArray
 from models.tables import KNOTS, Term, Variable
@@ -18,7 +19,8 @@ from models.tables import KNOTS, Term, Variable
 
 def missing_force(found: Search, law: Law) -> Mapping[str, Any]:
     """``terms``: curves with 95 % bands and evidence; ``nearest``: the best single mechanism, and its curve in each
-    term; ``parameters``: every value of the law, by name."""
+    term; ``parameters``: every value of the law, by name; ``stages``: when it acts in each recording, if not always.
+    """
     tables = law.mechanism.tabulated
     assert tables is not None
     singles = [e for e in found.singles if e.names[0] not in INSTRUMENTS]
@@ -35,7 +37,10 @@ def missing_force(found: Search, law: Law) -> Mapping[str, Any]:
                 "nearest": None if acting is None or nearest is None else _curve(nearest, acting, one, over, table),
             }
         )  # fmt: skip
-    return {"terms": terms, "nearest": nearest.names[0] if nearest else None, "parameters": law.values}
+    stages = [asdict(one) for one in law.stages]
+    return {
+        "terms": terms, "nearest": nearest.names[0] if nearest else None, "parameters": law.values, "stages": stages,
+    }  # fmt: skip
 
 
 def _action(explanation: Explanation) -> Action:
@@ -48,7 +53,7 @@ def _curve(
     """What the effect does on average at each row of a table, in the table's own unit; None where it was not.
 
     None where a force at one port moves several bodies: what an effect changes of their rates is no force there. Forces
-    over a factor (the rate, its sign) are fitted as that factor times the row; what acts at events is the
+    over a factor (the rate, its sign, ...) are fitted as that factor times the row; what acts at events is the
     relative change of the rate.
     """
     m = explanation.measured
@@ -59,7 +64,11 @@ def _curve(
     inside[:, :-1] &= inside[:, 1:]
     inside[:, -1] = False
     motion, impulse = acting.motion, acting.amount.sum(axis=1)
-    factors = {"": np.ones_like(motion.rate), "rate": motion.rate, "direction": np.sign(motion.rate)}
+    growing = motion.coordinate * motion.rate > 0.0
+    factors = {
+        "": np.ones_like(motion.rate), "rate": motion.rate, "direction": np.sign(motion.rate),
+        "outward": motion.rate * growing,
+    }  # fmt: skip
     x = {"coordinate": motion.coordinate, "rate": motion.rate, "base": motion.base}[over.along]
     if term.event:
         after = np.roll(motion.rate, -1, axis=1)

@@ -7,7 +7,7 @@ from string import Formatter
 
 from diagnosis.answer.phases import EVERYWHERE, words_of
 from diagnosis.answer.result import Diagnosis, Effect, Extrapolated, Fit, Located
-from diagnosis.answer.when import held_text, when_text
+from diagnosis.answer.when import held_text, law_text, when_text
 from diagnosis.data.measured import identification_of
 from diagnosis.fit.unknowns import effects
 from diagnosis.forces.constancy import BLOW, FOR_A_WHILE, Constancy
@@ -62,6 +62,7 @@ def statement(found: Diagnosis, model: Model) -> str:
         if found.missing_force:
             what = " and a ".join(term["meaning"] for term in found.missing_force["terms"])
             parts.append(f"A law in a table, estimated in its place, is part of extended.toml: a {what}.")
+            parts += law_text(found.missing_force["stages"])
     if found.verdict == "cannot_tell_apart" and found.rivals:
         names = ", ".join(f"{r.name.replace('_', ' ')} ({r.evidence_gap:.1f} less)" for r in found.rivals)
         parts.append(f"These recordings cannot tell it apart from: {names}.")

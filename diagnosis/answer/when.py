@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from diagnosis.answer.result import EffectStage, HeldStage
-from diagnosis.data.measured import Measured
 from diagnosis.fit.misfit import Misfit
-from diagnosis.fit.solver import fit
 from diagnosis.search.candidates import Candidate
+from diagnosis.search.for_a_while import LASTS, asking, gain, instants
 from diagnosis.search.found import MISSING
-from diagnosis.search.instants import NO_UNKNOWNS, Instant, ends_of
+from diagnosis.search.instants import Instant, ends_of
 from diagnosis.search.refit import Explanation
-from diagnosis.search.runs import largest_run
 from diagnosis.search.spells import Spell
 from grids.stages import Stage
 from models.base import FloatArray
 from models.errors import InputError
-
-LASTS = float("inf")
 
 
 def stages_of(explanation: Explanation, candidate: Candidate) -> tuple[EffectStage, ...]:
@@ -73,13 +70,27 @@ def held_stages(explanation: Explanation, misfit: Misfit, states: FloatArray) ->
             continue
         own = may_change_again(candidate.spell, learned)
         acts = candidate.spell.last == learned - 1 and candidate.spell.ends is None
-        gain = _gain(misfit, candidate, states) if own else np.zeros(0)
+        nulls = {x.name: x.value(float(u)) for x, u in zip(candidate.unknowns, candidate.null, strict=True)}
+        gained = gain(misfit, candidate.name, nulls, states) if own else np.zeros(0)
         for r, recording in enumerate(misfit.measured.recordings):
             begins, ends = (0.0, LASTS) if acts else (0.0, 0.0)
             if own:
-                begins, ends = _own(misfit.measured, r, gain, MISSING + candidate.price)
+                asked = asking(misfit.measured, r, gained, MISSING + candidate.price)
+                begins, ends = instants(misfit, candidate.name, states, r, asked)
             found.append(HeldStage(candidate.name, recording.name, begins, ends, own))
-    return tuple(found)
+    return (*found, *_of_law(explanation, misfit, states))
+
+
+def _of_law(explanation: Explanation, misfit: Misfit, states: FloatArray) -> Iterator[HeldStage]:
+    """The same of a law in a table that acts for a while in each recording: where one asks for it."""
+    m = misfit.measured
+    for mechanism in m.model.mechanisms.values():
+        if mechanism.tabulated and mechanism.name in explanation.fitted.misfit.predictor.stages:
+            nulls = {f"{mechanism.name}.{name}": null for name, null in mechanism.nulls.items()}
+            gained = gain(misfit, mechanism.name, nulls, states)
+            for r, recording in enumerate(m.recordings):
+                interval = instants(misfit, mechanism.name, states, r, asking(m, r, gained, MISSING))
+                yield HeldStage(mechanism.name, recording.name, *interval, True)
 
 
 def as_stages(held: Sequence[HeldStage]) -> Mapping[str, tuple[Stage, ...]]:
@@ -88,29 +99,6 @@ def as_stages(held: Sequence[HeldStage]) -> Mapping[str, tuple[Stage, ...]]:
     return {
         name: tuple(Stage(one.recording, one.begins, one.ends) for one in held if one.effect == name) for name in names
     }
-
-
-def _gain(misfit: Misfit, candidate: Candidate, states: FloatArray) -> FloatArray:
-    """What the effect takes off the loss of each window (W,) when it acts everywhere."""
-    stages = {name: one for name, one in misfit.predictor.stages.items() if name != candidate.name}
-    on = replace(misfit, predictor=replace(misfit.predictor, stages=stages))
-    nulls = {x.name: x.value(float(u)) for x, u in zip(candidate.unknowns, candidate.null, strict=True)}
-    off = replace(on, fixed={**on.fixed, **nulls})
-    return np.asarray(np.subtract(*(fit(one, NO_UNKNOWNS, states).window_losses for one in (off, on))))
-
-
-def _own(m: Measured, r: int, gain: FloatArray, least: float) -> tuple[float, float]:
-    """Begin and end (s) of the run of windows of recording ``r`` that asks for the effect; twice 0 for none."""
-    own = np.flatnonzero(m.recording_of == r)
-    if not own.size:
-        return 0.0, 0.0
-    low, high = largest_run(gain[own])
-    if float(gain[own[low : high + 1]].sum()) < least:
-        return 0.0, 0.0
-    step = m.recordings[r].time_step
-    last = m.windows[own[high]]
-    begins = 0.0 if low == 0 else m.windows[own[low]].first * step
-    return begins, LASTS if high == own.size - 1 else (last.first + last.samples) * step
 
 
 def when_text(stages: Sequence[EffectStage]) -> str:
@@ -132,6 +120,16 @@ def when_text(stages: Sequence[EffectStage]) -> str:
     if not ends:
         return f"{opening} and stays" if first.begins == 0.0 else f"{opening} on, and stays"
     return f"{opening} {closing}" if begins else f"until {closing.removeprefix('to ')}, and is gone then"
+
+
+def law_text(stages: Sequence[Mapping[str, Any]]) -> list[str]:
+    """When a law in a table acts that comes and goes in each recording; ``stages`` as in `missing_force`."""
+    parts = []
+    for one in stages:
+        until = "the end" if one["ends"] == LASTS else f"{one['ends']:.1f} s"
+        if one["ends"] > one["begins"]:
+            parts.append(f"from {one['begins']:.1f} s to {until} of {one['recording']}")
+    return [f"It comes and goes in each recording: it acts {' and '.join(parts)}."] if parts else []
 
 
 def _instant(time: float, low: float | None, high: float | None) -> str:

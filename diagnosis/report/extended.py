@@ -37,6 +37,8 @@ def extend(specimen: Specimen, diagnosis: Diagnosis) -> Specimen:
     if diagnosis.missing_force:
         form = next(name for name, mechanism in known.items() if mechanism.tabulated)
         mechanisms[form] = dict(diagnosis.missing_force["parameters"])
+        if acting := diagnosis.missing_force["stages"]:
+            stages[form] = tuple(Stage(**one) for one in acting)
     unknown = {name: ends for name, ends in specimen.calibrate.items() if name not in diagnosis.base}
     return replace(
         specimen,

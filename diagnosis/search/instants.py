@@ -59,11 +59,14 @@ class Ends:
 
 def ends_of(explanation: Explanation, mechanism: str, spell: Spell) -> Ends:
     """Both ends of the spell of one of the explanation's mechanisms, each the likeliest while the other is held."""
-    f = explanation.fitted
-    frozen = f.frozen
-    begins = _end(frozen, f.states, mechanism, spell, True)
+    return ends_in(explanation.fitted.frozen, explanation.fitted.states, mechanism, spell)
+
+
+def ends_in(misfit: Misfit, states: FloatArray, mechanism: str, spell: Spell) -> Ends:
+    """The same under a misfit in which nothing is unknown."""
+    begins = _end(misfit, states, mechanism, spell, True)
     spell = Spell(begins.recording, begins.time, spell.last, spell.ends)
-    return Ends(begins, _end(frozen, f.states, mechanism, spell, False))
+    return Ends(begins, _end(misfit, states, mechanism, spell, False))
 
 
 def _end(misfit: Misfit, states: FloatArray, mechanism: str, spell: Spell, begin: bool) -> Instant:

@@ -66,6 +66,11 @@ class Block:
     pitch_low_pass: FloatArray
     friction: FloatArray
     first_frequency: FloatArray
+    # an oscillator that the base drives (`models.oscillator`)
+    oscillator_motion: FloatArray
+    oscillator_force: FloatArray
+    oscillator_frequency: FloatArray
+    oscillator_damping: FloatArray
     # the first cantilever mode phi (1 at the wall's top): integrals of phi^2, phi, phi z over the mass
     modal_mass: FloatArray
     modal_force: FloatArray
@@ -156,7 +161,8 @@ class Block:
         """Whether no mechanism adds a couple, a rolling corner, pitch, sliding, flight or flexure."""
         zero = (
             self.corner_radius, self.crushing_rate, self.joint_angle, self.stiffness, self.viscous, self.coulomb,
-            self.quadratic, self.pitch_per_acceleration, self.contact_restitution,
+            self.quadratic, self.pitch_per_acceleration, self.contact_restitution, self.oscillator_motion,
+            self.oscillator_force,
         )  # fmt: skip
         rigid = np.isinf(np.stack((self.friction, self.first_frequency))).all()
         return bool(rigid and not np.stack(zero).any() and not np.any(self.tabulated))
@@ -220,6 +226,10 @@ def assemble(values: Values, vertical: bool, size: int | None = None) -> Block:
         pitch_low_pass=np.full(shape, 10.0),
         friction=infinite,
         first_frequency=infinite,
+        oscillator_motion=zero,
+        oscillator_force=zero,
+        oscillator_frequency=np.ones(shape),
+        oscillator_damping=np.full(shape, 0.05),
         table=np.zeros((int(np.prod(shape)), 0)),
         **modal_integrals(mass, height, top, value("top_mass_height", 0.0), value("top_mass_inertia", 0.0)),
     )

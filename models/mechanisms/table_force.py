@@ -29,6 +29,10 @@ TABLES = Tables(
             "base", f"{COUPLE} and the angular velocity that depends on the acceleration of the base", "s-1", "base",
             "rate",
         ),
+        "outward": Term(
+            "rotation", f"{COUPLE} and the angular velocity, while the rotation grows, that depends on the rotation",
+            "s-1", "base", "outward",
+        ),
         "impact": Term(
             "rate", "change of the factor on the restitution, by the angular velocity before", "1", "base", event=True
         ),
@@ -39,14 +43,47 @@ TABLES = Tables(
         "base": Variable("base", "reach_base", "m s-2", "acceleration of the base of the last rows"),
     },
     jumps=("rotation",),
+    oscillator=("oscillator_motion", "oscillator_force", "oscillator_frequency", "oscillator_damping"),
 )  # fmt: skip
 """Of one block."""
+OSCILLATOR = (
+    MechanismParameter(
+        "oscillator_motion",
+        "c_m",
+        "1",
+        "share of the oscillator's motion against the base that carries the block",
+        -3.0,
+        3.0,
+    ),
+    MechanismParameter(
+        "oscillator_force",
+        "c_f",
+        "1",
+        "force on the oscillator over its mass that pushes the block, over the block's",
+        -3.0,
+        3.0,
+    ),
+    MechanismParameter(
+        "oscillator_frequency", "f_o", "Hz", "frequency of the oscillator", 0.2, 25.0, null=1.0, shape=True
+    ),
+    MechanismParameter(
+        "oscillator_damping",
+        "zeta_o",
+        "1",
+        "damping of the oscillator over critical",
+        0.005,
+        0.5,
+        null=0.05,
+        shape=True,
+    ),
+)
+"""What the base drives beside the tables of one block."""
 
 
 def on_housner(block: Block, values: Values) -> Block:
     columns = [values[v.reach] for v in TABLES.variables.values()] + [values[name] for name, _ in TABLES.rows]
     table = np.stack([np.broadcast_to(np.asarray(c, float), block.mass.shape) for c in columns], axis=1)
-    return replace(block, table=table)
+    return replace(block, table=table).replace(**{name: values[name] for name in TABLES.oscillator})
 
 
 def on_interface(wall: LayeredWall, values: Values) -> LayeredWall:
@@ -66,7 +103,7 @@ def _parameters(tables: Tables) -> tuple[MechanismParameter, ...]:
         MechanismParameter(v.reach, "x_r", v.unit, v.meaning, 0.0, null=1.0, shape=True)
         for v in tables.variables.values()
     ]
-    return (*rows, *reaches)
+    return (*rows, *reaches, *(OSCILLATOR if tables.oscillator else ()))
 
 
 SENTENCE = "a law in a table acts"
@@ -76,7 +113,8 @@ MECHANISM = Mechanism(
     effect_class="open",
     parameters=_parameters(TABLES),
     equation="couple I_O [f_1(theta) + f_2(theta') + f_3(theta) theta' + f_4(theta) sign theta' + f_5(a) "
-    "+ f_6(a) theta'], e times 1 + f_7(theta'); f linear between rows, constant beyond the last",
+    "+ f_6(a) theta' + f_7(theta) sign theta <theta' sign theta>], e times 1 + f_8(theta'); <x> = max(x, 0), f linear "
+    "between rows, constant beyond the last; a -> a + c_m u'' + c_f (u'' + a), u an oscillator that the base drives",
     signature="wherever it was found",
     sentence=SENTENCE,
     acts={"housner": on_housner},

@@ -15,6 +15,8 @@ from models.lanes.compiler import called, inlined
 
 NONE = 2.0
 """A fraction of the step that never comes."""
+HALVINGS = 40
+"""Of the step, to the onset under a law in a table over the base acceleration, which bends within the step."""
 
 
 @inlined
@@ -56,9 +58,27 @@ def onset(
             at = f
         elif m1 > 0.0:
             at = f + (1.0 - f) * (-m0) / (m1 - m0)
+            if given.shape[1] > r.N_GIVEN:
+                at = halved(given, w, lane, slot, side, record, i, f, linear)
         if at < first:
             first, which = at, side
     return first, which
+
+
+@called
+def halved(
+    given: Table, w: Table, lane: int, slot: int, side: float, record: Table, i: int, f: float, linear: Any
+) -> float:
+    """Fraction of step i, above f, from which the moment that lifts the block is positive, as it is at the end."""
+    low, high = f, 1.0
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        a, g, psi, psi2 = inputs(w, slot, record, i, middle)
+        if excess(given, w, lane, slot, side, a, g, psi, psi2, linear) > 0.0:
+            high = middle
+        else:
+            low = middle
+    return high
 
 
 @called

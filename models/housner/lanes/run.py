@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -18,6 +19,7 @@ from models.housner.lanes.table import KNOTS
 from models.lanes.arrays import Record
 from models.lanes.record import recorded
 from models.lanes.tables import empty, filled, groups, logged, put
+from models.oscillator import felt
 from models.pitch import pitch
 from models.runs import Request, Run
 
@@ -110,9 +112,15 @@ def run(block: Block, request: Request, refinement: int = 1) -> Run:
     shaking = request.shaking
     found, steps = empty(request, r.N_RESULT, 3), 0
     pitched = np.where(block.pitch_per_acceleration != 0.0, block.pitch_low_pass, 0.0)
-    for (per_sample, corner), lanes in groups(substeps(block, shaking.time_step) * refinement, pitched):
+    gains = block.oscillator_motion, block.oscillator_force
+    drives = (gains[0] != 0.0) | (gains[1] != 0.0)
+    driven = [np.where(drives, x, 0.0) for x in (*gains, block.oscillator_frequency, block.oscillator_damping)]
+    steps_of = substeps(block, shaking.time_step) * refinement
+    for (per_sample, corner, *oscillator), lanes in groups(steps_of, pitched, *driven):
         whole = lanes.size == block.size
         part, asked = (block, request) if whole else (block.take(lanes), request.take(lanes))
+        shaking = felt(request.shaking, *oscillator)
+        asked = replace(asked, shaking=shaking)
         make = partial(_record, asked, per_sample, corner)
         short = per_sample * shaking.horizontal.size < LONGEST_KEPT
         record = shaking.once((__name__, per_sample, request.tail, corner), make) if short else make()

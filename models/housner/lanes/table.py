@@ -18,8 +18,10 @@ KNOTS = 6
 SPACINGS = 3
 LAST = float(KNOTS - 1)
 LENGTH = 2 * KNOTS
-TERMS = 7
-ROTATION, RATE, DAMPING, FRICTION, BASE, BASE_DAMPING, IMPACT = range(SPACINGS, SPACINGS + TERMS * LENGTH, LENGTH)
+TERMS = 8
+ROTATION, RATE, DAMPING, FRICTION, BASE, BASE_DAMPING, OUTWARD, IMPACT = range(
+    SPACINGS, SPACINGS + TERMS * LENGTH, LENGTH
+)
 N_TABLE = SPACINGS + TERMS * LENGTH
 
 
@@ -59,6 +61,7 @@ def _acting(
         + of_work(w, first, FRICTION, slot, x, side) * direction
         + of_work(w, first, BASE, slot, y, push)
         + of_work(w, first, BASE_DAMPING, slot, y, push) * omega
+        + of_work(w, first, OUTWARD, slot, x, side) * side * max(side * omega, 0.0)
     )
 
 

@@ -15,6 +15,7 @@ from models.housner.reference.flexure import Bending
 from models.housner.reference.flight import Bouncing
 from models.housner.reference.rocking import Rocking
 from models.housner.reference.slip import Sliding
+from models.oscillator import felt
 from models.runs import Request, Run
 
 
@@ -32,7 +33,10 @@ def run(block: Block, request: Request, rtol: float = 1e-10) -> Run:
     body.largest = max(body.largest, start.get("peak_rotation_1", 0.0))
     body.earlier = start.get("impacts", 0.0)
     pitching = float(block.pitch_per_acceleration[0]), float(block.pitch_low_pass[0])
-    for piece in pitched_pieces(block, request.shaking, float(request.scale[0]), request.until, *pitching):
+    gains = block.oscillator_motion, block.oscillator_force
+    driven = (float(x[0]) for x in (*gains, block.oscillator_frequency, block.oscillator_damping))
+    shaking = felt(request.shaking, *driven)
+    for piece in pitched_pieces(block, shaking, float(request.scale[0]), request.until, *pitching):
         body.advance(piece, shaken=piece.start < request.shaking.duration)
         if body.finished:
             break

@@ -9,7 +9,7 @@ import numpy as np
 from models.base import FloatArray
 from models.housner.block import REACHES
 
-TERMS, KNOTS = 7, 6
+TERMS, KNOTS = 8, 6
 
 
 class LawInTable:
@@ -34,8 +34,9 @@ class LawInTable:
             self._at(4, 2, base, push),
         )
         damping = self._at(2, 0, theta, side) + self._at(5, 2, base, push)
-        return at_rotation + at_rate + at_base + damping * rate + self._at(3, 0, theta, side) * direction
+        outward = self._at(6, 0, theta, side) * (rate if side * rate > 0.0 else 0.0)
+        return at_rotation + at_rate + at_base + damping * rate + self._at(3, 0, theta, side) * direction + outward
 
     def at_impact(self, rate: float) -> float:
         """Change of the factor on the restitution for the rate before (rad s-1)."""
-        return self._at(6, 1, rate, rate)
+        return self._at(7, 1, rate, rate)

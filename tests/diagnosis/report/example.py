@@ -50,6 +50,7 @@ FORCE = {
     "parameters": MECHANISM.nulls
     | {"reach_rotation": 0.05}
     | {row("rotation", side, k): 0.004 * k for side in SIDES for k in range(KNOTS)},
+    "stages": [],
 }
 
 VISITED = Visited(

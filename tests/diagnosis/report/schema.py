@@ -183,10 +183,17 @@ class TablePart(Part):
     nearest: list[float | None] | None
 
 
+class LawStagePart(Part):
+    recording: str
+    begins: float
+    ends: float | None
+
+
 class MissingForcePart(Part):
     terms: list[TablePart]
     nearest: str | None
     parameters: dict[str, float]
+    stages: list[LawStagePart]
 
 
 class OtherModelPart(Part):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -15,8 +16,10 @@ from diagnosis.fit.setup import measure
 from diagnosis.fit.solver import fit
 from diagnosis.fit.unknowns import of_specimen
 from diagnosis.fit.whitening import sensor_noise_only
-from diagnosis.search.law import Law, estimate, missing_law
+from diagnosis.search.law import missing_law
 from diagnosis.search.refit import Explanation
+from diagnosis.search.tables import Law, estimate
+from grids.stages import Stage
 from models.mechanisms.table_force import MECHANISM
 from models.tables import KNOTS, SIDES, row
 from tests.diagnosis.made import SPECIMEN, TRUE, recording
@@ -26,11 +29,13 @@ RATE = 0.6
 HIDDEN = MECHANISM.nulls | {row("damping", "above", k): -RATE for k in range(KNOTS)}
 
 
-def windows(seeds: tuple[int, int], law: dict[str, float], noise: int) -> Measured:
+def windows(
+    seeds: Sequence[int], law: Mapping[str, float], noise: int, stages: Mapping[str, Sequence[Stage]] | None = None
+) -> Measured:
     """Recordings cut in windows, in which the model with ``law`` was measured with noise."""
     measured = measure(SPECIMEN, [recording(f"run_{seed}", seed) for seed in seeds])
     values = {**TRUE, **{f"table_force.{name}": value for name, value in law.items()}}
-    true = Predictor(measured).predict([Point(values, measured.states)])[0]
+    true = Predictor(measured, stages=stages or {}).predict([Point(values, measured.states)])[0]
     return replace(
         measured, values=true + np.random.default_rng(noise).normal(size=true.shape) * measured.sigma[..., None]
     )
@@ -70,19 +75,26 @@ def test_a_one_sided_dashpot_is_found_and_predicts() -> None:
 
 
 @pytest.mark.parametrize(
-    ("term", "hidden"),
+    ("term", "hidden", "learned", "others"),
     [
-        ("friction", {row("friction", side, k): -0.12 for side in SIDES for k in range(3)}),
-        ("base_damping", {row("base_damping", side, k): -0.3 * k for side in SIDES for k in range(KNOTS)}),
+        ("friction", {row("friction", side, k): -0.12 for side in SIDES for k in range(3)}, (1, 2), (3, 4)),
+        (
+            "base_damping", {row("base_damping", side, k): -0.3 * k for side in SIDES for k in range(KNOTS)},
+            (1, 2), (3, 4),
+        ),
+        # the motions of 2 and 4 go furthest beyond the gap
+        ("outward", {row("outward", side, k): -3.0 for side in SIDES for k in range(2, KNOTS)}, (2, 4), (1, 3)),
     ],
-)
-def test_laws_of_two_variables_are_found_and_predict(term: str, hidden: dict[str, float]) -> None:
-    """A guide that rubs near the upright position; a damper that grips while the base accelerates."""
+)  # fmt: skip
+def test_laws_of_two_variables_are_found_and_predict(
+    term: str, hidden: dict[str, float], learned: tuple[int, int], others: tuple[int, int]
+) -> None:
+    """A guide that rubs near the upright position; a damper that grips while the base accelerates; a snubber."""
     hidden = MECHANISM.nulls | {"reach_rotation": 0.1, "reach_base": 3.0} | hidden
-    plain = base(windows((1, 2), hidden, 0))
+    plain = base(windows(learned, hidden, 0))
     law = estimate(plain)
     assert law is not None and law.tables[0].term == term
-    other = windows((3, 4), hidden, 1)
+    other = windows(others, hidden, 1)
     before, after = chi2(plain, other), chi2(plain, other, law)
     assert before > 1.5 and (before - after) / (before - 1.0) > 0.7
 
@@ -96,7 +108,7 @@ def test_a_law_that_the_errors_hold_is_found_and_predicts() -> None:
     other = windows((3, 4), hidden, 1)
     before = chi2(held, other)
     without = estimate(held)
-    law = missing_law(held, errors)
+    law = missing_law(held, held, errors)
     assert law is not None and law.tables[0].term == "impact"
     assert (before - chi2(held, other, law)) / (before - 1.0) > 0.8
     assert without is None or chi2(held, other, law) <= chi2(held, other, without) + 0.05

@@ -13,8 +13,8 @@ from diagnosis.fit.prediction import Predictor
 from diagnosis.fit.setup import measure
 from diagnosis.fit.solver import fit
 from diagnosis.fit.whitening import sensor_noise_only
-from diagnosis.search.law import Law, estimate
 from diagnosis.search.refit import Explanation
+from diagnosis.search.tables import Law, estimate
 from models.mechanisms.table_force import OF_WALL
 from models.tables import KNOTS, row
 from tests.diagnosis.fit.test_walls import TRUE, WALL, misfit, recorded

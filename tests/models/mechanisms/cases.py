@@ -46,7 +46,8 @@ TYPICAL: dict[str, dict[str, float]] = {
         row(term, side, knot): size * math.sin(2.0 * knot + len(term) + (side == "above")) * (knot > 0 or jumps)
         for term, size, jumps in (
             ("rotation", 0.1, True), ("rate", 0.05, False), ("damping", 0.1, True), ("friction", 0.03, True),
-            ("base", 0.1, False), ("base_damping", 0.1, False), ("impact", 0.03, True),
+            ("base", 0.1, False), ("base_damping", 0.1, False), ("outward", 0.1, True),
+            ("impact", 0.03, True),
         )
         for side in SIDES
         for knot in range(KNOTS)
