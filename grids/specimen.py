@@ -45,6 +45,7 @@ from grids.recordings.placed import read_places
 from grids.stages import Stage, StageTable, read_stages
 from grids.targets import Targets, find_model
 from grids.units import to_si, with_unit
+from models.base import Mechanism
 from models.errors import InputError, nearest
 from models.kinematics import Place
 from models.model import Model
@@ -181,7 +182,7 @@ def _mechanisms(file: SpecimenFile, targets: Targets, folder: Path) -> dict[str,
         if not values:
             raise InputError(f"[mechanisms.{name}] is empty; give its parameters or leave the table out.")
         if mechanism.tabulated is not None:
-            mechanisms[name] = _law(name, values, mechanism.tabulated, folder, targets)
+            mechanisms[name] = _law(mechanism, mechanism.tabulated, values, folder, targets)
             continue
         mechanisms[name] = {}
         for parameter, value in values.items():
@@ -202,14 +203,15 @@ def _stages(file: SpecimenFile) -> dict[str, tuple[Stage, ...]]:
 
 
 def _law(
-    name: str, table: Mapping[str, Any], tables: Tables, folder: Path, targets: Targets
-) -> dict[str, float]:  # fmt: skip
+    mechanism: Mechanism, tables: Tables, table: Mapping[str, Any], folder: Path, targets: Targets
+) -> dict[str, float]:
     """The values of a law in a table, from its file, and of the oscillator beside it."""
+    name = mechanism.name
     beside = {key: value for key, value in table.items() if key in tables.oscillator}
     if not isinstance(table.get("file"), str) or table.keys() - beside.keys() != {"file"}:
         more = f" and, for an oscillator, {', '.join(tables.oscillator)}" if tables.oscillator else ""
         raise InputError(f'[mechanisms.{name}] has {", ".join(table)}: give file = "law.csv"{more}, and nothing else.')
-    found = read_law(folder / table["file"], tables)
+    found = {key: mechanism.nulls[key] for key in tables.oscillator} | read_law(folder / table["file"], tables)
     for key, value in beside.items():
         where = f"[mechanisms.{name}] {key}"
         found[key] = targets.find(f"{name}.{key}", where).number(value, where)

@@ -2,9 +2,9 @@
 
     u'' + 2 zeta omega u' + omega^2 u = -a(t),   felt: a + motion u'' + force (u'' + a)
 
-``u`` is the oscillator's displacement against the base, at rest at the start of the record. A foundation that moves on
-soft ground carries the block with it (``motion``); a mass that swings on top or a liquid that sloshes pushes it with
-the force that accelerates it (``force``), as far as the block's own rocking does not drive them.
+``u`` is the oscillator's displacement against the base, at rest at the sample before the record. A foundation that
+moves on soft ground carries the block with it (``motion``); a mass that swings on top or a liquid that sloshes pushes
+it with the force that accelerates it (``force``), as far as the block's own rocking does not drive them.
 """
 
 from __future__ import annotations

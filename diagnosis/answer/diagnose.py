@@ -268,7 +268,7 @@ def _estimates(
     fitted, values = settled(chosen.fitted, named, shapes) if progress else settled(chosen.fitted, ())
     chosen = replace(chosen, fitted=fitted)
     values, whole = widened(values, chosen, found.tried), held_numbers(chosen, found.tried)
-    chances = p_of_effects(found, gains)
+    chances = p_of_effects(found, gains, chosen.candidates)
     if len(chances) == 1 and p_missing is not None:  # of the one effect it may be the bootstrap's
         chances = [p_missing]
     effects, peak = [], true_peak(chosen)

@@ -10,6 +10,7 @@ from diagnosis.answer.heldout import Shown, relative_misfit
 from diagnosis.answer.result import Undecided, Verdict
 from diagnosis.errors.adequacy import Inadequacy
 from diagnosis.search.candidates import Candidate
+from diagnosis.search.candidates import Candidate
 from diagnosis.search.found import MISSING, Search, adjusted, price
 from diagnosis.search.left_out import WORSE
 from diagnosis.search.null import LEAST_P
@@ -59,9 +60,9 @@ def p_value(found: Search, gain: float) -> float:
     return max(found.null.p_value(gain), LEAST_P) if found.null else 1.0
 
 
-def p_of_effects(found: Search, gains: Sequence[float]) -> list[float]:
-    """p-value of each effect of the answer, from its evidence less the price of its details."""
-    return [p_value(found, gain - price(c)) for gain, c in zip(gains, found.chosen.candidates, strict=True)]
+def p_of_effects(found: Search, gains: Sequence[float], effects: Sequence[Candidate]) -> list[float]:
+    """p-value of each of the effects of an answer, from its evidence less the price of its details."""
+    return [p_value(found, gain - price(c)) for gain, c in zip(gains, effects, strict=True)]
 
 
 def p_of_missing(found: Search, gains: Sequence[float], left: Inadequacy, finished: bool) -> float | None:
@@ -73,7 +74,7 @@ def p_of_missing(found: Search, gains: Sequence[float], left: Inadequacy, finish
     if found.blow is not None:
         least.append(p_value(found, found.blow.evidence))
     if gains:
-        return min([*p_of_effects(found, gains), *least])
+        return min([*p_of_effects(found, gains, found.chosen.candidates), *least])
     if found.null is None or not finished:
         return None
     return min([p_value(found, max((found.gain(e) for e in found.singles), default=0.0)), *least])

@@ -19,7 +19,8 @@ from models.tables import KNOTS, Term, Variable
 
 def missing_force(found: Search, law: Law) -> Mapping[str, Any]:
     """``terms``: curves with 95 % bands and evidence; ``nearest``: the best single mechanism, and its curve in each
-    term; ``parameters``: every value of the law, by name; ``stages``: when it acts in each recording, if not always.
+    term; ``parameters``: every value of the law, by name; ``stages``: when it acts in each recording, if not always;
+    ``oscillator``: motion, force, frequency and damping of one beside the tables with their intervals, or None.
     """
     tables = law.mechanism.tabulated
     assert tables is not None
@@ -40,7 +41,15 @@ def missing_force(found: Search, law: Law) -> Mapping[str, Any]:
     stages = [asdict(one) for one in law.stages]
     return {
         "terms": terms, "nearest": nearest.names[0] if nearest else None, "parameters": law.values, "stages": stages,
+        "oscillator": _oscillator(law),
     }  # fmt: skip
+
+
+def _oscillator(law: Law) -> dict[str, dict[str, float]] | None:
+    return {
+        name.removeprefix("oscillator_"): dict(zip(("estimate", "low95", "high95"), ends, strict=True))
+        for name, ends in law.oscillator.items()
+    } or None
 
 
 def _action(explanation: Explanation) -> Action:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from string import Formatter
+from typing import Any
 
 from diagnosis.answer.phases import EVERYWHERE, words_of
 from diagnosis.answer.result import Diagnosis, Effect, Extrapolated, Fit, Located
@@ -60,9 +61,7 @@ def statement(found: Diagnosis, model: Model) -> str:
         parts += _contradicted(found)
         parts += [_flag(flag, declared) for flag in _distinct(found.constancy)[:2]]
         if found.missing_force:
-            what = " and a ".join(term["meaning"] for term in found.missing_force["terms"])
-            parts.append(f"A law in a table, estimated in its place, is part of extended.toml: a {what}.")
-            parts += law_text(found.missing_force["stages"])
+            parts += _law(found.missing_force)
     if found.verdict == "cannot_tell_apart" and found.rivals:
         names = ", ".join(f"{r.name.replace('_', ' ')} ({r.evidence_gap:.1f} less)" for r in found.rivals)
         parts.append(f"These recordings cannot tell it apart from: {names}.")
@@ -81,6 +80,33 @@ def statement(found: Diagnosis, model: Model) -> str:
             "the recordings as well."
         )
     return " ".join([*parts, *_skipped(found)])
+
+
+def _law(force: Mapping[str, Any]) -> list[str]:
+    """What was estimated in the place of what is missing."""
+    parts = []
+    if force["terms"]:
+        what = " and a ".join(term["meaning"] for term in force["terms"])
+        parts.append(f"A law in a table, estimated in its place, is part of extended.toml: a {what}.")
+    if force["oscillator"]:
+        parts.append(oscillator_text(force["oscillator"]))
+    return [*parts, *law_text(force["stages"])]
+
+
+def oscillator_text(found: Mapping[str, Mapping[str, float]]) -> str:
+    """What an oscillator does that the base drives, beside a law in a table or alone."""
+
+    def of(name: str, factor: float = 1.0) -> str:
+        return "{:.3g} ({:.3g} to {:.3g})".format(
+            *(factor * found[name][key] for key in ("estimate", "low95", "high95"))
+        )
+
+    return (
+        f"What is missing has a frequency of its own: an oscillator of {of('frequency')} Hz with "
+        f"{of('damping', 100.0)} % of critical damping, driven by the base, is part of extended.toml. The block is "
+        f"carried by {of('motion')} of its motion against the base, as by a support that moves, and pushed by "
+        f"{of('force')} of the force that accelerates it, as by a mass that swings."
+    )
 
 
 def _extrapolated(one: Extrapolated) -> str:

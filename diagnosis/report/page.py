@@ -12,6 +12,7 @@ import models
 from diagnosis.answer.heldout import HORIZON
 from diagnosis.answer.phases import words_of
 from diagnosis.answer.result import Diagnosis, OtherModel, Rival, Windows
+from diagnosis.answer.statement import oscillator_text
 from diagnosis.answer.when import when_text
 from diagnosis.data.measured import identification_of
 from diagnosis.data.windows import ABOVE_NOISE
@@ -117,7 +118,7 @@ def environment() -> Environment:
     environment.filters |= {
         "plain": words.plain, "number": words.number, "percent": words.percent, "chance": words.chance,
         "unit": words.unit_text, "listed": words.listed, "named": words.named, "estimate": words.estimate_texts,
-        "stated": words.stated, "quantity": words.quantity,
+        "stated": words.stated, "quantity": words.quantity, "oscillator": oscillator_text,
     }  # fmt: skip
     return environment
 

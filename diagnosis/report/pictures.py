@@ -51,7 +51,7 @@ def drawings(diagnosis: Diagnosis, specimen: Specimen, recordings: Sequence[Reco
         found[f"{trace.recording}_{trace.channel}"] = partial(plot_before_after, trace)
     if diagnosis.windows and diagnosis.traces:
         found["worst_window"] = partial(plot_worst_window, diagnosis.traces, diagnosis.windows)
-    if diagnosis.missing_force:
+    if diagnosis.missing_force and diagnosis.missing_force["terms"]:
         found["missing_force"] = partial(plot_missing_force, diagnosis.missing_force)
     for law in diagnosis.visited:
         found[f"law_{law.effect}"] = partial(plot_visited, law)

@@ -40,7 +40,7 @@ def search(*singles: Explanation, best: Explanation | None = None, windows: int 
 def test_shapes_are_paid_for() -> None:
     plain, shaped = candidate("a"), candidate("b", shapes=2)
     found = search(best=explanation([90.0] * 4, plain, shaped))
-    chances = judgement.p_of_effects(found, [9.0, 9.0])
+    chances = judgement.p_of_effects(found, [9.0, 9.0], found.chosen.candidates)
     assert chances == [NULL.p_value(9.0), NULL.p_value(5.0)] and chances[0] < chances[1]
 
 

@@ -51,6 +51,12 @@ FORCE = {
     | {"reach_rotation": 0.05}
     | {row("rotation", side, k): 0.004 * k for side in SIDES for k in range(KNOTS)},
     "stages": [],
+    "oscillator": {
+        "motion": {"estimate": 0.14, "low95": 0.13, "high95": 0.15},
+        "force": {"estimate": 0.0, "low95": -0.01, "high95": 0.01},
+        "frequency": {"estimate": 4.26, "low95": 4.25, "high95": 4.27},
+        "damping": {"estimate": 0.05, "low95": 0.048, "high95": 0.052},
+    },
 }
 
 VISITED = Visited(

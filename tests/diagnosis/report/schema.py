@@ -183,6 +183,12 @@ class TablePart(Part):
     nearest: list[float | None] | None
 
 
+class OscillatorPart(Part):
+    estimate: float
+    low95: float
+    high95: float
+
+
 class LawStagePart(Part):
     recording: str
     begins: float
@@ -194,6 +200,7 @@ class MissingForcePart(Part):
     nearest: str | None
     parameters: dict[str, float]
     stages: list[LawStagePart]
+    oscillator: dict[Literal["motion", "force", "frequency", "damping"], OscillatorPart] | None
 
 
 class OtherModelPart(Part):

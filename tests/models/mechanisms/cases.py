@@ -41,7 +41,10 @@ TYPICAL: dict[str, dict[str, float]] = {
     "quadratic_damping": {"coefficient": 2.0},
     "degradation": {"loss_of_restitution_per_impact": 0.02, "floor": 0.8},
     "wall_flexibility": {"first_frequency": 12.0},
-    "table_force": {"reach_rotation": 0.1, "reach_rate": 0.4, "reach_base": 4.0}
+    "table_force": {
+        "reach_rotation": 0.1, "reach_rate": 0.4, "reach_base": 4.0, "oscillator_motion": 0.05,
+        "oscillator_force": 0.04, "oscillator_frequency": 2.0, "oscillator_damping": 0.05,
+    }
     | {
         row(term, side, knot): size * math.sin(2.0 * knot + len(term) + (side == "above")) * (knot > 0 or jumps)
         for term, size, jumps in (
