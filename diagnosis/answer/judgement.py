@@ -10,7 +10,6 @@ from diagnosis.answer.heldout import Shown, relative_misfit
 from diagnosis.answer.result import Undecided, Verdict
 from diagnosis.errors.adequacy import Inadequacy
 from diagnosis.search.candidates import Candidate
-from diagnosis.search.candidates import Candidate
 from diagnosis.search.found import MISSING, Search, adjusted, price
 from diagnosis.search.left_out import WORSE
 from diagnosis.search.null import LEAST_P
