@@ -24,6 +24,7 @@ LASTS = float("inf")
 Interval = tuple[float, float]
 """Begin and end (s); an end of infinity is the recording's own, twice 0 is never."""
 NEVER: Interval = (0.0, 0.0)
+ALWAYS: Interval = (0.0, LASTS)
 
 
 def gain(misfit: Misfit, mechanism: str, nulls: Mapping[str, float], states: FloatArray) -> FloatArray:

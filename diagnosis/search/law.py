@@ -16,7 +16,7 @@ import numpy as np
 
 from diagnosis.errors.model import Errors, refitted
 from diagnosis.search.driven import with_oscillator
-from diagnosis.search.for_a_while import Interval, acting_in, asking, gain, instants
+from diagnosis.search.for_a_while import ALWAYS, Interval, acting_in, asking, gain, instants
 from diagnosis.search.found import MISSING
 from diagnosis.search.left_out import WORSE, error_left_out
 from diagnosis.search.refit import Explanation
@@ -88,6 +88,8 @@ def for_a_while(explanation: Explanation, errors: Errors) -> Law | None:
         return None
     f = best.explanation.fitted
     exact = [instants(f.frozen, form.name, f.states, r, interval) for r, interval in enumerate(intervals)]
+    if all(interval == ALWAYS for interval in exact):
+        return estimate(explanation, errors)
     return _in_intervals(explanation, form.name, exact, errors)
 
 

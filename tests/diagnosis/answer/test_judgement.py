@@ -42,6 +42,7 @@ def test_shapes_are_paid_for() -> None:
     found = search(best=explanation([90.0] * 4, plain, shaped))
     chances = judgement.p_of_effects(found, [9.0, 9.0], found.chosen.candidates)
     assert chances == [NULL.p_value(9.0), NULL.p_value(5.0)] and chances[0] < chances[1]
+    assert judgement.p_of_effects(found, [], ()) == []  # a law in a table stands in the place of both
 
 
 def test_of_two_effects_the_stronger_one_tells_the_chance_not_their_sum() -> None:

@@ -14,7 +14,7 @@ from diagnosis.fit.prediction import Predictor
 from diagnosis.fit.solver import fit
 from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.search.for_a_while import LASTS, NEVER, acting_in, asking
-from diagnosis.search.law import missing_law
+from diagnosis.search.law import for_a_while, missing_law
 from diagnosis.search.refit import Explanation
 from diagnosis.search.tables import Law
 from grids.stages import Stage
@@ -85,3 +85,10 @@ def test_the_run_that_asks_ends_with_its_recording() -> None:
     assert asking(m, 0, gained, 15.0) == NEVER
     staged = acting_in(base(m).fitted.misfit, "table_force", [NEVER, (begins, ends)])
     assert staged.predictor.stages["table_force"][1] == Stage("run_2", begins, LASTS)
+
+
+def test_what_always_acts_does_not_come_and_go() -> None:
+    plain = base(windows((1, 2), DASHPOT, 0))
+    _, errors = refitted(plain.fitted, disturbance_about(plain.fitted))
+    law = for_a_while(plain, errors)
+    assert law is not None and law.stages == ()
