@@ -36,16 +36,22 @@ def missing_law(explanation: Explanation, base: Explanation, errors: Errors) -> 
     as_they_are = estimate(explanation)
     if np.unique(explanation.measured.recording_of).size < 2:
         return as_they_are
-    led = estimate(_as_white(explanation, errors), errors)
-    plain = _as_white(base, errors)
-    ways = (as_they_are, led, for_a_while(plain, errors), driven(plain, errors))
     best: Law | None = None
     error = np.inf
-    for law in ways:  # the simpler ones first
-        left = np.inf if law is None else _left_out(law.explanation)
-        if WORSE * left < error:
-            best, error = law, left
+    led = estimate(_as_white(explanation, errors), errors)
+    for law in (as_they_are, led):
+        best, error = _better(law, best, error)
+    error = min(error, _left_out(explanation))  # what was named gives way only to what predicts better than it
+    plain = _as_white(base, errors)
+    for law in (for_a_while(plain, errors), driven(plain, errors)):
+        best, error = _better(law, best, error)
     return best
+
+
+def _better(law: Law | None, best: Law | None, error: float) -> tuple[Law | None, float]:
+    """The better of two laws with its error; the one tried first, the simpler one, where they are alike."""
+    left = np.inf if law is None else _left_out(law.explanation)
+    return (law, left) if WORSE * left < error else (best, error)
 
 
 def driven(explanation: Explanation, errors: Errors) -> Law | None:
