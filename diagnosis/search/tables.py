@@ -9,8 +9,7 @@ c ~ N(0, (lambda P)^-1) on second differences, the evidence
     g'(H + lambda P)^-1 g - log det(H + lambda P) + log det(lambda P)
 
 chooses term by term (the sparse part) and lambda (the smooth part). The chosen ones are fitted by the same solver as
-everything else, and chosen again about that fit: a strong law is not linear about the model without it. Bands are those
-of the posterior at the optimum.
+everything else; bands are those of the posterior at the optimum.
 """
 
 from __future__ import annotations
@@ -45,8 +44,6 @@ RIDGE = 0.02
 UNIT, WIDEST = 0.02, 100.0
 """One unit of a table's value over the typical acceleration of the motion, and the most units a fit may reach."""
 NORMAL = 1.959964
-ROUNDS = 3
-"""Of choosing tables about the fit so far, and fitting them: a strong law is not linear about the model without it."""
 ITERATIONS = 6
 """Of the fit with tables, which is nearly linear and costs two runs a row each."""
 
@@ -127,12 +124,6 @@ def estimate(explanation: Explanation, errors: Errors | None = None) -> Law | No
     if not chosen and not beside:
         return None
     best = _fitted(base, fitted, unknowns, chosen, bends) if chosen else replace(fitted, misfit=base)
-    for _ in range(ROUNDS - 1 if chosen else 0):
-        before, chosen = chosen, _choose(base, best, unknowns, bends)
-        if not chosen or [(t, s) for t, s, _ in chosen] == [(t, s) for t, s, _ in before]:
-            chosen = before
-            break
-        best = _fitted(base, best, unknowns, chosen, bends)
     if errors is not None:
         best, _ = refitted(best, errors.base, errors, rounds=1)
         chosen = _choose(replace(best.misfit, unknowns=base.unknowns, smooth=None), best, unknowns, bends)
