@@ -4,7 +4,8 @@
 
 ``u`` is the oscillator's displacement against the base, at rest at the sample before the record. A foundation that
 moves on soft ground carries the block with it (``motion``); a mass that swings on top or a liquid that sloshes pushes
-it with the force that accelerates it (``force``), as far as the block's own rocking does not drive them.
+it with the force that accelerates it (``force``), as far as the block's own rocking does not drive them. What still
+swings when the record ends is not followed.
 """
 
 from __future__ import annotations

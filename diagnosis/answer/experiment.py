@@ -119,22 +119,27 @@ def _leading(measured: Measured) -> str:
 
 
 def _expected(truth: Explanation, rival: Explanation, made: Recording, errors: Errors) -> float:
-    """Expected evidence for ``truth`` over ``rival`` from one more recording."""
+    """Expected evidence for ``truth`` over ``rival`` from one more recording; 0 where one cannot be compared."""
+    try:
+        return _evidence(truth, rival, made, errors)
+    except InputError:  # no window, or one that would be cut where an effect of theirs cannot be
+        return 0.0
+
+
+def _evidence(truth: Explanation, rival: Explanation, made: Recording, errors: Errors) -> float:
     fitted = rival.fitted
     measured = fitted.measured
     if measured.lengths is None:
         return 0.0
     acts = measured.shakings[0].vertical is not None and measured.shakings[0].vertical_acts
-    try:
-        windows = arrange(measured.model, [made], acts, measured.lengths, measured.reference_peak)
-    except InputError:
-        return 0.0
+    windows = arrange(measured.model, [made], acts, measured.lengths, measured.reference_peak)
     predictor = replace(fitted.misfit.predictor, measured=windows)
     misfit = Misfit(predictor, errors.of_sensors(windows), fitted.misfit.unknowns, fitted.misfit.fixed)
     true = truth.fitted
-    own = Misfit(predictor, misfit.whitening, true.misfit.unknowns, true.misfit.fixed)
+    of_truth = replace(true.misfit.predictor, measured=windows)  # effects that begin do so in their own stages
+    own = Misfit(of_truth, misfit.whitening, true.misfit.unknowns, true.misfit.fixed)
     states = fit(replace(own, unknowns=(), fixed={**own.fixed, **true.values}), np.zeros(0), windows.states).states
-    clean = predictor.predict([own.point(true.u, states)])[0]
+    clean = of_truth.predict([own.point(true.u, states)])[0]
     exact = replace(misfit, predictor=replace(predictor, measured=replace(windows, values=clean * windows.mask)))
     linear = exact.linearise(fitted.u, states)
     reduced = reduce(linear)

@@ -8,7 +8,7 @@ from typing import Any
 
 from diagnosis.answer.phases import EVERYWHERE, words_of
 from diagnosis.answer.result import Diagnosis, Effect, Extrapolated, Fit, Located
-from diagnosis.answer.when import held_text, law_text, when_text
+from diagnosis.answer.when import comes_and_goes, held_text, when_text
 from diagnosis.data.measured import identification_of
 from diagnosis.fit.unknowns import effects
 from diagnosis.forces.constancy import BLOW, FOR_A_WHILE, Constancy
@@ -90,7 +90,7 @@ def _law(force: Mapping[str, Any]) -> list[str]:
         parts.append(f"A law in a table, estimated in its place, is part of extended.toml: a {what}.")
     if force["oscillator"]:
         parts.append(oscillator_text(force["oscillator"]))
-    return [*parts, *law_text(force["stages"])]
+    return [*parts, *comes_and_goes(force["stages"])]
 
 
 def oscillator_text(found: Mapping[str, Mapping[str, float]]) -> str:

@@ -11,11 +11,12 @@ import numpy as np
 from diagnosis.answer.result import EffectStage, HeldStage
 from diagnosis.fit.misfit import Misfit
 from diagnosis.search.candidates import Candidate
-from diagnosis.search.for_a_while import LASTS, asking, gain, instants
+from diagnosis.search.for_a_while import LASTS, asking, exact, gain
 from diagnosis.search.found import MISSING
 from diagnosis.search.instants import Instant, ends_of
 from diagnosis.search.refit import Explanation
 from diagnosis.search.spells import Spell
+from diagnosis.search.tables import form_of
 from grids.stages import Stage
 from models.base import FloatArray
 from models.errors import InputError
@@ -76,7 +77,7 @@ def held_stages(explanation: Explanation, misfit: Misfit, states: FloatArray) ->
             begins, ends = (0.0, LASTS) if acts else (0.0, 0.0)
             if own:
                 asked = asking(misfit.measured, r, gained, MISSING + candidate.price)
-                begins, ends = instants(misfit, candidate.name, states, r, asked)
+                begins, ends = exact(misfit, candidate.name, states, r, asked)
             found.append(HeldStage(candidate.name, recording.name, begins, ends, own))
     return (*found, *_of_law(explanation, misfit, states))
 
@@ -84,13 +85,13 @@ def held_stages(explanation: Explanation, misfit: Misfit, states: FloatArray) ->
 def _of_law(explanation: Explanation, misfit: Misfit, states: FloatArray) -> Iterator[HeldStage]:
     """The same of a law in a table that acts for a while in each recording: where one asks for it."""
     m = misfit.measured
-    for mechanism in m.model.mechanisms.values():
-        if mechanism.tabulated and mechanism.name in explanation.fitted.misfit.predictor.stages:
-            nulls = {f"{mechanism.name}.{name}": null for name, null in mechanism.nulls.items()}
-            gained = gain(misfit, mechanism.name, nulls, states)
-            for r, recording in enumerate(m.recordings):
-                interval = instants(misfit, mechanism.name, states, r, asking(m, r, gained, MISSING))
-                yield HeldStage(mechanism.name, recording.name, *interval, True)
+    form = form_of(m.model)
+    if form is None or form.name not in explanation.fitted.misfit.predictor.stages:
+        return
+    gained = gain(misfit, form.name, {f"{form.name}.{name}": null for name, null in form.nulls.items()}, states)
+    for r, recording in enumerate(m.recordings):
+        interval = exact(misfit, form.name, states, r, asking(m, r, gained, MISSING))
+        yield HeldStage(form.name, recording.name, *interval, True)
 
 
 def as_stages(held: Sequence[HeldStage]) -> Mapping[str, tuple[Stage, ...]]:
@@ -122,7 +123,7 @@ def when_text(stages: Sequence[EffectStage]) -> str:
     return f"{opening} {closing}" if begins else f"until {closing.removeprefix('to ')}, and is gone then"
 
 
-def law_text(stages: Sequence[Mapping[str, Any]]) -> list[str]:
+def comes_and_goes(stages: Sequence[Mapping[str, Any]]) -> list[str]:
     """When a law in a table acts that comes and goes in each recording; ``stages`` as in `missing_force`."""
     parts = []
     for one in stages:

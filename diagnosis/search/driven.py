@@ -18,6 +18,7 @@ from diagnosis.fit.misfit import Misfit, project, reduce
 from diagnosis.fit.solver import fit, fit_thoroughly, normal
 from diagnosis.fit.unknowns import Unknown, without_instruments
 from diagnosis.search.refit import QUICK, Explanation, best_of
+from diagnosis.search.tables import form_of
 from models.base import FloatArray, Mechanism
 
 FREQUENCIES = np.geomspace(0.3, 15.0, 40)
@@ -38,7 +39,7 @@ WORTH = 25.0
 def with_oscillator(explanation: Explanation) -> Explanation | None:
     """The explanation with an oscillator beside it; None where it is not worth it, or the model has none."""
     f = explanation.fitted
-    form = next((one for one in f.measured.model.mechanisms.values() if one.tabulated), None)
+    form = form_of(f.measured.model)
     if form is None or form.tabulated is None or not form.tabulated.oscillator:
         return None
     names = [f"{form.name}.{name}" for name in form.tabulated.oscillator]

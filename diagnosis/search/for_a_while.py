@@ -56,7 +56,7 @@ def acting_in(misfit: Misfit, mechanism: str, intervals: Sequence[Interval]) -> 
     return replace(misfit, predictor=replace(misfit.predictor, stages={**misfit.predictor.stages, mechanism: own}))
 
 
-def instants(misfit: Misfit, mechanism: str, states: FloatArray, r: int, interval: Interval) -> Interval:
+def exact(misfit: Misfit, mechanism: str, states: FloatArray, r: int, interval: Interval) -> Interval:
     """An interval of recording ``r`` with its instants found within the windows; nothing is unknown in ``misfit``."""
     if interval == NEVER:
         return NEVER

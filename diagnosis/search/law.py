@@ -16,11 +16,11 @@ import numpy as np
 
 from diagnosis.errors.model import Errors, refitted
 from diagnosis.search.driven import with_oscillator
-from diagnosis.search.for_a_while import ALWAYS, Interval, acting_in, asking, gain, instants
+from diagnosis.search.for_a_while import ALWAYS, Interval, acting_in, asking, exact, gain
 from diagnosis.search.found import MISSING
 from diagnosis.search.left_out import WORSE, error_left_out
 from diagnosis.search.refit import Explanation
-from diagnosis.search.tables import Law, estimate
+from diagnosis.search.tables import Law, estimate, form_of
 from diagnosis.search.weighing import as_white_noise
 
 TURNS = 3
@@ -55,12 +55,15 @@ def _better(law: Law | None, best: Law | None, error: float) -> tuple[Law | None
 
 
 def driven(explanation: Explanation, errors: Errors) -> Law | None:
-    """The law with an oscillator that the base drives beside its tables; None where that is not worth it."""
+    """The law with an oscillator that the base drives beside its tables; None where that is not worth it.
+
+    Tables are chosen under errors estimated with the oscillator in: before, they would do what it does.
+    """
     swinging = with_oscillator(explanation)
     if swinging is None:
         return None
     fitted, _ = refitted(swinging.fitted, errors.base, errors, rounds=1)
-    return estimate(replace(swinging, fitted=fitted), errors)
+    return estimate(replace(swinging, fitted=fitted))
 
 
 def _as_white(explanation: Explanation, errors: Errors) -> Explanation:
@@ -73,7 +76,7 @@ def for_a_while(explanation: Explanation, errors: Errors) -> Law | None:
     Begins with the run of windows in which the explanation misses most.
     """
     m = explanation.measured
-    form = next((one for one in m.model.mechanisms.values() if one.tabulated), None)
+    form = form_of(m.model)
     # runs through whole recordings cannot be cut at an instant; carried states make every estimate cost minutes
     if form is None or m.stretches is not None or m.identification.carrying:
         return None
@@ -93,10 +96,10 @@ def for_a_while(explanation: Explanation, errors: Errors) -> Law | None:
     if best is None:
         return None
     f = best.explanation.fitted
-    exact = [instants(f.frozen, form.name, f.states, r, interval) for r, interval in enumerate(intervals)]
-    if all(interval == ALWAYS for interval in exact):
+    intervals = [exact(f.frozen, form.name, f.states, r, interval) for r, interval in enumerate(intervals)]
+    if all(interval == ALWAYS for interval in intervals):
         return estimate(explanation, errors)
-    return _in_intervals(explanation, form.name, exact, errors)
+    return _in_intervals(explanation, form.name, intervals, errors)
 
 
 def _in_intervals(

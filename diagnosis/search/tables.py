@@ -30,6 +30,7 @@ from diagnosis.search.refit import Explanation
 from grids.stages import Stage
 from models.base import FloatArray, Mechanism
 from models.identification import Motion
+from models.model import Model
 from models.tables import KNOTS, SIDES, Tables, row
 
 MOST_TERMS = 3
@@ -103,7 +104,7 @@ def estimate(explanation: Explanation, errors: Errors | None = None) -> Law | No
     """
     fitted = explanation.fitted
     model = fitted.measured.model
-    form = next((m for m in model.mechanisms.values() if m.tabulated), None)
+    form = form_of(model)
     if form is None or form.tabulated is None:
         return None
     tables, motions = form.tabulated, motions_of(fitted)
@@ -131,6 +132,11 @@ def estimate(explanation: Explanation, errors: Errors | None = None) -> Law | No
             return None
         best = _fitted(replace(best.misfit, unknowns=base.unknowns, smooth=None), best, unknowns, chosen, bends)
     return Law(Explanation(explanation.candidates, best), _tables(best, unknowns, chosen, tables, reaches), form)
+
+
+def form_of(model: Model) -> Mechanism | None:
+    """The law in a table that a model can hold."""
+    return next((one for one in model.mechanisms.values() if one.tabulated), None)
 
 
 def _reaches(tables: Tables, motions: Mapping[str, Motion]) -> dict[str, float]:

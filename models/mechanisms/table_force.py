@@ -48,35 +48,21 @@ TABLES = Tables(
 """Of one block."""
 OSCILLATOR = (
     MechanismParameter(
-        "oscillator_motion",
-        "c_m",
-        "1",
-        "share of the oscillator's motion against the base that carries the block",
-        -3.0,
-        3.0,
+        "oscillator_motion", "c_m", "1", "share of the oscillator's motion against the base that carries the block",
+        -3.0, 3.0,
     ),
     MechanismParameter(
-        "oscillator_force",
-        "c_f",
-        "1",
-        "force on the oscillator over its mass that pushes the block, over the block's",
-        -3.0,
-        3.0,
+        "oscillator_force", "c_f", "1", "force on the oscillator over its mass that pushes the block, over the block's",
+        -3.0, 3.0,
     ),
     MechanismParameter(
         "oscillator_frequency", "f_o", "Hz", "frequency of the oscillator", 0.2, 25.0, null=1.0, shape=True
     ),
     MechanismParameter(
-        "oscillator_damping",
-        "zeta_o",
-        "1",
-        "damping of the oscillator over critical",
-        0.005,
-        0.5,
-        null=0.05,
+        "oscillator_damping", "zeta_o", "1", "damping of the oscillator over critical", 0.005, 0.5, null=0.05,
         shape=True,
     ),
-)
+)  # fmt: skip
 """What the base drives beside the tables of one block."""
 
 

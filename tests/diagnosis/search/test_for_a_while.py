@@ -7,7 +7,7 @@ from dataclasses import asdict, replace
 import numpy as np
 import pytest
 
-from diagnosis.answer.when import as_stages, held_stages, law_text
+from diagnosis.answer.when import as_stages, comes_and_goes, held_stages
 from diagnosis.errors.model import disturbance_about, refitted
 from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.prediction import Predictor
@@ -45,7 +45,7 @@ def test_a_dashpot_that_engages_in_each_recording_is_found(law: Law) -> None:
     for one, seed in zip(law.stages, (1, 2), strict=True):
         assert one.begins == pytest.approx(WHEN[seed][0], abs=0.7) or seed == 1  # it rocks from 2.7 s on
         assert one.ends == pytest.approx(WHEN[seed][1], abs=0.7)
-    assert "It comes and goes in each recording" in law_text([asdict(one) for one in law.stages])[0]
+    assert "It comes and goes in each recording" in comes_and_goes([asdict(one) for one in law.stages])[0]
 
 
 def test_another_recording_says_when_it_acts_there_and_is_predicted(law: Law) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from models.shaking import Shaking
+from models.tables import KNOTS, row
 from tests.models.mechanisms.cases import ALPHA, HOUSNER, TYPICAL, WALL, by_lanes, by_reference, dotted, free, pulse
 
 ACCURACY = {
@@ -86,3 +87,17 @@ def test_the_kernel_converges_to_the_reference(name: str, order: float) -> None:
     coarse = np.max(np.abs(by_lanes(values, shaking, start, refinement=1).rotation - slow))
     fine = np.max(np.abs(by_lanes(values, shaking, start, refinement=4).rotation - slow))
     assert np.log(coarse / fine) / np.log(4.0) > order
+
+
+def test_the_onset_under_a_table_that_bends_within_the_step_is_that_of_the_reference() -> None:
+    """The couple over the base acceleration bends at a row that the base passes within the step of the onset."""
+    shaking = pulse(4.0, 0.5, rest=0.5)
+    onset = by_reference(WALL, shaking, {}).outputs["onset_time"]
+    before = int(onset / shaking.time_step)
+    low, high = np.abs(shaking.horizontal[[before, before + 1]])
+    bend = float(low + 0.3 * (high - low))  # the row next to zero: without the law beyond it, the onset is near
+    law = {row("base", side, 1): size for side, size in (("below", 0.3), ("above", -0.3))}
+    values = {**WALL, **dotted("table_force", {"reach_base": (KNOTS - 1) * bend, **law})}
+    fast, slow = by_lanes(values, shaking, {}), by_reference(values, shaking, {})
+    assert slow.outputs["onset_time"] != pytest.approx(onset, rel=1e-4)
+    assert fast.outputs["onset_time"] == pytest.approx(slow.outputs["onset_time"], rel=1e-8)
