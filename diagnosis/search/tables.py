@@ -40,7 +40,7 @@ SMOOTH = np.geomspace(1e-3, 1e3, 13)
 JUMP = 100.0
 """Weight of a jump at zero, of tables that may not jump there, over that of a bend."""
 SLOPE = 0.3
-"""Of a slope: beyond the rows that the motion tells, a table holds its value instead of going on rising."""
+"""Of a slope: beyond the rows that the motion tells, a table rises less and less."""
 RIDGE = 0.02
 UNIT, WIDEST = 0.02, 100.0
 """One unit of a table's value over the typical acceleration of the motion, and the most units a fit may reach."""

@@ -16,9 +16,10 @@ from diagnosis.fit.setup import measure
 from diagnosis.fit.solver import fit
 from diagnosis.fit.unknowns import of_specimen
 from diagnosis.fit.whitening import sensor_noise_only
+from diagnosis.search.candidates import candidates
 from diagnosis.search.law import missing_law
-from diagnosis.search.refit import Explanation
-from diagnosis.search.tables import Law, estimate
+from diagnosis.search.refit import Explanation, extend
+from diagnosis.search.tables import Law, _bends, estimate
 from grids.stages import Stage
 from models.mechanisms.table_force import MECHANISM
 from models.tables import KNOTS, SIDES, row
@@ -116,3 +117,24 @@ def test_a_law_that_the_errors_hold_is_found_and_predicts() -> None:
 
 def test_noise_alone_asks_for_no_law() -> None:
     assert estimate(base(windows((1, 2), MECHANISM.nulls, 0))) is None
+
+
+def test_what_was_named_rightly_does_not_give_way_to_a_law() -> None:
+    """A dashpot that is named, and a law in a table about the model without it that would do the same."""
+    hidden = MECHANISM.nulls | {row("damping", side, k): -0.6 for side in SIDES for k in range(KNOTS)}
+    plain = base(windows((1, 2), hidden, 0))
+    fitted, errors = refitted(plain.fitted, disturbance_about(plain.fitted))
+    without = Explanation((), fitted)
+    dashpot = next(c for c in candidates(without.measured, SPECIMEN) if c.name == "viscous_damping")
+    named = extend(without, dashpot, np.array([dashpot.unknowns[0].coordinate(0.6)]))
+    assert missing_law(named, without, errors) is None
+    assert missing_law(without, without, errors) is not None
+
+
+def test_beyond_what_the_motion_tells_a_table_bends_towards_holding_its_value() -> None:
+    """The likeliest continuation, under the prior alone, of a table that rises from 0 to 1 between its first rows."""
+    rows = _bends(jumps=True)[:, KNOTS:]
+    known = np.array([0.0, 1.0])
+    rest = np.linalg.lstsq(rows[:, 2:], -rows[:, :2] @ known, rcond=None)[0]
+    assert np.all(np.diff(rest) > 0.0) and np.all(np.diff(rest, 2) < 0.0)
+    assert rest[-1] < 0.7 * (KNOTS - 1)
