@@ -165,7 +165,8 @@ def _assemble(
     final = law.explanation if law else chosen
     if law:
         gains = [gain for c, gain in zip(chosen.candidates, gains, strict=True) if c in final.candidates]
-        near = near if final.candidates else []  # of what the law replaced
+        if not final.candidates:  # nothing is told of what the law replaced
+            near, against = [], None
         shown = [stages.needed(lambda: compare(found.base, final, measured, found.errors))]
     settled_at, effects, base = stages.optional(
         "the profile likelihood (the intervals are symmetric instead)",

@@ -27,7 +27,7 @@ def test_a_support_that_moves_takes_the_place_of_what_was_named(
     oscillator = found.missing_force["oscillator"]
     assert oscillator["frequency"]["estimate"] == pytest.approx(3.4, rel=0.02)
     assert oscillator["motion"]["estimate"] == pytest.approx(0.25, rel=0.2)
-    assert "has a frequency of its own" in found.statement
+    assert "has a frequency of its own" in found.statement and "With what was found" not in found.statement
     assert found.holdout is not None and (found.holdout.share_of_achievable or 0.0) > 0.8
     write_answer(found, SPECIMEN, training, held, tmp_path)
     assert "has a frequency of its own" in (tmp_path / "report.html").read_text(encoding="utf-8")
