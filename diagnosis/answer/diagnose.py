@@ -31,6 +31,7 @@ from diagnosis.fit.one_thread import one_thread
 from diagnosis.fit.setup import as_recorded, measure
 from diagnosis.forces.columns import Forces, forces
 from diagnosis.forces.constancy import Constancy, Tested, flags, tests
+from diagnosis.forces.varying import varying
 from diagnosis.progress import Progress, Stages, silent
 from diagnosis.search import bootstrap as bootstrapping
 from diagnosis.search.beginnings import alone, beside
@@ -131,6 +132,10 @@ def _assemble(
         flagged = (found.outside, *(f for f in flagged if f.parameter != found.outside.parameter))
     if found.blow is not None:
         flagged = (found.blow, *flagged)
+    if measured.identification.forces and not flagged and not unexplained:
+        flagged = flags(
+            about, stages.optional("whether it changes", lambda: varying(about, found.errors), list), found.more
+        )
     near = rivals(found)
     progress("stating the errors", 0.87)
     errors = stages.needed(lambda: summary(found.errors, measured))
@@ -145,7 +150,7 @@ def _assemble(
     doubted = bool(flagged) or errors.inadequacy.large or against is not None
     verdict = verdict_of(found, near, doubted, not unexplained, finished)
     gains = [climbed.gain] if climbed else stages.needed(lambda: evidence(found))
-    p_value = p_of_missing(found, gains, errors.inadequacy, finished)
+    p_value = p_of_missing(found, gains, errors.inadequacy, flagged, finished)
     if draws and finished and climbed is None:
         score_p = p_value
         p_value = stages.optional(

@@ -9,6 +9,7 @@ import numpy as np
 from diagnosis.answer.heldout import Shown, relative_misfit
 from diagnosis.answer.result import Undecided, Verdict
 from diagnosis.errors.adequacy import Inadequacy
+from diagnosis.forces.constancy import Constancy
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.found import MISSING, Search, adjusted, price
 from diagnosis.search.left_out import WORSE
@@ -64,14 +65,16 @@ def p_of_effects(found: Search, gains: Sequence[float], effects: Sequence[Candid
     return [p_value(found, gain - price(c)) for gain, c in zip(gains, effects, strict=True)]
 
 
-def p_of_missing(found: Search, gains: Sequence[float], left: Inadequacy, finished: bool) -> float | None:
+def p_of_missing(
+    found: Search, gains: Sequence[float], left: Inadequacy, flagged: Sequence[Constancy], finished: bool
+) -> float | None:
     """p-value of "something is missing"; None if a search was stopped early.
 
-    Of the strongest effect, else of the strongest suspect; of the model's own large error, or a blow, if less.
+    Of the strongest effect, else of the strongest suspect; of the model's own large error, or of what is not the same
+    everywhere, if less.
     """
     least = [max(left.p_value, LEAST_P)] if left.large else []
-    if found.blow is not None:
-        least.append(p_value(found, found.blow.evidence))
+    least += [p_value(found, one.evidence) for one in flagged]
     if gains:
         return min([*p_of_effects(found, gains, found.chosen.candidates), *least])
     if found.null is None or not finished:

@@ -12,6 +12,7 @@ from diagnosis.answer.when import comes_and_goes, held_text, when_text
 from diagnosis.data.measured import identification_of
 from diagnosis.fit.unknowns import effects
 from diagnosis.forces.constancy import BLOW, FOR_A_WHILE, Constancy
+from diagnosis.forces.varying import WINDOW
 from diagnosis.search.budget import ENDED
 from diagnosis.search.found import MISSING
 from diagnosis.search.null import LEAST_P
@@ -225,6 +226,8 @@ def _flag(found: Constancy, declared: Identification) -> str:
     stronger = f", stronger {found.stronger}" if found.stronger else ""
     if found.depends_on == FOR_A_WHILE:
         return f"{what} that is there for a while only."
+    if found.depends_on == WINDOW:
+        return f"{what} that changes in the course of the recordings, from window to window."
     if found.depends_on.startswith("recording"):
         return f"{what} that is not the same in {found.depends_on}."
     return f"{what} that depends on the {found.depends_on}{stronger}."

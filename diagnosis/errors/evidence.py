@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis.data.measured import Measured
+from diagnosis.errors.components import LowRank
 from diagnosis.errors.likelihood import Piece, Prior, State, evaluate, maximise
 from diagnosis.errors.model import Errors
 from models.base import FloatArray
@@ -69,16 +70,39 @@ class Without:
         gain = start.deviance - found.deviance + float(start.estimate[last]) ** 2 / variance
         return Evidence(gain, -float(found.estimate[last]), each[: len(self.measured.windows)])
 
+    def from_window_to_window(self, column: FloatArray) -> float:
+        """Gain by a random share of a ``column`` (W, C, N) in each window, without the window that adds most.
+
+        The column itself is ``beside``: what is the same in all windows is no part of it.
+        """
+        shares = _columns(self.measured, column[..., None])
+        size = np.sqrt(np.mean([np.sum(own**2) for own in shares]))
+        windows = [*(LowRank(own / size) for own in shares), *[None] * (len(self.pieces) - len(shares))]
+        pieces = [replace(p, parts=(*p.parts, own)) for p, own in zip(self.pieces, windows, strict=True)]
+        drifts, largest = self.prior.drifts, self.prior.largest
+        prior = replace(
+            self.prior, drifts=(*drifts, None) if drifts else (), largest=(*largest, np.inf) if largest else ()
+        )
+        theta = np.append(self.theta, 0.0)
+        if evaluate(pieces, prior, theta, self.weights).slope[-1] >= 0.0:
+            return 0.0
+        _, found = maximise(pieces, prior, theta, self.weights)
+        each = self.state.determinants - found.determinants + self.weights * (self.state.chi2 - found.chi2)
+        return self.state.deviance - found.deviance - max(float(each[: len(shares)].max()), 0.0)
+
+
+def _columns(measured: Measured, columns: FloatArray) -> list[FloatArray]:
+    """Columns (W, C, N, B) of predictions in the samples of each window's piece (n, B)."""
+    each = np.moveaxis(measured.averaged(np.moveaxis(columns, -1, 0)), 0, -1) / measured.units[:, :, None, None]
+    return [own[keep] for own, keep in zip(each, measured.compared, strict=True)]
+
 
 def _with(pieces: Sequence[Piece], measured: Measured, columns: FloatArray) -> list[Piece]:
     """The pieces with more columns (W, C, N, B) beside the base parameters; none of them acts in a still stretch."""
-    each = np.moveaxis(measured.averaged(np.moveaxis(columns, -1, 0)), 0, -1) / measured.units[:, :, None, None]
+    own = _columns(measured, columns)
     found = []
     for k, piece in enumerate(pieces):
-        more = np.zeros((piece.residual.size, columns.shape[-1]))
-        if k < len(measured.windows):
-            keep = measured.compared[k].ravel()
-            more = each[k].reshape(keep.size, columns.shape[-1])[keep]
+        more = own[k] if k < len(own) else np.zeros((piece.residual.size, columns.shape[-1]))
         found.append(replace(piece, by_unknown=np.concatenate([piece.by_unknown, more], axis=1)))
     return found
 

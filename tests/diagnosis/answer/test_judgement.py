@@ -11,6 +11,7 @@ import pytest
 from diagnosis.answer import heldout, judgement
 from diagnosis.errors.adequacy import Inadequacy
 from diagnosis.fit.setup import measure
+from diagnosis.forces.constancy import Constancy
 from diagnosis.progress import Stages
 from diagnosis.search.found import MISSING, Search
 from diagnosis.search.null import LEAST_P, Null
@@ -47,7 +48,7 @@ def test_shapes_are_paid_for() -> None:
 
 def test_of_two_effects_the_stronger_one_tells_the_chance_not_their_sum() -> None:
     found = search(best=explanation([90.0] * 4, candidate("a"), candidate("b")))
-    assert judgement.p_of_missing(found, [9.0, 12.0], SMALL, True) == NULL.p_value(12.0) > NULL.p_value(21.0)
+    assert judgement.p_of_missing(found, [9.0, 12.0], SMALL, (), True) == NULL.p_value(12.0) > NULL.p_value(21.0)
 
 
 def test_no_chance_is_told_beyond_what_anyone_tested() -> None:
@@ -58,15 +59,21 @@ def test_a_large_error_of_the_model_is_as_unlikely_as_its_deviance() -> None:
     large, faint = Inadequacy((1.0,), 4.0, 40.0, True), Inadequacy((0.1,), 0.2, 40.0, True)
     assert large.large and not faint.large
     found = search(explanation([100.0] * 4, candidate("a")))
-    assert judgement.p_of_missing(found, [], large, True) == LEAST_P
-    assert judgement.p_of_missing(found, [], faint, True) == 1.0
+    assert judgement.p_of_missing(found, [], large, (), True) == LEAST_P
+    assert judgement.p_of_missing(found, [], faint, (), True) == 1.0
+
+
+def test_what_is_not_the_same_everywhere_is_as_unlikely_as_its_evidence() -> None:
+    found = search(explanation([100.0] * 4, candidate("a")))
+    one = Constancy("restitution", "window", 17.0)
+    assert judgement.p_of_missing(found, [], SMALL, (one,), True) == NULL.p_value(17.0) < 0.05
 
 
 def test_what_a_stopped_search_did_not_test_has_no_p_value() -> None:
     single = explanation([90.0] * 4, candidate("a"))
-    assert judgement.p_of_missing(search(single), [], SMALL, finished=False) is None
-    assert judgement.p_of_missing(search(single), [], SMALL, finished=True) == LEAST_P
-    assert judgement.p_of_missing(Search(explanation([1.0]), (), NO_ERRORS), [], SMALL, finished=True) is None
+    assert judgement.p_of_missing(search(single), [], SMALL, (), finished=False) is None
+    assert judgement.p_of_missing(search(single), [], SMALL, (), finished=True) == LEAST_P
+    assert judgement.p_of_missing(Search(explanation([1.0]), (), NO_ERRORS), [], SMALL, (), finished=True) is None
 
 
 @pytest.mark.parametrize(
@@ -76,14 +83,14 @@ def test_what_a_stopped_search_did_not_test_has_no_p_value() -> None:
 def test_a_suspect_refused_says_what_it_rests_on(losses: list[float], rests_on: str) -> None:
     suspect = explanation(losses, candidate("saturation"))
     found = search(suspect)
-    left_open = judgement.undecided(found, judgement.p_of_missing(found, [], SMALL, True))
+    left_open = judgement.undecided(found, judgement.p_of_missing(found, [], SMALL, (), True))
     assert left_open is not None and (left_open.name, left_open.rests_on) == ("saturation", rests_on)
     assert left_open.gain == 400.0 - sum(losses) and (left_open.gain >= MISSING) == bool(rests_on)
 
 
 def test_what_chance_brings_is_not_undecided() -> None:
     found = search(explanation([99.9] * 4, candidate("a")))
-    assert judgement.undecided(found, judgement.p_of_missing(found, [], SMALL, True)) is None
+    assert judgement.undecided(found, judgement.p_of_missing(found, [], SMALL, (), True)) is None
 
 
 @pytest.mark.parametrize(("share", "explained"), [(0.05, True), (0.6, True), (0.8, False), (1.3, False)])

@@ -13,6 +13,7 @@ from diagnosis.answer.result import Diagnosis, Effect, EffectStage, Fit, Located
 from diagnosis.answer.statement import effect_text, statement
 from diagnosis.fit.intervals import Estimate
 from diagnosis.forces.constancy import BLOW, FOR_A_WHILE, Constancy
+from diagnosis.forces.varying import WINDOW
 from diagnosis.report import diagnosis_json
 from diagnosis.report.page import headline
 from diagnosis.search.budget import ENDED
@@ -156,6 +157,11 @@ def test_a_blow_is_said_with_its_instants() -> None:
     blow = Constancy(BLOW, FOR_A_WHILE, 84.0, "from 2.52 s to 2.64 s of shake_2")
     text = said("not_in_library", constancy=(blow,))
     assert "Something acts on it for a moment, from 2.52 s to 2.64 s of shake_2" in text
+
+
+def test_what_changes_from_window_to_window_is_said() -> None:
+    text = said("not_in_library", constancy=(Constancy("restitution", WINDOW, 40.0),))
+    assert "at impacts that changes in the course of the recordings, from window to window." in text
 
 
 def test_what_begins_is_not_said_to_act_throughout() -> None:

@@ -9,22 +9,16 @@ import pytest
 
 from diagnosis.errors.evidence import Without
 from diagnosis.errors.kicks import BEFORE
-from diagnosis.errors.likelihood import climbed, maximise
-from diagnosis.errors.model import Errors, calibrated
-from diagnosis.fit.setup import measure
+from diagnosis.errors.model import Errors
 from diagnosis.forces import constancy
-from diagnosis.forces.columns import Forces, forces
+from diagnosis.forces.columns import Forces
 from models.housner.identification import IDENTIFICATION
-from tests.diagnosis.made import SPECIMEN, recording
-
-KINDS = {kind.name: kind for kind in IDENTIFICATION.forces}
+from tests.diagnosis.forces.left import KINDS, about_nothing, with_impacts
 
 
 @pytest.fixture(scope="module")
 def errors() -> tuple[Forces, Errors]:
-    """The base model about two recordings in which nothing is missing, and their errors."""
-    fitted, found = calibrated(SPECIMEN, measure(SPECIMEN, [recording(f"train_{k}", k) for k in (1, 2)]))
-    return forces(fitted), found
+    return about_nothing()
 
 
 @pytest.fixture(scope="module")
@@ -70,19 +64,6 @@ def test_the_two_names_are_one_force(about: Forces) -> None:
     outward = about.column(KINDS["lean"], np.sign(about.motion.coordinate * about.motion.rate))
     sided = about.column(KINDS["coulomb_damping"], np.sign(about.motion.coordinate))
     np.testing.assert_allclose(outward, sided, atol=1e-9 * np.abs(sided).max())
-
-
-def with_impacts(errors: tuple[Forces, Errors], changes: np.ndarray) -> Errors:
-    """The errors estimated from the same residuals with every impact's rate changed by a share, ``changes`` (W, K)."""
-    about, found = errors
-    m = about.fitted.measured
-    moved = m.averaged(np.einsum("wcnk,wk->wcn", found.kicks.columns, changes)) / m.units[:, :, None]
-    pieces = list(found.pieces)
-    for w in range(len(m.windows)):
-        pieces[w] = replace(pieces[w], residual=pieces[w].residual - moved[w].ravel()[m.compared[w].ravel()])
-    theta, weights = climbed(pieces, found.prior, np.maximum(found.theta, 1e-4), found.weights, 0, 6)
-    theta, state = maximise(pieces, found.prior, theta, weights)
-    return replace(found, pieces=tuple(pieces), theta=theta, deviance=state.deviance)
 
 
 def scatter_of(errors: Errors) -> float:
