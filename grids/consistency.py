@@ -92,7 +92,7 @@ def check_laws(options: Mapping[str, str], varied: Collection[str], mechanisms: 
 
     Where a law is an axis (``varied``) its parameters belong to the cells that use it.
     """
-    from models.rubber import LAWS
+    from models.rubber import ELEMENTS
 
     joints = {options.get(f"{joint}_rubber_law", "same") for joint in ("base", "top")}
     overall = options.get("rubber_law", "as_given")
@@ -101,9 +101,9 @@ def check_laws(options: Mapping[str, str], varied: Collection[str], mechanisms: 
     used = {overall if word == "same" else word for word in joints}
     if "as_given" in used or any(name.endswith("rubber_law") for name in varied):
         return
-    for law in LAWS:
-        if law in mechanisms and law not in used:
+    for name, law in ELEMENTS.items():
+        if name in mechanisms and law.kind not in used:
             raise InputError(
-                f"parameters of the rubber law {law} are given, but the law in use is {_listed(sorted(used))}; "
-                f"leave them out, or choose rubber_law = '{law}'."
+                f"parameters of the rubber law {name} are given, but the law in use is {_listed(sorted(used))}; "
+                f"leave them out, or choose rubber_law = '{law.kind}'."
             )

@@ -117,6 +117,8 @@ class Mechanism:
     """The tables whose values its parameters are: files name the table, and a diagnosis does not switch it on."""
     static_test: str = ""
     """A test without shaking that would settle it, as an instruction; empty where there is none."""
+    beside: str = ""
+    """Of a further element of the same kind: the name of the first, beside which a diagnosis tries it."""
 
     def parameter(self, name: str) -> MechanismParameter:
         for parameter in (*self.parameters, *self._of_joints()):

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from diagnosis.fit.linearisation import linearise_about
+from diagnosis.fit.unknowns import clip
+from diagnosis.search.candidates import Candidate
 from diagnosis.search.found import MISSING, Search, adjusted, explains_all
 from diagnosis.search.refit import QUICK, Explanation, again, best_of, extend, joined
 from diagnosis.search.screen import Score, score
@@ -22,6 +25,8 @@ HOPELESS = 8.0
 """Statistic of the strongest further mechanism under which a model that explains all windows is not extended."""
 HEAVY = 5.0
 """Lane-steps of a trial, over those of most mechanisms, from which a mechanism counts as one of many short steps."""
+APART = 3.0
+"""Factor by which the shapes of two elements of a kind differ from those of one where both start."""
 THOROUGH = 2
 POOL_SHARE = 0.25
 """Singles whose gain is this share of the best one's are tried as parts of a pair."""
@@ -41,9 +46,16 @@ def starts_of(entry: Score, scores: Sequence[Score]) -> tuple[FloatArray, ...]:
 
 
 def seconds(found: Search, explanation: Explanation) -> list[Score]:
-    """The screen of mechanisms of other classes beside those of an explanation."""
-    others = [c for c in found.candidates if c.effect_class not in explanation.classes]
+    """The screen of mechanisms of other classes beside those of an explanation, and of further elements of a kind."""
+    others = [c for c in found.candidates if _may_join(c, explanation)]
     return score(linearise_about(explanation.fitted), others, found.not_tried)
+
+
+def _may_join(candidate: Candidate, explanation: Explanation) -> bool:
+    first = candidate.mechanism.beside
+    if first:
+        return first in explanation.names and candidate.name not in explanation.names
+    return candidate.effect_class not in explanation.classes
 
 
 def extended(
@@ -60,6 +72,8 @@ def extended(
     for entry in worth_a_refit(scores, FEWEST_SECOND, SHARE_OF_SECOND)[:SECOND_TRIES]:
         if found.affordable(entry.candidate.name):
             tried = [extend(explanation, entry.candidate, at, QUICK) for at in starts_of(entry, scores)]
+            if entry.candidate.mechanism.beside:
+                tried.append(split(explanation, entry.candidate))
             fits.append(best_of(tried))
     for single in _strong_alone(found, explanation) if widely else ():
         if not found.affordable(*single.names):
@@ -70,6 +84,23 @@ def extended(
             found.not_tried.setdefault(single.names[0], str(refusal))
     fits.sort(key=adjusted)
     return [again(e) if k < THOROUGH else e for k, e in enumerate(fits)]
+
+
+def split(explanation: Explanation, candidate: Candidate) -> Explanation:
+    """Fit with the element that a further one stands beside split in two: half of it each, the shapes moved apart."""
+    f = explanation.fitted
+    first = next(c for c in explanation.candidates if c.name == candidate.mechanism.beside)
+    names, u = [x.name for x in f.misfit.unknowns], f.u.copy()
+    start = candidate.null
+    for k, (own, new) in enumerate(zip(first.unknowns, candidate.unknowns, strict=True)):
+        at = names.index(own.name)
+        if k == 0:
+            u[at] = start[0] = 0.5 * (f.u[at] + start[0])
+        else:
+            value = own.value(float(f.u[at]))
+            u[at], start[k] = own.coordinate(value / APART), new.coordinate(value * APART)
+    apart = replace(explanation, fitted=replace(f, u=clip(f.misfit.unknowns, u)))
+    return extend(apart, candidate, clip(candidate.unknowns, start), QUICK)
 
 
 def _strong_alone(found: Search, explanation: Explanation) -> list[Explanation]:

@@ -97,6 +97,11 @@ def candidates(measured: Measured, specimen: Specimen) -> tuple[Candidate, ...]:
     return tuple(found)
 
 
+def firsts(some: Sequence[Candidate]) -> list[Candidate]:
+    """Without further elements of a kind, which are tried beside the first."""
+    return [candidate for candidate in some if not candidate.mechanism.beside]
+
+
 def reads(mechanism: Mechanism, measured: Measured) -> bool:
     """Whether an instrument does anything to the channels that are compared; mechanisms of the model always may."""
     whole = mechanism.acts.keys() <= {"whole"}

@@ -79,7 +79,7 @@ def drop(found: Search) -> None:
     dropping = True
     while dropping and found.best is not None and len(found.best.candidates) > 1:
         dropping = False
-        for candidate in found.best.candidates:
+        for candidate in found.best.removable:
             rest = without(found.best, candidate)
             if adjusted(rest) - adjusted(found.best) < found.more:
                 found.best, dropping = rest, True
@@ -94,7 +94,7 @@ def _try_others(found: Search, widely: bool) -> None:
     """
     if (best := found.best) is None:
         return
-    for candidate in best.candidates:
+    for candidate in best.removable:
         others = frozenset(best.candidates) - {candidate}
         if others not in found.exchanged and found.affordable(f"others in the place of {candidate.name}"):
             found.exchanged.add(others)

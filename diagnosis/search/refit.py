@@ -49,6 +49,12 @@ class Explanation:
         """Whether an effect does not act always."""
         return any(c.spell is not None for c in self.candidates)
 
+    @property
+    def removable(self) -> tuple[Candidate, ...]:
+        """The candidates beside which no further element of their kind stands."""
+        firsts = {c.mechanism.beside for c in self.candidates}
+        return tuple(c for c in self.candidates if c.name not in firsts)
+
     def part(self, candidate: Candidate) -> FloatArray:
         """Fitted coordinates of one of the candidates."""
         names = [x.name for x in self.fitted.misfit.unknowns]

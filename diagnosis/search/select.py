@@ -15,7 +15,7 @@ from diagnosis.fit.linearisation import Linearisation, linearise_about
 from diagnosis.progress import Progress
 from diagnosis.search.beside import POOL_SHARE, THOROUGH, extended, seconds, starts_of, worth_a_refit
 from diagnosis.search.budget import FURTHER
-from diagnosis.search.candidates import Candidate
+from diagnosis.search.candidates import Candidate, firsts
 from diagnosis.search.exchange import drop, exchanged
 from diagnosis.search.found import GAP, MISSING, Search, adequate, adjusted, survives
 from diagnosis.search.hidden import take_hidden
@@ -107,7 +107,7 @@ def take_best_single(found: Search) -> None:
 
 def _singles(found: Search, progress: Progress) -> None:
     opened = linearise_about(found.base.fitted)
-    found.scores = score(opened, found.candidates, found.not_tried)
+    found.scores = score(opened, firsts(found.candidates), found.not_tried)
     found.null = null_distribution(opened, found.scores)
     fewest = FEWEST_ADEQUATE if adequate(found.base) else FEWEST
     wanted = worth_a_refit(found.scores, fewest, SHARE_OF_FIRST)[:MOST]
@@ -150,15 +150,22 @@ def _singles(found: Search, progress: Progress) -> None:
 
 
 def led_by(found: Search, leader: Explanation) -> bool:
-    """Take the base to the leader's optimum, and all singles with it, if it was stuck; whether it was.
+    """Take the base to the leader's optimum, and the singles with it, if it was stuck; whether it was.
 
     What one mechanism gains by freeing a window that was stuck says nothing for it: all others were fitted from there.
+    Those that a screen of the freed base gives no chance, and that explain no more than it does, stay where they are.
     """
     restarted = from_other(found.base, leader)
     if restarted.loss >= found.base.loss - STUCK:
         return False
     found.base = restarted
-    found.singles = sorted((from_other(single, restarted) for single in found.singles), key=adjusted)
+    scores = score(linearise_about(restarted.fitted), [c for single in found.singles for c in single.candidates])
+    worth = {entry.candidate for entry in worth_a_refit(scores, FEWEST_ADEQUATE, SHARE_OF_FIRST)}
+    led = (
+        from_other(single, restarted) if worth.intersection(single.candidates) or found.gain(single) > 0.0 else single
+        for single in found.singles
+    )
+    found.singles = sorted(led, key=adjusted)
     return True
 
 
@@ -168,7 +175,7 @@ def _hidden_by_errors(found: Search, white: Linearisation, tried: Collection[Can
     Errors about the base model hold part of what is missing: scatter of events much of a wrong law of them. Such a
     mechanism has no score under these errors until it is in.
     """
-    strongest = worth_a_refit(score(white, found.candidates), fewest, SHARE_OF_FIRST)[:fewest]
+    strongest = worth_a_refit(score(white, firsts(found.candidates)), fewest, SHARE_OF_FIRST)[:fewest]
     return [entry for entry in strongest if entry.candidate not in tried]
 
 

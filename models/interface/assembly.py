@@ -131,5 +131,5 @@ def complete(wall: LayeredWall, options: Mapping[str, str]) -> LayeredWall:
     for joint in wall.rubber_joints:
         for law, p in wall.laws_at(joint):
             if refused := law.refusal(p):
-                raise InputError(f"in the {joint} layer {refused}")
+                raise InputError(f"in the {joint} layer {law.name}.{refused}")
     return wall

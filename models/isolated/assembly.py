@@ -10,9 +10,9 @@ from models.base import FloatArray, Values
 from models.errors import InputError
 from models.isolated.chain import Chain
 from models.isolated.declaration import IN_SHEAR, MOST_LEVELS
-from models.rubber import LAWS
+from models.rubber import ELEMENTS
 
-OF_THE_STRAIN = (*(name for name in IN_SHEAR if LAWS[name].of_strain), "payne")
+OF_THE_STRAIN = (*(name for name in IN_SHEAR if ELEMENTS[name].of_strain), "payne")
 
 
 def complaints(values: Values) -> list[str]:
@@ -71,7 +71,7 @@ def complete(chain: Chain, options: Mapping[str, str]) -> Chain:
         raise InputError(f"{strained[0]} is a law of the strain and needs rubber_thickness (m): give it")
     for rubber_law, p in chain.rubber_laws:
         if refused := rubber_law.refusal(p):
-            raise InputError(refused)
+            raise InputError(f"{rubber_law.name}.{refused}")
     law = options["rubber_law"]
     if law == "as_given":
         return chain

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from models.base import FloatArray, Values
 from models.isolated.declaration import IN_SHEAR
-from models.rubber import LAWS
-from models.rubber.base import Numbers, RubberLaw
+from models.rubber import ELEMENTS
+from models.rubber.base import Numbers, RubberLaw, in_sum
 from models.rubber.layer import Layer
 
 
@@ -54,8 +54,8 @@ class Chain:
         return replace(self, laws={**self.laws, **given})
 
     def without_laws(self, but: str) -> Chain:
-        """With no rubber law beside the linear one but ``but``; other mechanisms stay."""
-        dropped = set(IN_SHEAR) - {but}
+        """With no rubber law beside the linear one but the elements of the kind ``but``; other mechanisms stay."""
+        dropped = {name for name in IN_SHEAR if ELEMENTS[name].kind != but}
         return replace(self, laws={k: v for k, v in self.laws.items() if k.partition(".")[0] not in dropped})
 
     def numbers(self, name: str) -> dict[str, FloatArray] | None:
@@ -66,8 +66,8 @@ class Chain:
     @property
     def rubber_laws(self) -> list[tuple[RubberLaw, Numbers]]:
         """The rubber laws beside the linear one with their numbers, in the order of the family."""
-        found = [(LAWS[name], self.numbers(name)) for name in IN_SHEAR]
-        return [(law, numbers) for law, numbers in found if numbers is not None]
+        given = {name: own for name in IN_SHEAR if (own := self.numbers(name)) is not None}
+        return in_sum(ELEMENTS, given)
 
     @property
     def layer(self) -> Layer:

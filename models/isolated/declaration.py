@@ -6,11 +6,11 @@ import numpy as np
 
 from models.base import Parameter, Quantity
 from models.peaks import AT_SAMPLES
-from models.rubber import LAWS
+from models.rubber import ELEMENTS, LAWS
 
 MOST_LEVELS = 12
 """Longest chain."""
-IN_SHEAR = tuple(name for name, law in LAWS.items() if "isolated" in law.mechanism.acts)
+IN_SHEAR = tuple(name for name, law in ELEMENTS.items() if "isolated" in law.mechanism.acts)
 """Rubber laws that act in shear; a set has a direction, which both ways of shear have not."""
 MODES = 4
 """Modes that a cube tells of."""
@@ -54,7 +54,9 @@ PARAMETERS = (
 
 ALTERNATIVES = ((("total_mass",), ("level_mass_1",)),)
 
-OPTIONS: dict[str, tuple[str, ...]] = {"rubber_law": ("as_given", "linear", *IN_SHEAR)}
+OPTIONS: dict[str, tuple[str, ...]] = {
+    "rubber_law": ("as_given", "linear", *(name for name in IN_SHEAR if name in LAWS))
+}
 
 CALM = 1e-6
 """At rest: kinetic energy below this share of its peak for one first period, after the shaking."""

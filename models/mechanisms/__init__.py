@@ -35,7 +35,7 @@ from models.mechanisms import (
     viscous_damping,
     wall_flexibility,
 )
-from models.rubber import LAWS
+from models.rubber import ELEMENTS
 
 MECHANISMS: tuple[Mechanism, ...] = (
     vertical_acceleration.MECHANISM,
@@ -61,7 +61,7 @@ MECHANISMS: tuple[Mechanism, ...] = (
     quadratic_damping.MECHANISM,
     degradation.MECHANISM,
     degradation.OF_RUBBER,
-    *(law.mechanism for law in LAWS.values()),
+    *(law.mechanism for law in ELEMENTS.values()),
     payne.MECHANISM,
     interface_shear.MECHANISM,
     bonded_layer.MECHANISM,

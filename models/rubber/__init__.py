@@ -9,9 +9,14 @@ the total is clipped at zero under dashpot law B. Over an open fibre u = 0 and i
 from __future__ import annotations
 
 from models.rubber import bouc_wen, hardening, locking, maxwell, mullins, permanent_set
-from models.rubber.base import RubberLaw
+from models.rubber.base import RubberLaw, further
 
 LAWS: dict[str, RubberLaw] = {
     module.LAW.name: module.LAW for module in (hardening, locking, maxwell, bouc_wen, mullins, permanent_set)
 }
 """The laws that differ from the linear one."""
+ELEMENTS: dict[str, RubberLaw] = {
+    **LAWS,
+    **{again.name: again for again in (further(LAWS[name], ("isolated",)) for name in ("maxwell", "bouc_wen"))},
+}
+"""The same with a second element of those that are sums in the literature: arms that relax, hysteretic elements."""

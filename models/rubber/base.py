@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any, Literal, Protocol, Self
 
@@ -62,6 +62,11 @@ def unlimited(p: Numbers) -> FloatArray:
     return np.full(np.shape(p["thickness"]), np.inf)
 
 
+def everything(p: Numbers) -> FloatArray:
+    """One."""
+    return np.ones(np.shape(p["stiffness"]))
+
+
 def resting(p: Numbers, u: FloatArray) -> tuple[NDArray[np.bool_], str]:
     """Nowhere restless."""
     return np.zeros(u.shape, np.bool_), ""
@@ -82,8 +87,10 @@ class RubberLaw:
     ``update(u, change, h, *numbers)``: h, effect and slope of one fibre at the end of a step over which u has
     grown by ``change`` (``_`` where the law does not look at it) to u; plain floats, without branches.
     ``limit(p)``: compression (m) that the layer cannot reach; a run that passes it is taken again in finer steps.
-    ``of_strain``: whether the rubber's thickness enters. ``refusal(p)``: what is wrong with the numbers, or "".
+    ``of_strain``: whether the rubber's thickness enters. ``refusal(p)``: what is wrong with the numbers,
+    after the name of the law and a point, or "".
     ``restless(p, u)``: where the law never comes to rest at u, and a sentence about the worst such place.
+    ``left(p)``: share of the stiffness k that it leaves to further elements of its kind.
     """
 
     mechanism: Mechanism
@@ -102,10 +109,16 @@ class RubberLaw:
     of_strain: bool = False
     refusal: Callable[[Numbers], str] = accepted
     restless: Callable[[Numbers, FloatArray], tuple[NDArray[np.bool_], str]] = resting
+    left: Callable[[Numbers], FloatArray] = everything
 
     @property
     def name(self) -> str:
         return self.mechanism.name
+
+    @property
+    def kind(self) -> str:
+        """The name of the law, or of the first element of its kind."""
+        return self.mechanism.beside or self.name
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -121,3 +134,33 @@ class RubberLaw:
     def wanted(self) -> tuple[str, ...]:
         """Names of the numbers that ``update`` takes, in its order: the rows of the kernels' tables."""
         return tuple(inspect.signature(self.update).parameters)[3:]
+
+
+def further(law: RubberLaw, models: Sequence[str]) -> RubberLaw:
+    """The same law once more, on these models: the second element of a sum of such, named with a 2.
+
+    Its stiffness k is what `RubberLaw.left` says of the first.
+    """
+    first, name = law.mechanism, f"{law.name}_2"
+    again = replace(
+        first,
+        name=name,
+        acts={model: partial(with_law, name=name) for model in models},
+        equation=f"a second element beside {first.name}: {first.equation}",
+        sentence=f"a second element: {first.sentence}",
+        at_joints=(),
+        beside=first.name,
+    )
+    return replace(law, mechanism=again)
+
+
+def in_sum(laws: Mapping[str, RubberLaw], given: Mapping[str, Numbers]) -> list[tuple[RubberLaw, Numbers]]:
+    """Those of the ``laws`` that are ``given`` numbers, in their order, each element with the stiffness left to it."""
+    found = []
+    for name, law in laws.items():
+        if name in given:
+            p, first = given[name], given.get(law.mechanism.beside)
+            if first is not None:
+                p = {**p, "stiffness": p["stiffness"] * law.left(first)}
+            found.append((law, p))
+    return found

@@ -60,9 +60,13 @@ def turned(u: FloatArray, rest: FloatArray, p: Numbers) -> FloatArray:
     return np.where(u > rest, relaxed(u, p), down)
 
 
+def left(p: Numbers) -> FloatArray:
+    return p["post_yield_ratio"]
+
+
 def refusal(p: Numbers) -> str:
     odd = p["exponent"][~np.isin(p["exponent"], EXPONENTS)]
-    return f"bouc_wen.exponent is {odd.flat[0]:g}; give 1, 2, 3 or 4" if odd.size else ""
+    return f"exponent is {odd.flat[0]:g}; give 1, 2, 3 or 4" if odd.size else ""
 
 
 def numbers(p: Numbers, step: FloatArray) -> Numbers:
@@ -112,4 +116,5 @@ LAW = RubberLaw(
         source="Wen (J. Eng. Mech. Div. 102, 1976): models/rubber/bouc_wen.py",
     ),
     "adds", effect, numbers, update, energy=energy, rate=rate, relaxed=relaxed, turned=turned, refusal=refusal,
+    left=left,
 )  # fmt: skip

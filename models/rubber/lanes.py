@@ -14,14 +14,14 @@ import numpy as np
 
 from models.base import FloatArray
 from models.lanes.compiler import inlined
-from models.rubber import LAWS
+from models.rubber import ELEMENTS
 from models.rubber.base import Numbers, RubberLaw
 from models.rubber.layer import Hidden
 
 Table = Any
 Given = Sequence[tuple[RubberLaw, Numbers]]
 
-ORDER = tuple(law for role in ("shifts", "adds", "softens") for law in LAWS.values() if law.role == role)
+ORDER = tuple(law for role in ("shifts", "adds", "softens") for law in ELEMENTS.values() if law.role == role)
 HIDDEN_ROW = {law.name: row for row, law in enumerate(law for law in ORDER if law.hidden)}
 N_HIDDEN = len(HIDDEN_ROW)
 _ENDS = np.cumsum([0, *(len(law.wanted) for law in ORDER)]).tolist()

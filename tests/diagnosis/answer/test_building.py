@@ -49,6 +49,22 @@ def test_nothing_is_named_where_nothing_is_missing() -> None:
 
 
 @pytest.mark.slow
+def test_a_sum_of_two_hysteretic_elements_is_told_from_one() -> None:
+    """One yields early, one late: the stiffness that is left after both is .6 times .4 of the first."""
+    laws = {
+        "bouc_wen.post_yield_ratio": 0.6, "bouc_wen.yield_compression": 0.002, "bouc_wen.exponent": 1.0,
+        "bouc_wen_2.post_yield_ratio": 0.4, "bouc_wen_2.yield_compression": 0.03, "bouc_wen_2.exponent": 2.0,
+    }  # fmt: skip
+    found = answer(**laws)
+    assert found.verdict == "missing" and {e.name for e in found.effects} == {"bouc_wen", "bouc_wen_2"}
+    ratios = [e.parameters["post_yield_ratio"].estimate for e in found.effects]
+    early, late = sorted(e.parameters["yield_compression"].estimate for e in found.effects)
+    assert np.prod(ratios) == pytest.approx(0.24, rel=0.05)
+    assert early == pytest.approx(0.002, rel=0.2) and late == pytest.approx(0.03, rel=0.1)
+    assert found.holdout is not None and found.holdout.share_of_achievable > 0.95
+
+
+@pytest.mark.slow
 def test_hysteresis_is_named_and_predicts_a_larger_run() -> None:
     laws = {"bouc_wen.post_yield_ratio": 0.4, "bouc_wen.yield_compression": 0.008, "bouc_wen.exponent": 1.0}
     found = answer(**laws)

@@ -17,17 +17,27 @@ LAWS = {
     "hardening": {"hardening.beta2": 0.3},
     "locking": {"locking.lock_strain": 3.0},
     "maxwell": {"maxwell.arm_stiffness_ratio": 0.6, "maxwell.relaxation_time": 0.08},
-    "bouc_wen_1": {"bouc_wen.post_yield_ratio": 0.2, "bouc_wen.yield_compression": 0.01, "bouc_wen.exponent": 1.0},
-    "bouc_wen_2": {"bouc_wen.post_yield_ratio": 0.2, "bouc_wen.yield_compression": 0.01, "bouc_wen.exponent": 2.0},
+    "bouc_wen, n 1": {"bouc_wen.post_yield_ratio": 0.2, "bouc_wen.yield_compression": 0.01, "bouc_wen.exponent": 1.0},
+    "bouc_wen, n 2": {"bouc_wen.post_yield_ratio": 0.2, "bouc_wen.yield_compression": 0.01, "bouc_wen.exponent": 2.0},
+    "two arms": {
+        "maxwell.arm_stiffness_ratio": 0.6, "maxwell.relaxation_time": 0.08,
+        "maxwell_2.arm_stiffness_ratio": 0.4, "maxwell_2.relaxation_time": 0.4,
+    },
+    "two yields": {
+        "bouc_wen.post_yield_ratio": 0.5, "bouc_wen.yield_compression": 0.004, "bouc_wen.exponent": 1.0,
+        "bouc_wen_2.post_yield_ratio": 0.3, "bouc_wen_2.yield_compression": 0.03, "bouc_wen_2.exponent": 2.0,
+    },
     "mullins": {"mullins.softening": 0.5, "mullins.strain": 0.5},
     "payne": {"payne.softening": 0.5, "payne.strain": 0.5},
     "degradation": {"degradation.final_loss": 0.6, "degradation.cycles": 3.0},
-}
+}  # fmt: skip
 NULLS = {
     "hardening": {"hardening.beta2": 0.0},
     "locking": {"locking.lock_strain": np.inf},
     "maxwell": {"maxwell.arm_stiffness_ratio": 0.0},
     "bouc_wen": {"bouc_wen.post_yield_ratio": 1.0},
+    "maxwell_2": {"maxwell_2.arm_stiffness_ratio": 0.0},
+    "bouc_wen_2": {"bouc_wen_2.post_yield_ratio": 1.0},
     "mullins": {"mullins.softening": 0.0},
     "payne": {"payne.softening": 0.0},
     "degradation": {"degradation.final_loss": 0.0},

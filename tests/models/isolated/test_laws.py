@@ -95,7 +95,7 @@ def closed_form_zeta(u: np.ndarray, turned: np.ndarray, limit: float, n: int) ->
 
 @pytest.mark.parametrize("n", [1, 2])
 def test_bouc_wen_loops_follow_their_closed_forms(n: int) -> None:
-    values = {**BODY, **LAWS[f"bouc_wen_{n}"]}
+    values = {**BODY, **LAWS[f"bouc_wen, n {n}"]}
     step = 0.001
     shaking = two_tones(step=step)
     outcome = MODEL.simulate(values, shaking).channels
