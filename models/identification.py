@@ -148,12 +148,13 @@ class Port:
     """Where a force that a model lacks may act on it.
 
     ``coordinate``: what the force works along, from the observables of a run; positive to the right. ``jumps``: changes
-    of the states' rates (by name) by a unit impulse that resists the coordinate, from the coefficients of one wall.
+    of the states' rates (by name) by a unit impulse that resists the coordinate, from the coefficients of one wall and
+    the states at that moment, arrays by name; arrays like these, or one number for all moments.
     """
 
     name: str
     coordinate: Callable[[Mapping[str, FloatArray]], FloatArray]
-    jumps: Callable[[Any], Mapping[str, float]]
+    jumps: Callable[[Any, Mapping[str, FloatArray]], Mapping[str, float | FloatArray]]
 
 
 @dataclass(frozen=True)

@@ -34,14 +34,18 @@ class Impulses:
     values: Mapping[str, FloatArray]
 
 
-def jumps_at(along: Along, ports: Sequence[Port]) -> dict[str, dict[str, float]]:
-    """By port, by how much an impulse of one changes the free rates; ports that move nothing are left out."""
+def jumps_at(along: Along, ports: Sequence[Port]) -> dict[str, dict[str, FloatArray]]:
+    """By port, by how much an impulse of one changes the free rates (W, N); ports that move nothing are left out."""
     m = along.predictor.measured
     wall = m.model.build(without_instruments(along.point.values), along.predictor.options)
-    every = {port.name: port.jumps(wall) for port in ports}
+    at = {name: along.states[name] for name in m.free}
+    shape = m.values.shape[::2]
     # a state that follows another one jumps with it
-    own = {name: {rate: jump for rate, jump in rates.items() if rate in m.free} for name, rates in every.items()}
-    return {name: rates for name, rates in own.items() if any(rates.values())}
+    own = {
+        port.name: {rate: np.broadcast_to(jump, shape) for rate, jump in port.jumps(wall, at).items() if rate in m.free}
+        for port in ports
+    }
+    return {name: rates for name, rates in own.items() if any(np.any(jump) for jump in rates.values())}
 
 
 def impulses(along: Along, ports: Sequence[Port]) -> Impulses:
@@ -63,7 +67,7 @@ def impulses(along: Along, ports: Sequence[Port]) -> Impulses:
         for name, rates in jumps.items():
             changed = {key: np.concatenate([x, x]) for key, x in start.items()}
             for rate, jump in rates.items():
-                step_of = size[name] * jump * np.ones(window.size)
+                step_of = size[name] * jump[window, sample]
                 changed[rate] = changed[rate] + np.concatenate([step_of, -step_of])
             both, since = np.tile(window, 2), np.tile(sample, 2)
             ran = along.run(r, m.first[both] + since, m.values.shape[2], changed)
@@ -72,7 +76,7 @@ def impulses(along: Along, ports: Sequence[Port]) -> Impulses:
     return Impulses(offset, found)
 
 
-def _largest(along: Along, rates: Mapping[str, float]) -> float:
-    """The impulse that changes a rate by its largest value along the motion."""
-    each = [np.max(np.abs(along.states[name])) / abs(jump) for name, jump in rates.items() if jump]
+def _largest(along: Along, rates: Mapping[str, FloatArray]) -> float:
+    """The impulse that changes a rate by its largest value along the motion, where it changes it most."""
+    each = [np.max(np.abs(along.states[name])) / np.max(np.abs(jump)) for name, jump in rates.items() if np.any(jump)]
     return float(max(min(each), 1e-9))

@@ -17,7 +17,7 @@ from models.identification import (
 )
 from models.unknown_forces import DEPENDENCES, PHASES, couples, over_largest_base
 
-BASE = Port("base", lambda seen: seen["rotation_1"], lambda block: {"rotation_rate_1": -1.0})
+BASE = Port("base", lambda seen: seen["rotation_1"], lambda block, at: {"rotation_rate_1": -1.0})
 """A couple between block and base, over the moment of inertia about the corner."""
 FORCES = (
     Force("restitution", "loss of velocity at impacts", BASE, None, event="impact"),

@@ -42,9 +42,9 @@ def _on_the_block(wall: LayeredWall) -> dict[str, float]:
     return _jumps(wall, height, float(wall.centre_2.item()))
 
 
-BASE = Port("base", lambda seen: seen["rotation_1"], lambda wall: _jumps(wall, 1.0, 0.0))
-TOP = Port("top", lambda seen: seen["rotation_2"] - seen["rotation_1"], lambda wall: _jumps(wall, -1.0, 1.0))
-BLOCK = Port("block", lambda seen: seen["displacement_2_x"], _on_the_block)
+BASE = Port("base", lambda seen: seen["rotation_1"], lambda wall, at: _jumps(wall, 1.0, 0.0))
+TOP = Port("top", lambda seen: seen["rotation_2"] - seen["rotation_1"], lambda wall, at: _jumps(wall, -1.0, 1.0))
+BLOCK = Port("block", lambda seen: seen["displacement_2_x"], lambda wall, at: _on_the_block(wall))
 """A couple in either joint (N m s), a horizontal force on the upper block (N s)."""
 
 

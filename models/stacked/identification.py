@@ -1,12 +1,19 @@
-"""What a diagnosis needs to know of two stacked blocks: both rotations lead and are measured.
-
-Forces outside the library are not declared: which bodies an impulse at a joint moves depends on which joints are open.
-"""
+"""What a diagnosis needs to know of two stacked blocks: both rotations lead and are measured."""
 
 from __future__ import annotations
 
-from models.identification import Identification, Lead, State, WindowLengths
+from models.identification import Force, Identification, Lead, State, WindowLengths
 from models.stacked.ladder import LADDER
+from models.stacked.ports import BASE, BLOCK, TOP
+from models.unknown_forces import DEPENDENCES, PHASES, couples, over_largest_base, over_largest_rate, over_reach
+
+FORCES = (
+    *couples(BASE, where=" in the base"),
+    *couples(TOP, "_top", " in the top joint"),
+    Force("viscous_damping_block", "force on the upper block with its velocity", BLOCK, over_largest_rate),
+    Force("stiffness_block", "force on the upper block with its displacement", BLOCK, over_reach),
+    Force("base_motion", "force on the upper block with the base acceleration", BLOCK, over_largest_base),
+)
 
 IDENTIFICATION = Identification(
     leads=(Lead("rotation_1", 1, "base"), Lead("rotation_2", 2, "top")),
@@ -20,5 +27,8 @@ IDENTIFICATION = Identification(
         shortest=1.0, aim=2.0, longest=2.8, quiet=1.2, smoothing=0.17, unit=lambda d: 1.0 / d["frequency_parameter"]
     ),
     chaotic=True,
+    forces=FORCES,
+    dependences=DEPENDENCES,
+    phases=PHASES,
     ladder=LADDER,
 )
