@@ -6,7 +6,7 @@ there. What counts is in `diagnosis.search.found`.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from diagnosis.search.candidates import Candidate, firsts
 from diagnosis.search.exchange import drop, exchanged
 from diagnosis.search.found import GAP, MISSING, Search, adequate, adjusted, survives
 from diagnosis.search.hidden import take_hidden
+from diagnosis.search.left_out import predicts_worse
 from diagnosis.search.null import null_distribution
 from diagnosis.search.outside import outside
 from diagnosis.search.refit import (
@@ -239,12 +240,27 @@ def _more(found: Search, progress: Progress) -> None:
         if not further:
             return
         found.tried += further
-        best = min(further, key=adjusted)
-        if adjusted(found.best) - adjusted(best) < found.more or not survives(found.best, best, found.more):
+        best = _next(found, found.best, further)
+        if best is None:
             return
         found.best = best
         weigh_again(found)
         exchanged(found, progress)
+
+
+def _next(found: Search, before: Explanation, further: Sequence[Explanation]) -> Explanation | None:
+    """The likeliest with one more effect, if it counts.
+
+    Where no model explains everything, what they all get wrong is part of what is weighed: then one that predicts
+    recordings worse that are left out in turn is passed over.
+    """
+    incomplete = found.incomplete
+    for one in sorted(further, key=adjusted):
+        if adjusted(before) - adjusted(one) < found.more or not survives(before, one, found.more):
+            return None
+        if not (incomplete and predicts_worse(before, one)):
+            return one
+    return None
 
 
 def settle_ties(found: Search) -> None:

@@ -1,0 +1,43 @@
+"""A further effect: where no model explains everything, one that predicts recordings left out worse is passed over."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from diagnosis.search import select
+
+
+def fit(loss: float) -> Any:
+    return SimpleNamespace(loss=loss, candidates=())
+
+
+def search(incomplete: bool) -> Any:
+    return SimpleNamespace(incomplete=incomplete, more=20.0)
+
+
+@pytest.fixture(autouse=True)
+def all_survive(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(select, "survives", lambda before, after, more: True)
+
+
+def test_the_likeliest_that_does_not_predict_worse_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    before, likely, next_one = fit(200.0), fit(100.0), fit(150.0)
+    monkeypatch.setattr(select, "predicts_worse", lambda one, other: other is likely)
+    assert select._next(search(True), before, [next_one, likely]) is next_one
+    assert select._next(search(True), before, [likely]) is None
+
+
+def test_where_the_model_explains_all_but_noise_the_likelihood_decides(monkeypatch: pytest.MonkeyPatch) -> None:
+    before, likely = fit(200.0), fit(100.0)
+    monkeypatch.setattr(select, "predicts_worse", lambda one, other: True)
+    assert select._next(search(False), before, [likely]) is likely
+
+
+def test_what_gains_too_little_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(select, "predicts_worse", lambda one, other: False)
+    assert select._next(search(True), fit(200.0), [fit(190.0)]) is None
+    monkeypatch.setattr(select, "survives", lambda before, after, more: False)
+    assert select._next(search(True), fit(200.0), [fit(100.0)]) is None
