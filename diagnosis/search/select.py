@@ -80,7 +80,7 @@ def further_effects(found: Search, progress: Progress) -> Iterator[Search]:
     """The same with a second and a third mechanism beside the first; the last one is the answer."""
     if found.best is None or found.best.in_spell:
         return
-    with found.work_of_its_own(FURTHER):
+    with found.work_of_its_own(FURTHER * found.measured.identification.further_work):
         _pairs(found, progress)
         yield found
         if found.outside is None:

@@ -22,5 +22,6 @@ IDENTIFICATION = Identification(
         integrals=(("level_displacement_x", "level_acceleration_x"),),
     ),
     most_effects=4,
+    further_work=4.0,
     speed=10.0,
 )
