@@ -32,7 +32,7 @@ def varying(forces: Forces, errors: Errors) -> list[Tested]:
         return found
     for kind in forces.kinds:
         column = forces.predicted(kind)
-        if not column.any():
+        if not column.any():  # nothing of this kind happens
             continue
         without = Without.estimated(errors, forces.fitted.measured, column[..., None])
         found.append(Tested(kind.name, WINDOW, without.from_window_to_window(column)))
@@ -43,5 +43,5 @@ def _wears(fitted: Fitted) -> bool:
     """Whether what came before a window changes what is predicted in it."""
     m, point = fitted.measured, fitted.point
     blank = replace(m, memory={name: np.zeros_like(values) for name, values in m.memory.items()})
-    fresh = replace(fitted.misfit.predictor, measured=blank).predict([point])
-    return bool(np.any((fresh != fitted.misfit.predictor.predict([point]))[:, m.mask]))
+    fresh, worn = (replace(fitted.misfit.predictor, measured=one).predict([point])[0] for one in (blank, m))
+    return not np.array_equal(fresh[m.mask], worn[m.mask], equal_nan=True)
