@@ -121,6 +121,13 @@ def test_a_held_out_recording_without_noise_is_not_measured_by_it() -> None:
     assert "noise allows" not in text and "94% of it" in text and "no noise of their own" in text
 
 
+def test_where_a_model_declares_no_ports_laws_outside_are_said_not_to_be_tested_for() -> None:
+    said_so = "Laws outside the library are not tested for"
+    found = answer("nothing_missing")
+    assert said_so in statement(found, models.get("isolated"))
+    assert not any(said_so in statement(found, models.get(name)) for name in ("housner", "stacked", "interface"))
+
+
 def test_a_dependence_says_on_which_side() -> None:
     rubs = Constancy("coulomb_damping", "side", 40.0, "for theta < 0, to the left")
     text = said("not_in_library", constancy=(rubs,))

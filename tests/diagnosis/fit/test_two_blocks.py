@@ -9,14 +9,12 @@ import numpy as np
 
 import models
 from diagnosis import calibrate
-from diagnosis.answer.statement import statement
 from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.setup import measure
 from diagnosis.search.candidates import candidates
 from grids.recordings.base import Recording
 from grids.specimen import Specimen
 from tests.diagnosis.made import TIME_STEP, motion
-from tests.diagnosis.report.example import diagnosis
 
 REST = {"wall_mass": 800.0, "top_mass": 400.0, "top_length": 0.6, "top_height": 0.5}
 TRUE = {"wall_length": 0.602, "wall_height": 1.995, **REST}
@@ -76,9 +74,3 @@ def test_a_mechanism_may_act_at_one_joint_and_both_are_the_plain_one() -> None:
     none, both, base, each = Predictor(measured).predict(points)
     np.testing.assert_array_equal(both, each)
     assert np.max(np.abs(base - none)) > 1e-4
-
-
-def test_the_statement_says_that_laws_outside_the_library_are_not_tested_for() -> None:
-    said = "Laws outside the library are not tested for"
-    assert said in statement(diagnosis("nothing_missing"), models.get("stacked"))
-    assert said not in statement(diagnosis("nothing_missing"), models.get("housner"))
