@@ -23,7 +23,7 @@ from diagnosis.answer.statement import statement
 from diagnosis.answer.when import stages_of
 from diagnosis.answer.whole_runs import with_runs_from_rest
 from diagnosis.data.measured import Measured
-from diagnosis.errors.model import calibrated
+from diagnosis.errors.model import Errors, calibrated, estimate
 from diagnosis.errors.summary import summary
 from diagnosis.fit.channels import added_by_channels
 from diagnosis.fit.intervals import Estimate, settled
@@ -133,9 +133,10 @@ def _assemble(
     if found.blow is not None:
         flagged = (found.blow, *flagged)
     if measured.identification.forces and not flagged and not unexplained:
-        flagged = flags(
-            about, stages.optional("whether it changes", lambda: varying(about, found.errors), list), found.more
+        changing: list[Tested] = stages.optional(
+            "whether it changes", lambda: varying(about, about_the_fit(found)), list
         )
+        flagged = flags(about, changing, found.more)
     near = rivals(found)
     progress("stating the errors", 0.87)
     errors = stages.needed(lambda: summary(found.errors, measured))
@@ -254,6 +255,11 @@ def _assemble(
         suspicions={r.name: r.suspicions for s in shown for r in s.measured.recordings if r.suspicions},
     )
     return replace(answer, skipped=tuple(stages.skipped) if finished else ())
+
+
+def about_the_fit(found: Search) -> Errors:
+    """The errors estimated anew about what was found: it may have gone on since they were."""
+    return estimate(found.chosen.fitted, found.errors.base, found.errors)
 
 
 def known_instruments(specimen: Specimen) -> dict[str, Mapping[str, float]]:

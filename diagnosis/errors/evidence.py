@@ -49,9 +49,9 @@ class Without:
     state: State
 
     @classmethod
-    def estimated(cls, errors: Errors, measured: Measured, beside: FloatArray) -> Without:
-        """The variances estimated anew, the smooth error of the model left out."""
-        smooth = np.array([c.kind == "inadequacy" for c in errors.components])
+    def estimated(cls, errors: Errors, measured: Measured, beside: FloatArray, smooth_error: bool = False) -> Without:
+        """The variances estimated anew, the smooth error of the model left out unless it is asked for."""
+        smooth = np.array([c.kind == "inadequacy" and not smooth_error for c in errors.components])
         alone = [piece.holding(smooth, 0.0) for piece in errors.pieces]
         pieces = _with(alone, measured, beside)
         prior = _wider(errors.prior.without(smooth), beside.shape[-1])
@@ -71,8 +71,9 @@ class Without:
         return Evidence(gain, -float(found.estimate[last]), each[: len(self.measured.windows)])
 
     def from_window_to_window(self, column: FloatArray) -> float:
-        """Gain by a random share of a ``column`` (W, C, N) in each window, without the window that adds most.
+        """Gain by a random share of a ``column`` (W, C, N) in each window, without the one that adds most or is worst.
 
+        One window that is badly off makes the errors of all look large; with a share of its own all would gain.
         The column itself is ``beside``: what is the same in all windows is no part of it.
         """
         shares = _columns(self.measured, column[..., None])
@@ -86,9 +87,17 @@ class Without:
         theta = np.append(self.theta, 0.0)
         if evaluate(pieces, prior, theta, self.weights).slope[-1] >= 0.0:
             return 0.0
-        _, found = maximise(pieces, prior, theta, self.weights)
+        theta, found = maximise(pieces, prior, theta, self.weights)
         each = self.state.determinants - found.determinants + self.weights * (self.state.chi2 - found.chi2)
-        return self.state.deviance - found.deviance - max(float(each[: len(shares)].max()), 0.0)
+        count = len(shares)
+        worst = self.state.chi2[:count] / [piece.residual.size for piece in pieces[:count]]
+        gains = []
+        for left_out in {int(np.argmax(each[:count])), int(np.argmax(worst))}:
+            rest = [k for k in range(len(pieces)) if k != left_out]
+            _, without = maximise([self.pieces[k] for k in rest], self.prior, self.theta, self.weights[rest])
+            _, shared = maximise([pieces[k] for k in rest], prior, theta, self.weights[rest])
+            gains.append(without.deviance - shared.deviance)
+        return min(gains)
 
 
 def _columns(measured: Measured, columns: FloatArray) -> list[FloatArray]:

@@ -3,7 +3,8 @@
 A loss that comes and goes, a dashpot that works now and then: each window gets a share of its own of the force, random
 with variance tau^2 about the same one for all. The test is what the restricted likelihood gains by tau^2, the other
 variances estimated anew (`diagnosis.errors.evidence`): the scatter of single events is among them, so what is seen is
-that the events of one window err alike. Without such a change the gain is half a chi-squared with one degree of
+that the events of one window err alike; and the smooth error of the model, whose size is judged by itself: shares that
+differ from window to window would stand for it. Without such a change the gain is half a chi-squared with one degree of
 freedom, half zero (Self and Liang, J. Am. Stat. Assoc. 82, 1987).
 """
 
@@ -23,7 +24,7 @@ WINDOW = "window"
 
 
 def varying(forces: Forces, errors: Errors) -> list[Tested]:
-    """One test a kind of force, strongest first; ``errors``: estimated about the fit of the forces.
+    """One test a kind of force, strongest first; ``errors``: those estimated about the fit of the forces itself.
 
     None about a law that wears: it changes from window to window itself, by counts of events not known exactly.
     """
@@ -34,7 +35,7 @@ def varying(forces: Forces, errors: Errors) -> list[Tested]:
         column = forces.predicted(kind)
         if not column.any():  # nothing of this kind happens
             continue
-        without = Without.estimated(errors, forces.fitted.measured, column[..., None])
+        without = Without.estimated(errors, forces.fitted.measured, column[..., None], smooth_error=True)
         found.append(Tested(kind.name, WINDOW, without.from_window_to_window(column)))
     return sorted(found, key=lambda t: -t.statistic)
 
