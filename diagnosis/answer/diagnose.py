@@ -134,7 +134,7 @@ def _assemble(
         flagged = (found.blow, *flagged)
     if measured.identification.forces and not flagged and not unexplained:
         changing: list[Tested] = stages.optional(
-            "whether it changes", lambda: varying(about, about_the_fit(found)), list
+            "whether it changes", lambda: varying(about, _about_the_fit(found)), list
         )
         flagged = flags(about, changing, found.more)
     near = rivals(found)
@@ -257,7 +257,7 @@ def _assemble(
     return replace(answer, skipped=tuple(stages.skipped) if finished else ())
 
 
-def about_the_fit(found: Search) -> Errors:
+def _about_the_fit(found: Search) -> Errors:
     """The errors estimated anew about what was found: it may have gone on since they were."""
     return estimate(found.chosen.fitted, found.errors.base, found.errors)
 

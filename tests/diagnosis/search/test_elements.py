@@ -10,6 +10,7 @@ import pytest
 
 from diagnosis.errors.model import calibrated
 from diagnosis.fit.setup import measure
+from diagnosis.search import exchange
 from diagnosis.search.beside import seconds, split
 from diagnosis.search.candidates import Candidate, candidates, firsts
 from diagnosis.search.found import Search
@@ -65,3 +66,16 @@ def test_the_first_stays_while_a_further_one_stands_beside_it() -> None:
     _, explained, second = beside_the_first()
     both = replace(explained, candidates=(*explained.candidates, second))
     assert both.removable == (second,) and explained.removable == explained.candidates
+
+
+def test_what_is_dropped_to_see_whether_it_is_needed_is_never_the_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    found, explained, second = beside_the_first()
+    asked: list[str] = []
+
+    def left_out(explanation: Explanation, candidate: Candidate) -> Explanation:
+        asked.append(candidate.name)
+        return replace(explanation, fitted=replace(explanation.fitted, loss=explanation.loss + 1e6))
+
+    monkeypatch.setattr(exchange, "without", left_out)
+    exchange.drop(replace(found, best=replace(explained, candidates=(*explained.candidates, second))))
+    assert asked == ["bouc_wen_2"]
