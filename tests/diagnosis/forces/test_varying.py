@@ -53,7 +53,7 @@ def test_one_window_that_is_badly_off_is_none(errors: tuple[Forces, Errors]) -> 
     """All others gain where a share of its own takes what made the errors look large."""
     about, _ = errors
     one = np.broadcast_to((np.arange(shape_of(errors)[0]) == 4)[:, None], about.time.shape).astype(float)
-    size = 60.0 / np.sqrt(about.screen.product(about.column(KINDS["contact"]), about.column(KINDS["contact"])))
+    size = 200.0 / np.sqrt(about.screen.product(about.column(KINDS["contact"]), about.column(KINDS["contact"])))
     assert max(strongest(about, with_residual(errors, size * about.predicted(KINDS["contact"], one))).values()) < 5.0
 
 
