@@ -276,11 +276,10 @@ def _estimates(
     """
     if progress:
         progress("intervals", 0.9)
-    named = [x.name for c in chosen.candidates for x in c.unknowns[:1]]
-    shapes = [x.name for c in chosen.candidates for x in c.unknowns[1:]]
-    fitted, values = settled(chosen.fitted, named, shapes) if progress else settled(chosen.fitted, ())
+    named = [x.name for c in chosen.candidates for x in c.unknowns]
+    fitted, values = settled(chosen.fitted, named if progress else ())
     chosen = replace(chosen, fitted=fitted)
-    values, whole = widened(values, chosen, found.tried), held_numbers(chosen, found.tried)
+    values, whole = widened(values, chosen, found), held_numbers(chosen, found.tried)
     chances = p_of_effects(found, gains, chosen.candidates)
     if len(chances) == 1 and p_missing is not None:  # of the one effect it may be the bootstrap's
         chances = [p_missing]

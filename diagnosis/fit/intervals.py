@@ -5,9 +5,10 @@ With the Gauss-Newton Hessian H and the windows' scores s_w (states eliminated) 
     V = H^-1 (sum_w s_w s_w' W/(W - k) + P) H^-1,      P the priors' part of H,
 
 which stays right when residuals within a window are correlated or the noise level is off; the larger
-of V and H^-1 is taken. The profile raises the loss by 3.84 V/H^-1 on either side, so a curved loss
-gives a lopsided interval; a parameter that shapes an effect has one where its symmetric interval is
-wide. Where a profile falls under the optimum the fit goes on from there (`settled`).
+of V and H^-1 is taken. Errors of the count of events before the windows (`diagnosis.fit.miscounts`), columns c of unit
+variance, move the estimates by -H^-1 J'c each, and V has that times its transpose too. The profile raises the loss by
+3.84 V/H^-1 on either side, so a curved loss gives a lopsided interval, and one that goes flat (a floor that is no
+longer reached) an open one. Where a profile falls under the optimum the fit goes on from there (`settled`).
 
 Where a fit works with another coordinate c than the model's own parameter x (`Identification.coordinates`: the slope of
 a layer under its load beside its stiffness), x depends on the other unknowns too, such as a law's: its interval is that
@@ -22,6 +23,7 @@ from typing import Literal
 
 import numpy as np
 
+from diagnosis.fit.miscounts import miscounts
 from diagnosis.fit.misfit import STEP, reduce
 from diagnosis.fit.solver import Fitted, fit, normal
 from diagnosis.fit.unknowns import Unknown
@@ -30,14 +32,16 @@ from models.base import FloatArray
 QUANTILE = 1.959963984540054
 LEVEL = QUANTILE**2
 PROFILE_ITERATIONS = 4
-PROFILE_TRIES = 3
+PROFILE_TRIES = 9
+FLAT = 0.1
+"""Root of a rise under which nothing depends on a parameter yet: the end is sought by halves then."""
 BETTER = 1.0
 """Fall of the loss along a profile that makes its point a better start of the fit."""
 RETURNS = 3
-WIDE = 0.25
-"""Share of its range from which the symmetric interval of a shape is no guide, as where it leaves the range."""
 UNINFORMED = 1e-9
 """Standard deviation of a coordinate that the pseudo-inverse gives when nothing depends on it."""
+FIRST_STEP = 0.1
+"""Share of its range over which the profile of such a coordinate begins: further off something may depend on it."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +67,13 @@ def covariances(fitted: Fitted) -> tuple[FloatArray, FloatArray]:
     windows, k = each.shape[0], fitted.u.size
     spread = each.T @ each * windows / max(windows - k, 1)
     inverse = np.asarray(np.linalg.pinv(hessian, hermitian=True), np.float64)
-    return np.asarray(inverse @ (spread + precision) @ inverse)[:k, :k], inverse[:k, :k]
+    cover = inverse @ (spread + precision) @ inverse
+    columns = miscounts(misfit.predictor, fitted.point)
+    if columns.shape[-1]:
+        counted = misfit.whitening(np.moveaxis(columns, -1, 0))
+        moved = inverse @ np.einsum("w,wmi,kwm->ik", weights, reduced.by_unknown, counted, optimize=True)
+        cover = cover + moved @ moved.T
+    return np.asarray(cover)[:k, :k], inverse[:k, :k]
 
 
 def at_least(sandwich: FloatArray, laplace: FloatArray) -> FloatArray:
@@ -80,20 +90,19 @@ def correlation(fitted: Fitted) -> FloatArray:
     return np.asarray(cover / np.outer(sd, sd))
 
 
-def estimates(fitted: Fitted, profiled: Sequence[str] = (), where_wide: Sequence[str] = ()) -> dict[str, Estimate]:
-    """Every unknown with its 95 % interval, in its own unit.
-
-    A profile for the names in ``profiled``, and for those of ``where_wide`` whose symmetric interval is wide.
-    """
+def estimates(fitted: Fitted, profiled: Sequence[str] = ()) -> dict[str, Estimate]:
+    """Every unknown with its 95 % interval, in its own unit; a profile for the names in ``profiled``."""
     sandwich, laplace = covariances(fitted)
     found, own, wider = {}, fitted.point.values, _own_widths(fitted, at_least(sandwich, laplace))
     for i, unknown in enumerate(fitted.misfit.unknowns):
         naive = float(np.sqrt(max(laplace[i, i], 0.0)))
         sd = max(naive, float(np.sqrt(max(sandwich[i, i], 0.0))))
-        if naive < UNINFORMED:
+        if unknown.name in profiled:
+            width = unknown.bounds[1] - unknown.bounds[0]
+            told = naive > UNINFORMED
+            ends = _profile(fitted, i, sd if told else FIRST_STEP * width, (sd / naive) ** 2 if told else 1.0)
+        elif naive < UNINFORMED:
             ends = unknown.bounds
-        elif unknown.name in profiled or (unknown.name in where_wide and _wide(fitted, i, sd)):
-            ends = _profile(fitted, i, sd, (sd / naive) ** 2)
         else:
             ends = (fitted.u[i] - QUANTILE * sd, fitted.u[i] + QUANTILE * sd)
         one = _estimate(unknown, float(fitted.u[i]), ends, fitted.at_bound(i))
@@ -101,12 +110,6 @@ def estimates(fitted: Fitted, profiled: Sequence[str] = (), where_wide: Sequence
             one = _as_own(one, own[unknown.name], wider[unknown.name])
         found[unknown.name] = one
     return found
-
-
-def _wide(fitted: Fitted, index: int, sd: float) -> bool:
-    low, high = fitted.misfit.unknowns[index].bounds
-    half = QUANTILE * sd
-    return bool(fitted.u[index] - half < low or fitted.u[index] + half > high or 2.0 * half > WIDE * (high - low))
 
 
 def _as_own(one: Estimate, own: float, wider: float) -> Estimate:
@@ -148,13 +151,11 @@ class _Better(Exception):
         self.fitted = fitted
 
 
-def settled(
-    fitted: Fitted, profiled: Sequence[str], where_wide: Sequence[str] = ()
-) -> tuple[Fitted, dict[str, Estimate]]:
+def settled(fitted: Fitted, profiled: Sequence[str]) -> tuple[Fitted, dict[str, Estimate]]:
     """The fit and its `estimates`; where a profile finds a better optimum the fit goes on from there."""
     for _ in range(RETURNS):
         try:
-            return fitted, estimates(fitted, profiled, where_wide)
+            return fitted, estimates(fitted, profiled)
         except _Better as found:
             fitted = found.fitted
     return fitted, estimates(fitted)
@@ -171,26 +172,30 @@ def _estimate(unknown: Unknown, u: float, ends: tuple[float, float], at_bound: s
 def _profile(fitted: Fitted, index: int, sd: float, inflation: float) -> tuple[float, float]:
     """Coordinates at which the profile loss has risen by LEVEL times ``inflation``."""
     wanted = float(np.sqrt(LEVEL * inflation))
-    bounds = fitted.misfit.unknowns[index].bounds
-    ends = []
-    for sign, bound in ((-1.0, bounds[0]), (1.0, bounds[1])):
-        step, best = QUANTILE * sd, QUANTILE * sd
-        for _ in range(PROFILE_TRIES):
-            at = fitted.u[index] + sign * step
-            if sign * (at - bound) >= 0.0:
-                best = abs(bound - fitted.u[index])
-                if _rise(fitted, index, bound) > wanted**2:
-                    best *= 0.999
-                    step = 0.5 * best
-                    continue
-                break
-            rise = float(np.sqrt(max(_rise(fitted, index, at), 1e-12)))
-            best = step * wanted / rise
-            if abs(rise - wanted) < 0.05 * wanted:
-                break
-            step = float(np.clip(best, 0.3 * step, 3.0 * step))
-        ends.append(fitted.u[index] + sign * best)
-    return ends[0], ends[1]
+    low, high = (_end(fitted, index, sign, QUANTILE * sd, wanted) for sign in (-1.0, 1.0))
+    return low, high
+
+
+def _end(fitted: Fitted, index: int, sign: float, step: float, wanted: float) -> float:
+    """Where the root of the rise on one side is ``wanted``; the bound if it is less there."""
+    at, bounds = float(fitted.u[index]), fitted.misfit.unknowns[index].bounds
+    most = abs(bounds[sign > 0.0] - at)
+    inside, rise_inside, outside, rise_outside = 0.0, 0.0, np.inf, np.inf
+    for _ in range(PROFILE_TRIES):
+        step = min(step, most)
+        rise = float(np.sqrt(max(_rise(fitted, index, at + sign * step), 1e-12)))
+        if abs(rise - wanted) < 0.05 * wanted or (rise < wanted and step == most):
+            break
+        if rise < wanted:
+            inside, rise_inside = step, rise
+        else:
+            outside, rise_outside = step, rise
+        if np.isinf(outside):
+            step *= float(np.clip(wanted / rise, 1.1, 3.0))
+        else:
+            share = (wanted - rise_inside) / (rise_outside - rise_inside)
+            step = inside + (float(np.clip(share, 0.2, 0.8)) if rise_inside > FLAT else 0.5) * (outside - inside)
+    return at + sign * min(step, most)
 
 
 def profile_rise(fitted: Fitted, index: int, at: float) -> float:

@@ -12,6 +12,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from diagnosis.data.measured import Measured
 from diagnosis.data.windows import Window
@@ -29,9 +30,21 @@ def counted(predictor: Predictor, point: Point) -> Measured:
     counts = [one for one in m.identification.memories if isinstance(one, Count)]
     if not counts:
         return m
-    values = without_instruments(point.values)
-    rest = m.identification.rest(m.model.derive(values, predictor.options))
     found = {one.name: np.zeros(len(m.windows)) for one in counts}
+    for own, events in histories(predictor, point):
+        for one in counts:
+            found[one.name][own] = np.cumsum([sum(e.kind == one.event for e in piece) for piece in events])
+    return replace(m, memory={**m.memory, **found})
+
+
+def histories(predictor: Predictor, point: Point) -> list[tuple[NDArray[np.intp], list[tuple[Event, ...]]]]:
+    """By recording: its windows (n,), and n series of events along the model at ``point``, each up to a window's start.
+
+    The first from rest, the others from the start of the window before, with times in s from there.
+    """
+    m = predictor.measured
+    rest = m.identification.rest(m.model.derive(without_instruments(point.values), predictor.options))
+    found = []
     for r in range(len(m.recordings)):
         own = np.flatnonzero(m.recording_of == r)
         if not own.size:
@@ -39,10 +52,8 @@ def counted(predictor: Predictor, point: Point) -> Measured:
         starts = [0, *(m.windows[w].first for w in own)]
         pieces = [Window(r, a, b - a) for a, b in pairwise(starts)]
         states = np.concatenate([[[rest[name] for name in m.free]], point.states[own]])
-        events = _events(predictor, point, pieces, states[:-1])
-        for one in counts:
-            found[one.name][own] = np.cumsum([sum(e.kind == one.event for e in piece) for piece in events])
-    return replace(m, memory={**m.memory, **found})
+        found.append((own, _events(predictor, point, pieces, states[:-1])))
+    return found
 
 
 def _events(
@@ -54,7 +65,8 @@ def _events(
     found = []
     for piece, state in zip(pieces, states, strict=True):
         recording = m.recordings[piece.recording]
-        shaking = moved_in_stages(m.shakings[piece.recording], predictor.sets(instruments, recording)).lines
+        moved = moved_in_stages(m.shakings[piece.recording], predictor.sets(instruments, recording))
+        shaking = m.disturbed(moved, piece.recording).lines
         part = slice(piece.first, piece.first + piece.samples + 1)
         vertical = None if shaking.vertical is None else shaking.vertical[part]
         cut = replace(shaking, horizontal=shaking.horizontal[part], vertical=vertical)

@@ -12,6 +12,8 @@ MOST = 300_000_000
 """Lane-steps of the search for the first effect: half a minute to a minute of one core."""
 FURTHER = 500_000_000
 """Lane-steps for effects beside the first, whatever was spent before: where two act, the first explains little."""
+LAST = 200_000_000
+"""Lane-steps for others in the place of each of several effects at the end, whatever was spent before."""
 RESERVED = 150_000_000
 """Lane-steps for effects that begin or end, whatever was spent before: they come last and may explain everything."""
 LADDER = 150_000_000

@@ -21,7 +21,7 @@ ROUNDS = 4
 
 
 def exchanged(found: Search, progress: Progress) -> None:
-    """Exchange effects until none gets better; once where what stands explains everything."""
+    """Exchange effects until none gets better."""
     held: set[frozenset[Candidate]] = set()
     for _ in range(ROUNDS):
         drop(found)
@@ -36,7 +36,7 @@ def exchanged(found: Search, progress: Progress) -> None:
             return
         others = frozenset(better.candidates) not in held
         found.best = better
-        if not (others and incomplete):
+        if not others:
             return
         found.best = again(reshaped(better))
         weigh_again(found)
@@ -91,12 +91,14 @@ def _try_others(found: Search, widely: bool) -> None:
 
     From where the others stand: fitted again without the effect they may move into another valley, as a clock does
     without the filter whose lag it then takes for its own. Where what stands is incomplete, from that valley too.
+    First in the place of the effect without which least is lost: it is the least sure, and its refits are the shortest.
     """
     if (best := found.best) is None:
         return
-    for candidate in best.removable:
+    standing = {candidate: without(best, candidate, 0) for candidate in best.removable}
+    for candidate, left in sorted(standing.items(), key=lambda entry: entry[1].loss):
         others = frozenset(best.candidates) - {candidate}
         if others not in found.exchanged and found.affordable(f"others in the place of {candidate.name}"):
             found.exchanged.add(others)
-            for rest in [without(best, candidate, 0), *([without(best, candidate)] if widely else [])]:
+            for rest in [left, *([without(best, candidate)] if widely else [])]:
                 found.tried += extended(found, rest, seconds(found, rest), widely)

@@ -27,6 +27,8 @@ from diagnosis.fit.solver import fit, fit_thoroughly
 from diagnosis.fit.starts import Origin, best_start
 from diagnosis.fit.unknowns import clip, fixed_values, in_range, of_specimen
 from diagnosis.fit.whitening import sensor_noise_only
+from diagnosis.forces.columns import forces
+from diagnosis.forces.constancy import flags, tests
 from diagnosis.progress import Progress
 from diagnosis.search.budget import ENDED, LADDER, Budget
 from diagnosis.search.candidates import Candidate
@@ -126,8 +128,8 @@ def _left(found: Search) -> float:
 def climb(found: Search, tried: Sequence[tuple[Rung, Weighed]], *, decisive: bool) -> Climbed | None:
     """The search with the best of the other base models, if the recordings ask for it.
 
-    ``decisive``: only if it errs nowhere and gains `DECISIVE` times as much as the best single mechanism, so that no
-    further mechanism need be looked for.
+    ``decisive``: only if it errs nowhere, leaves no law outside the library and gains `DECISIVE` times as much as the
+    best single mechanism, so that no further mechanism need be looked for.
     """
     if not tried:
         return None
@@ -142,7 +144,16 @@ def climb(found: Search, tried: Sequence[tuple[Rung, Weighed]], *, decisive: boo
             return None
     others = [one.explanation for _, one in tried if one is not best]
     errs = found.outside is not None or inadequacy(found.errors).large
-    return Climbed(rung, found, _on(found, best, others), evidence, errs)
+    after = _on(found, best, others)
+    return None if decisive and _leaves_a_law(after) else Climbed(rung, found, after, evidence, errs)
+
+
+def _leaves_a_law(found: Search) -> bool:
+    """Whether a force that no mechanism has acts beside what was found."""
+    if not found.measured.identification.forces:
+        return False
+    about = forces(found.chosen.fitted)
+    return bool(flags(about, tests(about, found.errors), found.more))
 
 
 def _meant_for(rung: Rung, recordings: Sequence[Recording]) -> bool:

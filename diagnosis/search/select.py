@@ -14,7 +14,7 @@ from diagnosis.errors.model import estimate
 from diagnosis.fit.linearisation import Linearisation, linearise_about
 from diagnosis.progress import Progress
 from diagnosis.search.beside import POOL_SHARE, THOROUGH, extended, seconds, starts_of, worth_a_refit
-from diagnosis.search.budget import FURTHER
+from diagnosis.search.budget import FURTHER, LAST
 from diagnosis.search.candidates import Candidate, firsts
 from diagnosis.search.exchange import drop, exchanged
 from diagnosis.search.found import GAP, MISSING, Search, adequate, adjusted, survives
@@ -86,6 +86,10 @@ def further_effects(found: Search, progress: Progress) -> Iterator[Search]:
         if found.outside is None:
             _more(found, progress)
             yield found
+    if found.best is not None and len(found.best.candidates) > 1:
+        found.exchanged.clear()  # what was tried beside effects that had not settled yet tells little
+        with found.work_of_its_own(LAST):
+            exchanged(found, progress)
     settle_ties(found)
     if found.best is not None:
         found.best = with_memory(again(found.best))
@@ -180,18 +184,24 @@ def _hidden_by_errors(found: Search, white: Linearisation, tried: Collection[Can
     return [entry for entry in strongest if entry.candidate not in tried]
 
 
-def pool(found: Search) -> list[Explanation]:
-    """The best single of each of the strongest classes."""
-    if found.best is not None and adequate(found.best):
-        return [found.best]
-    best = found.gain(found.singles[0])
-    chosen: list[Explanation] = []
-    for single in found.singles:
-        if len(chosen) == FIRST_POOL or found.gain(single) < max(MISSING, POOL_SHARE * best):
-            break
-        if single.classes[0] not in {c.classes[0] for c in chosen}:
-            chosen.append(single)
-    return chosen
+def pool(found: Search) -> list[list[Explanation]]:
+    """The best singles of each of the strongest classes, of one where it is adequate.
+
+    Of a class all that explain as much: a lean of the base and an offset of its accelerometer are alike alone, and need
+    not be beside another effect.
+    """
+    most = 1 if found.best is not None and adequate(found.best) else FIRST_POOL
+    leading = found.singles if found.best is None else [found.best, *found.singles]
+    least = max(MISSING, POOL_SHARE * found.gain(leading[0]))
+    chosen: dict[str, list[Explanation]] = {}
+    for single in leading:
+        effect_class, name = single.classes[0], single.names[0]
+        if found.gain(single) < least or (effect_class not in chosen and len(chosen) == most):
+            continue
+        alike = chosen.setdefault(effect_class, [])
+        if not alike or (found.gain(alike[0]) - found.gain(single) < GAP and name not in {e.names[0] for e in alike}):
+            alike.append(single)
+    return list(chosen.values())
 
 
 def _pairs(found: Search, progress: Progress) -> None:
@@ -201,14 +211,15 @@ def _pairs(found: Search, progress: Progress) -> None:
     others = seconds(found, found.best)
     if not adequate(found.best):
         found.outside = outside(found.best, others, found.errors)
-    singles, widely = pool(found), found.incomplete
+    leading, widely = pool(found), found.incomplete
     pairs: list[Explanation] = []
-    for k, single in enumerate(singles):
-        progress(f"looking for a second effect beside {single.names[0]}", 0.5 + 0.25 * k / len(singles))
-        if not found.affordable(f"a second effect beside {single.names[0]}"):
-            break
-        screened = others if single is found.best else seconds(found, single)
-        pairs += extended(found, single, screened, widely)
+    for k, alike in enumerate(leading):
+        for single in alike:
+            name = single.names[0]
+            progress(f"looking for a second effect beside {name}", 0.5 + 0.25 * k / len(leading))
+            if found.affordable(f"a second effect beside {name}"):
+                screened = others if single is found.best else seconds(found, single)
+                pairs += extended(found, single, screened, widely)
         if any(adequate(e) for e in pairs):  # the others are still tried in its place
             break
     if not pairs:

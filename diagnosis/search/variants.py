@@ -3,7 +3,8 @@
 They are no continuous unknowns, so each choice is a candidate of its own, and no derivative says how well one is known.
 The best explanation is fitted with every other choice: a likelier one takes its place, and the 95 % interval of such a
 number holds all choices whose loss is within 3.84 of the least; the intervals of the other parameters are then those of
-all these fits together.
+all these fits together. So they are with a lag beside a clock: one that is too short to be named, as every logger's
+filter makes one, passes for a little of the clock's rate.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from dataclasses import replace
 from diagnosis.fit.intervals import LEVEL, Estimate, estimates
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.found import GAP, Search
-from diagnosis.search.refit import QUICK, Explanation, again, further
+from diagnosis.search.refit import QUICK, Explanation, again, extend, further
 
 
 def with_other_numbers(found: Search) -> None:
@@ -52,15 +53,13 @@ def held_numbers(explanation: Explanation, tried: Sequence[Explanation]) -> dict
     return found
 
 
-def widened(
-    found: Mapping[str, Estimate], explanation: Explanation, tried: Sequence[Explanation]
-) -> dict[str, Estimate]:
+def widened(found: Mapping[str, Estimate], explanation: Explanation, search: Search) -> dict[str, Estimate]:
     """Estimates of an explanation, each interval with those of the variants that explain the recordings as well."""
     wider = dict(found)
-    for other in _near(explanation, tried):
-        for name, theirs in estimates(other.fitted).items():
-            mine = wider[name]
-            low, high = min(mine.low95, theirs.low95), max(mine.high95, theirs.high95)
+    for other in [*_near(explanation, search.tried), *_lagging(explanation, search.candidates)]:
+        theirs = estimates(other.fitted)
+        for name, mine in wider.items():
+            low, high = min(mine.low95, theirs[name].low95), max(mine.high95, theirs[name].high95)
             wider[name] = replace(mine, low95=low, high95=high)
     return wider
 
@@ -72,6 +71,14 @@ def _near(explanation: Explanation, tried: Sequence[Explanation]) -> list[Explan
         if other.loss - explanation.loss < LEVEL:
             best.setdefault(tuple(sorted(_held(other).items())), other)
     return list(best.values())
+
+
+def _lagging(explanation: Explanation, candidates: Sequence[Candidate]) -> list[Explanation]:
+    """The explanation with a lag of the responses beside a clock that has none."""
+    in_a_table = explanation.fitted.misfit.smooth is not None
+    if in_a_table or "clock" not in explanation.names or {"delay", "filter"} & {*explanation.names}:
+        return []
+    return [extend(explanation, lag, lag.null) for lag in candidates if lag.name == "delay" and lag.spell is None]
 
 
 def _changed(best: Explanation, k: int, other: Candidate) -> Explanation:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
+import pytest
 
-from diagnosis.fit.intervals import estimates, settled
+from diagnosis.fit.intervals import LEVEL, estimates, profile_rise, settled
 from diagnosis.fit.setup import base_fit, measure
-from diagnosis.fit.solver import Fitted, fit
+from diagnosis.fit.solver import fit
+from diagnosis.search.candidates import candidates
+from diagnosis.search.refit import Explanation, extend, with_memory
 from tests.diagnosis.made import SPECIMEN, recording
 
 
@@ -23,18 +24,18 @@ def test_a_profile_leads_back_to_the_optimum() -> None:
     assert same is best
 
 
-def within(fitted: Fitted, low: float) -> Fitted:
-    """The same fit with the width between ``low`` and twice its estimate."""
-    unknowns = [
-        replace(x, low=low, high=2.0 * fitted.values["width"]) if x.name == "width" else x
-        for x in fitted.misfit.unknowns
-    ]
-    return replace(fitted, misfit=replace(fitted.misfit, unknowns=tuple(unknowns)))
-
-
-def test_a_shape_follows_its_profile_where_its_symmetric_interval_leaves_the_range() -> None:
-    best = base_fit(SPECIMEN, measure(SPECIMEN, [recording("a", 1)]))
-    plain = estimates(best)["width"]
-    roomy, near = within(best, 0.5 * plain.estimate), within(best, 0.5 * (plain.low95 + plain.estimate))
-    assert estimates(roomy, (), ["width"]) == estimates(roomy)
-    assert estimates(near, (), ["width"]) == estimates(near, ["width"]) != estimates(near)
+def test_a_shape_on_which_nothing_depends_where_it_is_has_an_end_where_something_does() -> None:
+    """A floor that is never reached: every lower one is as good, a higher one is reached."""
+    wears = {"degradation": {"loss_of_restitution_per_impact": 0.004, "floor": 0.5}}
+    base = base_fit(SPECIMEN, measure(SPECIMEN, [recording("run_2", 2, wears)]))  # 12 impacts before the last window
+    own = next(c for c in candidates(base.measured, SPECIMEN) if c.name == "degradation")
+    best = with_memory(extend(Explanation((), base), own, np.array([0.1, 0.0]))).fitted
+    name = "degradation.floor"
+    assert best.values[name] == pytest.approx(0.5)
+    found = estimates(best, [name])[name]
+    assert found.low95 == pytest.approx(0.5)
+    assert 0.93 < found.high95 < 0.97
+    index = [x.name for x in best.misfit.unknowns].index(name)
+    unknown = best.misfit.unknowns[index]
+    assert profile_rise(best, index, unknown.coordinate(found.high95)) == pytest.approx(LEVEL, rel=0.15)
+    assert profile_rise(best, index, unknown.coordinate(0.9)) == pytest.approx(0.0, abs=0.1)

@@ -63,6 +63,15 @@ def test_an_effect_gives_way_to_one_that_explains_more_beside_the_other(found: S
     assert best.fitted.values["tilt.tilt"] == pytest.approx(0.01, abs=0.001)
 
 
+def test_effects_are_exchanged_one_after_the_other_where_what_stands_explains_enough(
+    found: Search, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each exchange alone leaves the other effect wrong."""
+    monkeypatch.setattr(Unfinished, "incomplete", False)
+    best = exchanged_from(found, taken(found, "offset", "velocity_restitution"))
+    assert set(best.names) == set(TRUE)
+
+
 def test_no_effect_gives_way_to_one_that_predicts_recordings_left_out_worse(
     found: Search, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -66,6 +66,11 @@ def test_rubber_under_a_pier_is_named_with_its_stiffness_and_the_answer_is_a_spe
     about = forces(climbed.after.chosen.fitted)  # none in the joint that is bonded
     assert {kind.port.name for kind in about.kinds} == {"base", "block"}
     assert all(np.all(np.isfinite(about.column(kind))) and np.any(about.column(kind)) for kind in about.kinds)
+    assert ladder.climb(found, tried, decisive=True) is not None
+    with pytest.MonkeyPatch.context() as patch:  # a law outside the library: pairs of mechanisms are still to be tried
+        patch.setattr(ladder, "flags", lambda about, tested, threshold: tested[:1])
+        assert ladder.climb(found, tried, decisive=True) is None
+        assert ladder.climb(found, tried, decisive=False) is not None
     other = other_model(climbed, climbed.after.chosen)
     assert other.parameters["base_stiffness"] == pytest.approx(MAT["base_stiffness"], rel=0.15)
     assert other.parameters["base_damping_ratio"] == pytest.approx(MAT["base_damping_ratio"], rel=0.4)

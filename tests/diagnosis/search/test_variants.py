@@ -47,7 +47,7 @@ def test_the_likeliest_order_is_taken_and_its_interval_holds_those_that_fit_as_w
     if known:
         assert order.estimate == ORDER
     alone = estimates(best.fitted)
-    wider = widened(alone, best, found.tried)
+    wider = widened(alone, best, found)
     held = wider["filter.corner_hz"]
     assert held.low95 <= corner <= held.high95
     assert (wider == alone) is known
