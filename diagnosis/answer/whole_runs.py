@@ -14,7 +14,7 @@ from diagnosis.fit.unknowns import instruments_of
 from diagnosis.search.refit import Explanation
 from grids.instruments.base import Surroundings
 from grids.instruments.staged import moved_in_stages, recorded_in_stages
-from grids.recordings.base import REQUIRED, FloatArray, Recording
+from grids.recordings.base import FloatArray, Recording
 from grids.specimen import Specimen
 from models.kinematics import Place, ground_along
 from models.piecewise import simulate
@@ -77,5 +77,5 @@ def sensed_run(
         c: np.ravel(places[c].read(seen, shaking.time_step, (ground[0][0], ground[1][0])) if c in places else seen[c])
         for c in channels
     }
-    around = Surroundings(shaking.time_step, recording.channels[REQUIRED], measured.reference_peak)
+    around = Surroundings(shaking.time_step, moved.horizontal, measured.reference_peak)
     return dict(recorded_in_stages(found, sets, around))

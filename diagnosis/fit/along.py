@@ -114,9 +114,10 @@ class Along:
         sets = predictor.sets(instruments_of(self.point.values), recording)
         ground = moved_in_stages(m.shakings[r], sets, moved_in_windows)
         start = np.asarray(recording.time_step * first[:, None], np.float64)
-        around = Surroundings(recording.time_step, m.base[window], m.reference_peak, start)
+        base = ground_along(ground, first, m.values.shape[2])
+        around = Surroundings(recording.time_step, base[0], m.reference_peak, start)
         held = Observed({c: partial(_spliced, self.plain[r], ran, c, rows, sample) for c in ran})
-        channels = m.sensed(held, ground.time_step, ground_along(ground, first, m.values.shape[2]))
+        channels = m.sensed(held, ground.time_step, base)
         found = recorded_in_stages(channels, sets, around, recorded_in_windows)
         return np.stack([found[c] for c in m.channels], axis=1)
 

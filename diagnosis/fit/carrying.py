@@ -22,7 +22,7 @@ from diagnosis.data.noise import smooth
 from grids.instruments.base import Surroundings
 from grids.instruments.staged import Sets, recorded_in_stages
 from grids.instruments.windowed import recorded_in_windows
-from grids.recordings.base import REQUIRED, Recording
+from grids.recordings.base import Recording
 from models.base import FloatArray
 from models.identification import NARROWEST, State
 from models.piecewise import Part, begun_at
@@ -191,7 +191,7 @@ def _slope(state: State, recording: Recording) -> bool:
 
 def _smoothed(measured: Measured, recording: Recording, setting: Setting) -> dict[str, FloatArray]:
     """The free states (samples,) by name; per sample of the recording: the clock of the responses may run otherwise."""
-    channels = _freed(measured, recording, setting.sets)
+    channels = _freed(measured, recording, setting)
     width = measured.lengths.carrying if measured.lengths else NARROWEST
     quicker = recording.time_step / setting.shaking.time_step
     found = {}
@@ -204,18 +204,17 @@ def _smoothed(measured: Measured, recording: Recording, setting: Setting) -> dic
     return found
 
 
-def _freed(measured: Measured, recording: Recording, sets: Sets) -> dict[str, FloatArray]:
+def _freed(measured: Measured, recording: Recording, setting: Setting) -> dict[str, FloatArray]:
     """The channels of the free states (samples,) without what the instruments add, their clock left as it is."""
     free = measured.identification.free
     names = dict.fromkeys(n for state in free for n in (state.channel, state.name) if n in recording.channels)
     seen = {name: recording.channels[name][None] for name in names}
-    if not any(switched for _, switched in sets):
+    if not any(switched for _, switched in setting.sets):
         return {name: x[0] for name, x in seen.items()}
-    around = Surroundings(
-        recording.time_step, recording.channels[REQUIRED][None], measured.reference_peak, np.zeros((1, 1))
-    )
+    base = setting.shaking.horizontal[None]
+    around = Surroundings(recording.time_step, base, measured.reference_peak, np.zeros((1, 1)))
     true = seen
     for _ in range(ROUNDS):
-        again = recorded_in_stages(true, sets, around, recorded_in_windows)
+        again = recorded_in_stages(true, setting.sets, around, recorded_in_windows)
         true = {name: x + (seen[name] - again[name]) for name, x in true.items()}
     return {name: x[0] for name, x in true.items()}

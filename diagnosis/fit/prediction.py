@@ -213,11 +213,10 @@ class Predictor:
             m.model, parts, instants, shaking, first=first, samples=samples, initial=initial, options=self.options
         )
         held = Observed({c: partial(_held, ran, c, (count, n, samples), shaking, m.first[windows]) for c in ran})
-        found = m.sensed(held, shaking.time_step, ground_along(ground, m.first[windows], samples))
-        base = np.zeros((n, samples))
-        base[:, :compared] = m.base[windows, :compared]
+        along = ground_along(ground, m.first[windows], samples)
+        found = m.sensed(held, shaking.time_step, along)
         start = np.asarray(time_step * m.first[windows, None], float)
-        around = Surroundings(time_step, base, m.reference_peak, start)
+        around = Surroundings(time_step, along[0], m.reference_peak, start)
         for alike in _alike([instruments[p] for p in members]):
             true = {c: found[c][alike] for c in m.channels}
             sets = self.sets(instruments[members[alike[0]]], recording)

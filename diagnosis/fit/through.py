@@ -37,7 +37,7 @@ def run_through(
     samples = m.shakings[recording].horizontal.size
     size = round(m.recordings[recording].time_step / m.shakings[recording].time_step)
     found = np.zeros((len(parts), len(m.channels), samples // size))
-    around = Surroundings(m.shakings[recording].time_step, m.shakings[recording].horizontal, m.reference_peak)
+    around = Surroundings(shaking.time_step, shaking.horizontal, m.reference_peak)
     peaks = {c: float(np.max(np.abs(m.recordings[recording].channels[c]))) for c in m.channels}
     # of all levels together: the channel of one may be dead
     largest = {c: max(peak for other, peak in peaks.items() if stem(other) == stem(c)) for c in m.channels}

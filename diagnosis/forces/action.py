@@ -25,11 +25,12 @@ from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.unknowns import instruments_of, library
 from grids.instruments import INSTRUMENTS
 from grids.instruments.base import Surroundings
-from grids.instruments.staged import recorded_in_stages
-from grids.instruments.windowed import recorded_in_windows
+from grids.instruments.staged import moved_in_stages, recorded_in_stages
+from grids.instruments.windowed import moved_in_windows, recorded_in_windows
 from grids.stages import intervals
 from models.base import FloatArray
 from models.identification import Motion
+from models.kinematics import ground_along
 
 Kind = Literal["force", "error"]
 
@@ -124,7 +125,9 @@ def _errors(predictor: Predictor, point: Point, effect: str, states: Mapping[str
     for r, recording in enumerate(m.recordings):
         own = np.flatnonzero(m.recording_of == r)
         start = np.asarray(recording.time_step * m.first[own, None], float)
-        around = Surroundings(recording.time_step, m.base[own], m.reference_peak, start)
+        ground = moved_in_stages(m.shakings[r], predictor.sets(instruments, recording), moved_in_windows)
+        base, _ = ground_along(ground, m.first[own], m.values.shape[2])
+        around = Surroundings(recording.time_step, base, m.reference_peak, start)
         true = {channel: states[channel][own] for channel in m.channels}
         seen, plain = (
             recorded_in_stages(true, predictor.sets(switched, recording), around, recorded_in_windows)

@@ -122,8 +122,7 @@ def _singles(found: Search, progress: Progress) -> None:
         wanted += _hidden_by_errors(found, white, {entry.candidate for entry in wanted}, fewest)
         if misfits(white.fitted):
             late = setting_in(found.base, [entry.candidate for entry in found.scores])
-            first = [entry for entry in found.scores if entry.candidate in late]
-            wanted = first + [entry for entry in wanted if entry.candidate not in late]
+            wanted = _in_turn(wanted, [entry for entry in found.scores if entry.candidate in late])
     for k, entry in enumerate(wanted):
         if not found.affordable(entry.candidate.name):
             continue
@@ -152,6 +151,12 @@ def _singles(found: Search, progress: Progress) -> None:
     found.singles = [with_memory(single) if found.gain(single) > least else single for single in found.singles]
     found.singles.sort(key=adjusted)
     found.tried += found.singles
+
+
+def _in_turn(wanted: Sequence[Score], late: Sequence[Score]) -> list[Score]:
+    """The strongest of a screen, then what has no slope at its null, then the others: a budget may end on the way."""
+    first, rest = wanted[:FEWEST_ADEQUATE], wanted[FEWEST_ADEQUATE:]
+    return list({entry.candidate: entry for entry in (*first, *late, *rest)}.values())
 
 
 def led_by(found: Search, leader: Explanation) -> bool:

@@ -32,7 +32,8 @@ Switched = Mapping[str, Mapping[str, float]]
 class Surroundings:
     """What an instrument may need beside its own signal.
 
-    ``base_acceleration`` (..., samples): the measured horizontal one, at the samples of the channels, in m s-2.
+    ``base_acceleration`` (..., samples): the horizontal one that the base makes, at the samples of the channels and on
+    their clock, in m s-2.
     ``reference_peak``: the rotation (rad) over which levels are given; None: the largest of the run itself.
     ``start`` (..., 1): time (s) of the first sample since the start of the recording. ``began``: the time (s) at which
     an instrument by its name began to act, where that is within the recording.

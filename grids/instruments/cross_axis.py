@@ -20,7 +20,7 @@ MECHANISM = Mechanism(
             -0.01, 0.01,
         ),
     ),
-    equation="recorded = true + rotation_per_acceleration a, all rotation channels alike",
+    equation="recorded = true + rotation_per_acceleration a, all rotation channels alike; a: of the base as it moves",
     signature="follows the base acceleration, at rest too",
     sentence="the rotation sensors read {rotation_per_acceleration:.2g} rad for each m/s2 of the base's acceleration",
     acts={"response": respond},

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from grids.instruments.base import Channels, Surroundings, Switched
 from grids.instruments.catalogue import switched_on
+from models.base import FloatArray
 from models.shaking import Shaking
 
 
@@ -20,7 +23,8 @@ def moved(shaking: Shaking, mechanisms: Switched) -> Shaking:
 def recorded(channels: Channels, mechanisms: Switched, around: Surroundings) -> Channels:
     """Channels ``(..., n_times)`` as the instruments record them, from the true ones.
 
-    Values before the first sample are those of the first sample, after the last those of the last.
+    ``around`` on the clock of the base; what a sensor reads of it comes as late as all else. Values before the first
+    sample are those of the first sample, after the last those of the last.
     """
     rate, lag = 0.0, 0.0
     switched = switched_on(mechanisms)
@@ -33,7 +37,12 @@ def recorded(channels: Channels, mechanisms: Switched, around: Surroundings) -> 
         count = next(iter(found.values())).shape[-1]
         time = np.arange(count) * around.time_step
         at = (1.0 + rate) * time - lag
-        found = {k: np.apply_along_axis(lambda row: np.interp(at, time, row), -1, x) for k, x in found.items()}
+
+        def late(x: FloatArray) -> FloatArray:
+            return np.asarray(np.apply_along_axis(lambda row: np.interp(at, time, row), -1, x))
+
+        found = {k: late(x) for k, x in found.items()}
+        around = replace(around, base_acceleration=late(around.base_acceleration))
     for sensor, values in switched:
         for where in ("response", "whole"):
             if where in sensor.acts:

@@ -81,7 +81,7 @@ def _seen(
 ) -> Recording:
     """What the instruments record: the rotation with white noise, or with ``errors`` (of unit deviation)."""
     true = {"rotation_1": rotation}
-    around = Surroundings(TIME_STEP, measured.horizontal, PEAK)
+    around = Surroundings(TIME_STEP, moved(measured, mechanisms).horizontal, PEAK)
     seen = recorded(true, mechanisms, around)["rotation_1"]
     rng = np.random.default_rng(seed + 1000)
     peak = float(np.max(np.abs(seen)))

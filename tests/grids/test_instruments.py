@@ -55,7 +55,7 @@ def test_levels_are_over_the_given_peak() -> None:
     np.testing.assert_allclose(found["rotation_1"] - TRUE["rotation_1"], shift)
 
 
-def test_cross_axis_adds_the_measured_base() -> None:
+def test_cross_axis_adds_the_base() -> None:
     found = recorded(TRUE, {"cross_axis": {"rotation_per_acceleration": 0.004}}, AROUND)
     np.testing.assert_allclose(found["rotation_1"] - TRUE["rotation_1"], 0.004 * BASE, atol=1e-15)
 
@@ -123,6 +123,16 @@ def test_delay_and_clock_shift_time() -> None:
     inside = (1.02 * TIME - 0.01 > 0) & (TIME[-1] > 1.02 * TIME - 0.01)
     wanted = 0.02 * np.sin(2 * np.pi * 1.3 * (1.02 * TIME - 0.01))
     np.testing.assert_allclose(found["rotation_1"][inside], wanted[inside], atol=2e-6)
+
+
+def test_what_a_sensor_reads_of_the_base_comes_as_late_as_the_rest() -> None:
+    """The leak is the sensor's own, the delay and the clock are those of what writes its signal."""
+    late = {"delay": {"delay": 0.012}, "clock": {"rate": 0.01}}
+    leak = {"cross_axis": {"rotation_per_acceleration": 0.004}}
+    found = recorded(TRUE, {**late, **leak}, AROUND)["rotation_1"] - recorded(TRUE, late, AROUND)["rotation_1"]
+    at = 1.01 * TIME - 0.012
+    inside = (at > 0) & (at < TIME[-1])
+    np.testing.assert_allclose(found[inside], 0.004 * np.interp(at, TIME, BASE)[inside], atol=1e-12)
 
 
 def test_a_late_response_is_an_early_base() -> None:

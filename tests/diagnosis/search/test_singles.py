@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
@@ -13,7 +15,7 @@ from diagnosis.progress import silent
 from diagnosis.search.candidates import candidates
 from diagnosis.search.found import Search
 from diagnosis.search.refit import Explanation, extend, with_memory
-from diagnosis.search.select import _singles, led_by
+from diagnosis.search.select import _in_turn, _singles, led_by
 from diagnosis.search.weighing import reweighed
 from tests.diagnosis.made import SPECIMEN, recording
 
@@ -72,3 +74,12 @@ def test_every_law_with_a_memory_counts_events_along_its_own_motion() -> None:
     assert [single.names[0] for single in found.singles] == ["restitution", "degradation"]
     worn = found.singles[1]
     assert with_memory(worn).loss > worn.loss - 0.5
+
+
+def test_the_strongest_of_the_screen_come_before_what_has_no_slope_there() -> None:
+    """A refit of a law that sets in at a threshold may cost the whole budget."""
+    names = ["maxwell", "bouc_wen", "gain", "locking", "sliding", "delay"]
+    entries: dict[str, Any] = {name: SimpleNamespace(candidate=name) for name in names}
+    wanted = [entries[name] for name in ("maxwell", "bouc_wen", "gain", "locking", "delay")]
+    found = _in_turn(wanted, [entries["locking"], entries["sliding"]])
+    assert [entry.candidate for entry in found] == ["maxwell", "bouc_wen", "locking", "sliding", "gain", "delay"]
