@@ -36,6 +36,7 @@ from diagnosis.search.screen import Score, score
 from diagnosis.search.thresholds import from_measured, misfits, setting_in
 from diagnosis.search.variants import with_other_numbers
 from diagnosis.search.weighing import as_white_noise, by_white_noise, weigh_again
+from grids.instruments import INSTRUMENTS
 
 FAINT = 8.0
 """Gain of the strongest single that is not taken further where the base model is adequate."""
@@ -192,21 +193,21 @@ def _hidden_by_errors(found: Search, white: Linearisation, tried: Collection[Can
 def pool(found: Search) -> list[list[Explanation]]:
     """The best singles of each of the strongest classes, of one where it is adequate.
 
-    Of a class all that explain as much: a lean of the base and an offset of its accelerometer are alike alone, and need
-    not be beside another effect.
+    Of a class one of the specimen and one of its instruments where both explain as much: a lean of the base and an
+    offset of its accelerometer are alike alone, and need not be beside another effect.
     """
     most = 1 if found.best is not None and adequate(found.best) else FIRST_POOL
     leading = found.singles if found.best is None else [found.best, *found.singles]
     least = max(MISSING, POOL_SHARE * found.gain(leading[0]))
-    chosen: dict[str, list[Explanation]] = {}
+    chosen: dict[str, dict[bool, Explanation]] = {}
     for single in leading:
-        effect_class, name = single.classes[0], single.names[0]
-        if found.gain(single) < least or (effect_class not in chosen and len(chosen) == most):
+        effect_class, gain = single.classes[0], found.gain(single)
+        if gain < least or (effect_class not in chosen and len(chosen) == most):
             continue
-        alike = chosen.setdefault(effect_class, [])
-        if not alike or (found.gain(alike[0]) - found.gain(single) < GAP and name not in {e.names[0] for e in alike}):
-            alike.append(single)
-    return list(chosen.values())
+        alike = chosen.setdefault(effect_class, {})
+        if all(found.gain(one) - gain < GAP for one in alike.values()):
+            alike.setdefault(single.names[0] in INSTRUMENTS, single)
+    return [list(alike.values()) for alike in chosen.values()]
 
 
 def _pairs(found: Search, progress: Progress) -> None:

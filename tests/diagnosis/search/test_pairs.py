@@ -33,16 +33,16 @@ def leading(*singles: Any, adequate: bool, monkeypatch: pytest.MonkeyPatch) -> l
     return [[e.names[0] for e in alike] for alike in select.pool(found)]
 
 
-def test_those_of_a_class_within_the_gap_are_led_together(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_lean_and_an_instrument_that_explains_as_much_are_led_together(monkeypatch: pytest.MonkeyPatch) -> None:
     all_of_them = (
         single("tilt", "tilt", 1000.0), single("tilt", "tilt", 999.0), single("accelerometer_offset", "tilt", 998.0),
-        single("gain", "gain", 900.0), single("filter", "filter", 800.0), single("delay", "delay", 700.0),
-        single("drift", "drift", 100.0),
+        single("eccentricity", "tilt", 997.0), single("gain", "gain", 900.0), single("filter", "filter", 800.0),
+        single("delay", "delay", 700.0), single("drift", "drift", 100.0),
     )  # fmt: skip
     both = ["tilt", "accelerometer_offset"]
     assert leading(*all_of_them, adequate=True, monkeypatch=monkeypatch) == [both]
     assert leading(*all_of_them, adequate=False, monkeypatch=monkeypatch) == [both, ["gain"], ["filter"]]
-    apart = (all_of_them[0], single("accelerometer_offset", "tilt", 950.0), all_of_them[3])
+    apart = (all_of_them[0], single("accelerometer_offset", "tilt", 950.0), all_of_them[4])
     assert leading(*apart, adequate=False, monkeypatch=monkeypatch) == [["tilt"], ["gain"]]
     weak = (all_of_them[0], all_of_them[-1])
     assert leading(*weak, adequate=False, monkeypatch=monkeypatch) == [["tilt"]]
