@@ -16,6 +16,7 @@ from diagnosis.forces.varying import WINDOW
 from diagnosis.search.budget import ENDED
 from diagnosis.search.found import MISSING
 from diagnosis.search.null import LEAST_P
+from models import get
 from models.base import Mechanism
 from models.identification import Identification
 from models.model import Model
@@ -60,7 +61,8 @@ def statement(found: Diagnosis, model: Model) -> str:
         parts.append("That does not settle it: what is missing is not in the library of mechanisms.")
         parts += _left_out(found)
         parts += _contradicted(found)
-        parts += [_flag(flag, declared) for flag in _distinct(found.constancy)[:2]]
+        acting = declared if found.other_model is None else identification_of(get(found.other_model.model))
+        parts += [_flag(flag, acting) for flag in _distinct(found.constancy)[:2]]
         if found.missing_force:
             parts += _law(found.missing_force)
     if found.verdict == "cannot_tell_apart" and found.rivals:

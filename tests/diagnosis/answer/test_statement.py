@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 import models
-from diagnosis.answer.result import Diagnosis, Effect, EffectStage, Fit, Located, Undecided, Verdict
+from diagnosis.answer.result import Diagnosis, Effect, EffectStage, Fit, Located, OtherModel, Undecided, Verdict
 from diagnosis.answer.statement import effect_text, statement
+from diagnosis.data.measured import identification_of
 from diagnosis.fit.intervals import Estimate
 from diagnosis.forces.constancy import BLOW, FOR_A_WHILE, Constancy
 from diagnosis.forces.varying import WINDOW
@@ -177,3 +178,15 @@ def test_what_begins_is_not_said_to_act_throughout() -> None:
     begins = replace(tilt, stages=(EffectStage("shake_1", 2.0, np.inf),))
     assert "Tilt acts throughout: in shake_1" in said(located=(place,), effects=(tilt,))
     assert "Tilt acts: in shake_1 from 2.0 s to 6.0 s" in said(located=(place,), effects=(begins,))
+
+
+def test_a_force_of_another_base_model_is_told_in_its_own_words() -> None:
+    """What acts in the top joint of a wall is no force that the block it was taken for has."""
+    acting = Constancy("stiffness_top", "side", 30.0, "for theta > 0, to the right")
+    other = OtherModel("compliant_base", "interface", {}, {"base_stiffness": 5e7}, 200.0, (), True, False)
+    found = replace(
+        diagnosis(), verdict="not_in_library", constancy=(acting,), effects=(), rivals=(), missing_force=None,
+        other_model=other,
+    )  # fmt: skip
+    (meaning,) = (f.meaning for f in identification_of(models.get("interface")).forces if f.name == acting.parameter)
+    assert f"What acts is a {meaning} that depends on the side" in statement(found, models.get("housner"))
