@@ -28,8 +28,7 @@ LEAST = 0.25
 def miscounts(predictor: Predictor, point: Point) -> FloatArray:
     """Columns (W, C, N, K) of unit variance about the motion at ``point``; none where no law counts events."""
     m = predictor.measured
-    none = np.zeros((*m.values.shape, 0))
-    columns = [none]
+    columns = [np.zeros((*m.values.shape, 0))]
     for one in (memory for memory in m.identification.memories if isinstance(memory, Count)):
         more = replace(m, memory={**m.memory, one.name: m.memory[one.name] + 1.0})
         slope = replace(predictor, measured=more).predict([point])[0] - predictor.predict([point])[0]
@@ -37,12 +36,12 @@ def miscounts(predictor: Predictor, point: Point) -> FloatArray:
         if not slope.any():
             continue
         for own, events in histories(predictor, point):
-            first = m.windows[own[0]].recording
-            step = m.recordings[first].time_step
+            begins = m.windows[own[0]]
+            step = m.recordings[begins.recording].time_step
             after = [0.0, *(step * m.windows[w].samples for w in own[:-1])]  # where the window before ends
             for k, (series, end) in enumerate(zip(events, after, strict=True)):
                 unseen = sum(e.kind == one.event and e.time > end for e in series)
-                deviation = max(SHARE * unseen, FIRST * (k == 0 and m.windows[own[0]].first > 0))
+                deviation = max(SHARE * unseen, FIRST * (k == 0 and begins.first > 0))
                 if deviation < LEAST:
                     continue
                 column = np.zeros((*m.values.shape, 1))

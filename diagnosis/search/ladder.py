@@ -149,11 +149,11 @@ def climb(found: Search, tried: Sequence[tuple[Rung, Weighed]], *, decisive: boo
 
 
 def _leaves_a_law(found: Search) -> bool:
-    """Whether a force that no mechanism has acts beside what was found."""
+    """Whether a force that no mechanism has acts beside what was found; its `about` then holds the columns."""
     if not found.measured.identification.forces:
         return False
-    about = forces(found.chosen.fitted)
-    return bool(flags(about, tests(about, found.errors), found.more))
+    found.about = forces(found.chosen.fitted)
+    return bool(flags(found.about, tests(found.about, found.errors), found.more))
 
 
 def _meant_for(rung: Rung, recordings: Sequence[Recording]) -> bool:

@@ -190,17 +190,16 @@ def _hidden_by_errors(found: Search, white: Linearisation, tried: Collection[Can
     return [entry for entry in strongest if entry.candidate not in tried]
 
 
-def pool(found: Search) -> list[list[Explanation]]:
-    """The best singles of each of the strongest classes, of one where it is adequate.
+def pool(found: Search, best: Explanation) -> list[list[Explanation]]:
+    """The best singles of each of the strongest classes, that of ``best`` first and alone where it is adequate.
 
     Of a class one of the specimen and one of its instruments where both explain as much: a lean of the base and an
     offset of its accelerometer are alike alone, and need not be beside another effect.
     """
-    most = 1 if found.best is not None and adequate(found.best) else FIRST_POOL
-    leading = found.singles if found.best is None else [found.best, *found.singles]
-    least = max(MISSING, POOL_SHARE * found.gain(leading[0]))
+    most = 1 if adequate(best) else FIRST_POOL
+    least = max(MISSING, POOL_SHARE * found.gain(best))
     chosen: dict[str, dict[bool, Explanation]] = {}
-    for single in leading:
+    for single in (best, *found.singles):
         effect_class, gain = single.classes[0], found.gain(single)
         if gain < least or (effect_class not in chosen and len(chosen) == most):
             continue
@@ -217,7 +216,7 @@ def _pairs(found: Search, progress: Progress) -> None:
     others = seconds(found, found.best)
     if not adequate(found.best):
         found.outside = outside(found.best, others, found.errors)
-    leading, widely = pool(found), found.incomplete
+    leading, widely = pool(found, found.best), found.incomplete
     pairs: list[Explanation] = []
     for k, alike in enumerate(leading):
         for single in alike:

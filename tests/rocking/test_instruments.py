@@ -82,6 +82,14 @@ def test_delay_shifts_the_responses(tmp_path: Path, motion: Motion) -> None:
     np.testing.assert_allclose(read["rotation_1"].values[5:], true["rotation_1"].values[:-5], atol=1e-9)
 
 
+def test_cross_talk_is_of_the_base_as_it_moves(tmp_path: Path, motion: Motion) -> None:
+    louder = "[mechanisms.base_gain]\ngain = 0.1\n"
+    leaks = louder + "[mechanisms.cross_axis]\nrotation_per_acceleration = 0.001\n"
+    true, read = (rocking.simulate(block(tmp_path, mechanisms), motion, duration=4.0) for mechanisms in (louder, leaks))
+    leak = read["rotation_1"].values - true["rotation_1"].values
+    np.testing.assert_allclose(leak, 0.001 * 1.1 * read["base_acceleration_x"].values, atol=1e-12)
+
+
 def test_the_wall_keeps_its_own_mechanisms(tmp_path: Path, motion: Motion) -> None:
     inset = "[mechanisms.pivot_inset]\ninset_over_half_width = 0.1\n"
     true = rocking.simulate(block(tmp_path, inset), motion, duration=4.0)

@@ -9,10 +9,12 @@ import numpy as np
 
 import models
 from diagnosis.data.measured import Measured
+from diagnosis.fit.carrying import Setting, _freed
 from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.setup import measure
 from grids.instruments import recorded as instrumented
 from grids.instruments.base import Surroundings, Switched
+from grids.instruments.windowed import moved_in_windows
 from grids.recordings.base import Recording
 from grids.specimen import Specimen
 from grids.stages import Stage, first_sample
@@ -63,6 +65,19 @@ def misses(predicted: np.ndarray, recording: Recording, measured: Measured) -> f
     """Rms of the prediction's error of the rotations as they were, over their peak."""
     values = replace(measured, recordings=(recording,)).values
     return float(np.sqrt(np.mean(np.where(measured.mask, predicted - values, 0.0) ** 2)) / np.max(np.abs(values)))
+
+
+def test_the_measured_motion_is_freed_of_what_sensors_read_of_the_base_as_it_moves() -> None:
+    instruments = {"cross_axis": {"rotation_per_acceleration": 0.002}, "base_gain": {"gain": 0.1}}
+    true = made(())
+    base = moved_in_windows(BASE, instruments)
+    names = ("rotation_1", "rotation_2")
+    leaking = {name: true.channels[name] + 0.002 * 1.1 * BASE.horizontal for name in names}
+    recording = replace(true, channels={"base_acceleration_x": BASE.horizontal, **leaking})
+    freed = _freed(measured_of(recording), recording, Setting(base, [Part(0, TRUE)], [(0, instruments)]))
+    assert set(freed) == set(names)
+    for name in names:
+        np.testing.assert_allclose(freed[name], true.channels[name], atol=1e-12)
 
 
 def test_only_what_is_recorded_is_free_and_the_rest_is_right_at_the_true_parameters() -> None:

@@ -8,8 +8,10 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from diagnosis.answer.whole_runs import sensed_run
+from diagnosis.fit.along import Along
 from diagnosis.fit.prediction import Point
 from diagnosis.fit.setup import base_fit, measure
+from diagnosis.forces.action import action
 from diagnosis.search.refit import Explanation
 from tests.diagnosis.made import SPECIMEN, TRUE, recording
 
@@ -35,6 +37,14 @@ def test_windows_and_runs_read_the_base_as_it_moves() -> None:
     for w, window in enumerate(measured.windows):
         inside = slice(window.first, window.first + window.samples)
         np.testing.assert_allclose(leak[w, : window.samples], expected[inside], atol=2e-3 * LEAK * np.max(np.abs(base)))
+
+    point = Point({**TRUE, **OTHERS, "cross_axis.rotation_per_acceleration": LEAK}, states)
+    error = action(predictor, point, "cross_axis").amount[:, 0]
+    np.testing.assert_allclose(error[measured.mask[:, 0]], leak[measured.mask[:, 0]], atol=1e-9)
+    along, windows = Along(predictor, point), np.arange(len(measured.windows))
+    again = along.recorded(windows, np.zeros(windows.size, np.intp), along.plain[0])[:, 0]
+    wanted = with_leak(LEAK)[:, 0]
+    np.testing.assert_allclose(again[measured.mask[:, 0]], wanted[measured.mask[:, 0]], atol=1e-9)
 
     def whole(size: float) -> np.ndarray:
         fixed = {**TRUE, **OTHERS, "cross_axis.rotation_per_acceleration": size}

@@ -11,8 +11,8 @@ import pytest
 from diagnosis.data.measured import AsItWas
 from diagnosis.fit import intervals
 from diagnosis.fit.intervals import estimates
-from diagnosis.fit.memory import counted
-from diagnosis.fit.miscounts import FIRST, SHARE, miscounts
+from diagnosis.fit.memory import counted, histories
+from diagnosis.fit.miscounts import FIRST, LEAST, SHARE, miscounts
 from diagnosis.fit.prediction import Predictor
 from diagnosis.fit.setup import base_fit, measure
 from diagnosis.fit.solver import fit_thoroughly
@@ -56,6 +56,26 @@ def test_an_event_more_is_a_little_less_restitution() -> None:
         )  # no window follows what was before the first
         difference = columns[own, ..., k] / deviation - expected[own]
         assert np.sqrt(np.mean(difference**2)) < 0.05 * np.sqrt(np.mean(expected[own] ** 2))
+
+
+def test_what_was_not_seen_between_two_windows_is_shared_by_those_after_it() -> None:
+    """A quarter of what happened after the window before had ended, in proportion to the error of one event."""
+    f = worn().fitted
+    m, predictor = f.measured, f.misfit.predictor
+    columns = miscounts(predictor, f.point)
+    one = columns[..., 0] / max(FIRST, SHARE * m.memory["impacts"][0])
+    gaps = []
+    for own, events in histories(predictor, f.point):
+        for k in range(1, own.size):
+            ended = m.windows[own[k - 1]].samples * m.recordings[m.windows[own[0]].recording].time_step
+            unseen = sum(e.kind == "impact" and e.time > ended for e in events[k])
+            if SHARE * unseen >= LEAST and m.recording_of[own[0]] == 0:
+                gaps.append((own[k:], SHARE * unseen))
+    assert gaps
+    for after, deviation in gaps:
+        expected = np.zeros_like(one)
+        expected[after] = deviation * one[after]
+        assert any(np.allclose(columns[..., k], expected, rtol=1e-9, atol=1e-15) for k in range(columns.shape[-1]))
 
 
 def test_no_law_that_counts_no_error() -> None:

@@ -97,3 +97,24 @@ def test_an_effect_that_is_no_longer_needed_is_dropped(found: Search) -> None:
     (spare,) = (one for one in found.candidates if one.name == "offset")
     best = exchanged_from(found, extend(taken(found, *TRUE), spare, spare.null))
     assert set(best.names) == set(TRUE)
+
+
+def test_the_least_sure_effect_is_questioned_first(found: Search, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[Explanation] = []
+    monkeypatch.setattr(exchange, "extended", lambda found, rest, scores, widely: asked.append(rest) or [])
+    exchanged_from(found, taken(found, *TRUE))
+    standing = asked[::2]  # from where the others stand; fitted anew in between, for nothing completes this search
+    assert {rest.names for rest in standing} == {(name,) for name in TRUE}
+    assert standing[0].loss < standing[1].loss
+
+
+def test_effects_are_questioned_once_more_at_the_end(found: Search, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever was tried beside them before they had settled."""
+    for more in ("_pairs", "_more", "settle_ties"):
+        monkeypatch.setattr(select, more, lambda *_: None)
+    best = taken(found, "tilt", "velocity_restitution")
+    tried = {frozenset([one]) for one in found.candidates}
+    search = replace(found, best=best, tried=[best], weighed=best.candidates, exchanged=tried)
+    for _ in select.further_effects(search, silent):
+        pass
+    assert search.best is not None and set(search.best.names) == set(TRUE)

@@ -29,8 +29,8 @@ def single(name: str, effect_class: str, gain: float) -> Any:
 
 def leading(*singles: Any, adequate: bool, monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
     monkeypatch.setattr(select, "adequate", lambda best: adequate)
-    found: Any = SimpleNamespace(best=singles[0], singles=list(singles), gain=lambda e: e.gain)
-    return [[e.names[0] for e in alike] for alike in select.pool(found)]
+    found: Any = SimpleNamespace(singles=list(singles), gain=lambda e: e.gain)
+    return [[e.names[0] for e in alike] for alike in select.pool(found, singles[0])]
 
 
 def test_a_lean_and_an_instrument_that_explains_as_much_are_led_together(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -62,3 +62,23 @@ def test_fits_under_other_errors_are_no_variants() -> None:
     whitening = other.fitted.misfit.whitening
     moved = replace(other.fitted.misfit, whitening=replace(whitening, sensor=whitening.sensor * 0.5))
     assert not variants(best, [replace(other, fitted=replace(other.fitted, misfit=moved))])
+
+
+def test_a_clock_knows_of_a_lag_too_short_to_be_named() -> None:
+    """A filter of 5 ms beside it: alone the clock takes a part of that for its own."""
+    rate = 0.004
+    true = {"clock": {"rate": rate}, "filter": {"corner_hz": 45.0, "order": 2.0}}
+    measured = measure(SPECIMEN, [recording(f"run_{seed}", seed, true) for seed in (1, 2)])
+    both = {c.name: c for c in candidates(measured, SPECIMEN) if c.name in ("clock", "delay")}
+    base = Explanation((), base_fit(SPECIMEN, measured))
+    best = extend(base, both["clock"], both["clock"].null)
+    found = Search(base, tuple(both.values()), estimate(best.fitted, disturbance_about(best.fitted)))
+    alone = estimates(best.fitted)
+    held = widened(alone, best, found)["clock.rate"]
+    assert not alone["clock.rate"].low95 <= rate <= alone["clock.rate"].high95
+    assert held.low95 <= rate <= held.high95
+    with_lag = extend(best, both["delay"], both["delay"].null)
+    assert widened(estimates(with_lag.fitted), with_lag, found) == estimates(with_lag.fitted)
+    in_a_table = replace(best.fitted.misfit, smooth=np.zeros((0, best.fitted.u.size)))
+    law = replace(best, fitted=replace(best.fitted, misfit=in_a_table))
+    assert widened(alone, law, found) == alone
