@@ -21,6 +21,7 @@ from diagnosis.errors.likelihood import Piece, Prior
 from diagnosis.errors.own import own_error
 from diagnosis.fit.misfit import Linear, Misfit
 from diagnosis.fit.solver import Fitted
+from diagnosis.fit.unknowns import without_instruments
 from diagnosis.fit.whitening import Whitening
 from models.base import FloatArray
 
@@ -124,12 +125,13 @@ def windows(scene: Scene, components: Sequence[Component]) -> list[Piece]:
 def stills(scene: Scene, components: Sequence[Component]) -> list[Piece]:
     """One piece a channel and recording, of all that is still there; its level is unknown.
 
+    A block may rock by little from the first sample to the last: it is still where the base does not start a motion.
     Accelerometers and load cells read the base's acceleration though nothing moves on it, and a wall on rubber sways
     slowly with a base that moves little: they are still where the base is.
     """
     m = scene.fitted.measured
     found = []
-    k, knots = scene.linear.by_unknown.shape[-1], knots_of(m, components)
+    k, knots, onset = scene.linear.by_unknown.shape[-1], knots_of(m, components), _onset(scene.fitted)
     for r, recording in enumerate(m.recordings):
         own = np.flatnonzero(m.recording_of == r)
         if not own.size:
@@ -137,8 +139,8 @@ def stills(scene: Scene, components: Sequence[Component]) -> list[Piece]:
         size = int(m.strides[own[0]])
         for c, name in enumerate(m.channels):
             values, quiet = recording.channels[name], still(recording.channels[name], recording.time_step)
-            if m.identification.elastic or (name in m.places and m.places[name].absolute):
-                quiet = calm(quiet, recording)
+            on_base = name in m.places and m.places[name].absolute
+            quiet = calm(quiet, recording, 0.0 if on_base else onset)
             at = np.array([i for s in quiet for i in range(-(-s.start // size), s.stop // size)], np.int64)
             if at.size < 8:
                 continue
@@ -162,6 +164,17 @@ def stills(scene: Scene, components: Sequence[Component]) -> list[Piece]:
             touched = _touched(knots, r, channel, time)
             found.append(Piece(time, channel, level, np.ones((at.size, 1)), blank, known, parts, *touched))
     return found
+
+
+def _onset(fitted: Fitted) -> float:
+    """Base acceleration (m s-2) that starts a motion at a fit; 0 where every one does."""
+    predictor = fitted.misfit.predictor
+    m = predictor.measured
+    if m.identification.onset is None:
+        return 0.0
+    (point,) = predictor.declared([fitted.misfit.point(fitted.u, fitted.states)])
+    derived = m.model.derive(without_instruments(point.values), predictor.options)
+    return float(np.min(m.identification.onset(derived)))
 
 
 def _touched(

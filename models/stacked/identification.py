@@ -31,4 +31,5 @@ IDENTIFICATION = Identification(
     dependences=DEPENDENCES,
     phases=PHASES,
     ladder=LADDER,
+    onset=lambda d: d["onset_acceleration"],
 )

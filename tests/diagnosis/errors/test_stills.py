@@ -1,4 +1,4 @@
-"""What is still in a recording: a wall on rubber only while its base is."""
+"""What is still in a recording: a wall on rubber only while its base is, a block while nothing starts a motion."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ import numpy as np
 import models
 from diagnosis.errors.components import Component
 from diagnosis.errors.pieces import Piece, opened, stills
-from diagnosis.fit.setup import measure
+from diagnosis.fit.setup import base_fit, measure
 from diagnosis.fit.solver import fit
 from grids.recordings.base import Recording
 from models.shaking import Shaking
 from tests.diagnosis.fit.test_walls import TRUE, WALL, misfit
-from tests.diagnosis.made import TIME_STEP, motion
+from tests.diagnosis.made import PEAK, SPECIMEN, TIME_STEP, motion, recording
 
 REST = 1.5
 
@@ -42,3 +42,23 @@ def test_a_wall_on_rubber_is_still_only_while_its_base_is() -> None:
     assert not quiet(0.0)  # swaying by less than the noise is no noise
     rested = quiet(REST)
     assert rested and all(piece.time.max() < REST for piece in rested)
+
+
+
+def still_while_rocking(before: float) -> list[Piece]:
+    """Of a block that rocks to the end of the recording, which begins ``before`` s before it lifts."""
+    whole = recording("run", 2)
+    lifts = int(np.argmax(np.abs(whole.channels["rotation_1"]) > 0.1 * PEAK))
+    part = slice(max(0, lifts - round(before / TIME_STEP)), lifts + round(4.0 / TIME_STEP))
+    channels = {name: values[part] for name, values in whole.channels.items()}
+    cut = Recording("cut", TIME_STEP, whole.time[part] - whole.time[part.start], channels)
+    measured = measure(SPECIMEN, [cut])
+    found = base_fit(SPECIMEN, measured)
+    nothing = np.zeros((*measured.values.shape, 0))
+    return stills(opened(found, nothing, nothing), [Component("white", 0)])
+
+
+def test_a_block_that_rocks_by_little_is_not_still() -> None:
+    assert not still_while_rocking(0.0)
+    (piece,) = still_while_rocking(1.3)
+    assert piece.time.max() < 1.3 and piece.residual.std() < 2.0
