@@ -282,7 +282,8 @@ class Identification:
 
     ``chaotic``: neighbouring trajectories diverge quickly, so that runs from rest show little. ``onset``: of the
     constants of one wall, horizontal base acceleration (m s-2) below which nothing at rest starts to move; None where
-    the bodies move with every motion of the base, and are still only where it is. ``windows`` None: the model runs through whole recordings (``stretches``). ``forces`` empty: laws outside the library are not tested for.
+    the bodies move with every motion of the base, and are still only where it is. ``windows`` None: the model runs
+    through whole recordings (``stretches``). ``forces`` empty: laws outside the library are not tested for.
     ``phases``: every phase word in plain English. ``scatter`` None: events are taken to repeat exactly.
     ``most_effects``: how many a search adds at most; ``further_work``: what it may cost, over that of other models;
     ``speed``: lane-steps a second of the model's kernel over those of a wall's, with which a search's budget of work

@@ -138,7 +138,7 @@ class Prescribed:
 class Run:
     """Outputs ``(n,)`` by name, states ``(n, samples, k)`` as the model orders them, and events lane by lane.
 
-    ``steps``: lane-steps that a kernel has computed.
+    ``steps``: lane-steps that a kernel has computed; those that take longer than most count as several.
     """
 
     outputs: Mapping[str, NDArray[Any]]

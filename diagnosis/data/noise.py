@@ -26,7 +26,7 @@ BAND = 15.0
 STILL, FEWEST = 0.35, 3
 """s that nothing moves, and how many such stretches must follow one another."""
 CALM, BELOW = 5.0, 0.8
-"""Largest acceleration of the base over its noise while nothing shakes it; over what starts a motion, to be below it."""
+"""Largest acceleration of the base over its noise while nothing shakes it; over what starts a motion, to start none."""
 LIKE = 1.5
 """Range of a still stretch over that of the stillest ones."""
 MOST = 200.0
