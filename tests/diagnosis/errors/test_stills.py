@@ -44,7 +44,6 @@ def test_a_wall_on_rubber_is_still_only_while_its_base_is() -> None:
     assert rested and all(piece.time.max() < REST for piece in rested)
 
 
-
 def still_while_rocking(before: float) -> list[Piece]:
     """Of a block that rocks to the end of the recording, which begins ``before`` s before it lifts."""
     whole = recording("run", 2)
