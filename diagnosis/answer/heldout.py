@@ -21,7 +21,7 @@ from diagnosis.errors.model import Errors
 from diagnosis.fit.memory import counted
 from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.prediction import Point, Predictor
-from diagnosis.fit.solver import fit_thoroughly
+from diagnosis.fit.solver import fit, fit_thoroughly
 from diagnosis.search.refit import Explanation
 from models.base import FloatArray
 
@@ -62,9 +62,9 @@ def frozen(
     own = explanation.measured
     learned = measured.windows == own.windows and measured.recordings == own.recordings
     states, whitening = explanation.fitted.states if learned else measured.states, errors.of_sensors(measured)
-    for _ in range(2):
+    for fitting in (fit_thoroughly, fit):  # again with the events before each window counted
         alone = Misfit(predictor, whitening, (), fixed)
-        states = fit_thoroughly(alone, np.zeros(0), states).states
+        states = fitting(alone, np.zeros(0), states).states
         point = alone.point(np.zeros(0), states)
         predictor = replace(predictor, measured=counted(predictor, point))
     return point, predictor.predict([point])[0]

@@ -209,7 +209,8 @@ def _whole(place: _Place) -> _Place | None:
 def _search(place: _Place, damping: float) -> tuple[int, _Place | None]:
     """The best of some dampings, with the best step of the states in each window; None where nothing is gained."""
     misfit, states, residual = place.misfit, place.states, place.linear.residual
-    changes = [place.change(damping * d) for d in DAMPINGS]
+    shared = place.linear.by_unknown.shape[-1] > 0  # without, no damping changes anything
+    changes = [place.change(damping * d) for d in (DAMPINGS if shared else DAMPINGS[:1])]
     shares = STATE_STEPS if states.shape[1] else STATE_STEPS[:1]
     steps, moved = [place.moved(change) for change in changes], []
     for change in changes:

@@ -65,7 +65,10 @@ def noise_of(values: FloatArray) -> Noise:
     quiet = np.abs(residual) < OUTLIER * spread
     pairs = quiet[:-1] & quiet[1:]
     before, after = residual[:-1][pairs], residual[1:][pairs]
-    lag_one = float(before @ after / np.sqrt((before @ before) * (after @ after)))
+    size = float(np.sqrt((before @ before) * (after @ after)))
+    if size == 0.0:  # silent but for the signal
+        return Noise(0.0, if_white, if_white, True)
+    lag_one = float(before @ after) / size
     tolerance = max(LAG_TOLERANCE, 4.0 / np.sqrt(pairs.sum()))
     return Noise(spread / np.sqrt(energy), lag_one, if_white, abs(lag_one - if_white) < tolerance)
 

@@ -347,6 +347,8 @@ def test_noise_scales_with_the_channel_and_vanishes_without_noise() -> None:
     values = np.cumsum(rng.normal(0, 1e-4, 2000)) + rng.normal(0, 0.1, 2000)
     assert noise_of(1e3 * values).sigma == pytest.approx(1e3 * noise_of(values).sigma, rel=1e-12)
     assert noise_of(np.zeros(100)).sigma == 0.0
+    shaken = np.concatenate([np.zeros(24), np.random.default_rng(0).normal(size=16)])
+    assert noise_of(shaken).sigma == 0.0  # a computed channel that begins at rest
     with pytest.raises(InputError, match="10 samples is too short"):
         noise_of(np.zeros(10))
 

@@ -54,8 +54,11 @@ def relax(given: Table, w: Table, lane: int, slot: int, record: Table, i: int, g
 def rates(
     given: Table, w: Table, lane: int, slot: int, up: bool, theta: float, omega: float, eta: float, speed: float,
     a: float, g: float, p: float, q: float, general: Any, linear: Any,
-) -> tuple[float, float, float]:  # fmt: skip
-    """theta'', eta'' and the power lost in couples and in bending over M; theta is held where not ``up``."""
+) -> tuple[float, float, float, float, float]:  # fmt: skip
+    """theta'', eta'', the power lost in couples and in bending over M; for the reactions X_theta, Z_theta (m).
+
+    theta is held where not ``up``.
+    """
     m, k, force = given[lane, r.Q_MODAL_MASS], given[lane, r.Q_MODAL_MOMENT], given[lane, r.Q_MODAL_FORCE]
     natural = given[lane, r.Q_FREQUENCY]
     sine, cosine = math.sin(theta), math.cos(theta)
@@ -63,7 +66,7 @@ def rates(
     loss = 2.0 * STRUCTURAL_DAMPING * natural * speed
     push = force * (g * sine - base * cosine) - m * (loss + natural * natural * eta) - k * q
     if not up:
-        return 0.0, push / m, m * loss * speed
+        return 0.0, push / m, m * loss * speed, 0.0, 0.0
     second, x, z, power = acceleration(w, slot, theta, omega, a, g, p, q, general, linear)
     bf = w[r.SIDE, slot] * pivot(given, w, lane, slot, w[r.SIDE, slot]) * force
     rigid = w[r.IM, slot] + x * x + z * z
@@ -71,23 +74,28 @@ def rates(
     push += omega * omega * (m * eta - bf)
     moment = rigid * second + force * eta * (g * cosine + base * sine) - 2.0 * omega * speed * (m * eta - bf)
     alpha = (moment - k / m * push) / (inertia - k * k / m)
-    return alpha, (push - k * alpha) / m, power + m * loss * speed
+    return alpha, (push - k * alpha) / m, power + m * loss * speed, x, z
 
 
 @called
 def move(
-    given: Table, w: Table, lane: int, slot: int, up: bool, record: Table, i: int, f: float, share: float, h: float,
-    general: Any, linear: Any,
+    given: Table, w: Table, lane: int, slot: int, up: bool, start: tuple[float, float, float, float, float],
+    record: Table, i: int, f: float, share: float, h: float, general: Any, linear: Any,
 ) -> tuple[float, float, float, float, float]:  # fmt: skip
-    """theta, theta', eta, eta' and the work lost over M after ``share`` of step i from its fraction f."""
+    """theta, theta', eta, eta' and the work lost over M after ``share`` of step i from its fraction f.
+
+    ``start``: the `rates` there.
+    """
     theta, omega = w[r.TH, slot], w[r.OM, slot]
     eta, speed = w[r.U, slot], w[r.U1, slot]
     step = share * h
     th, om, et, sp = theta, omega, eta, speed
     d_th, d_om, d_et, d_sp, work = 0.0, 0.0, 0.0, 0.0, 0.0
     for stage in range(4):
-        a, g, p, q = inputs(w, slot, record, i, f + (0.0 if stage == 0 else 1.0 if stage == 3 else 0.5) * share)
-        alpha, beta, power = rates(given, w, lane, slot, up, th, om, et, sp, a, g, p, q, general, linear)
+        alpha, beta, power, _, _ = start
+        if stage > 0:
+            a, g, p, q = inputs(w, slot, record, i, f + (1.0 if stage == 3 else 0.5) * share)
+            alpha, beta, power, _, _ = rates(given, w, lane, slot, up, th, om, et, sp, a, g, p, q, general, linear)
         weight = step / 6.0 if stage == 0 or stage == 3 else step / 3.0
         d_th, d_om = d_th + weight * om, d_om + weight * alpha
         d_et, d_sp = d_et + weight * sp, d_sp + weight * beta
@@ -99,14 +107,13 @@ def move(
 
 @called
 def note_demand(
-    given: Table, w: Table, lane: int, slot: int, record: Table, i: int, f: float, general: Any, linear: Any
-) -> None:
-    """The friction demand |H|/N at the corner, the bending wall's inertia included."""
+    given: Table, w: Table, lane: int, slot: int, start: tuple[float, float, float, float, float],
+    a: float, g: float, p: float, q: float,
+) -> None:  # fmt: skip
+    """The friction demand |H|/N at the corner, the bending wall's inertia included, where the `rates` are ``start``."""
     theta, omega = w[r.TH, slot], w[r.OM, slot]
     eta, speed = w[r.U, slot], w[r.U1, slot]
-    a, g, p, q = inputs(w, slot, record, i, f)
-    alpha, beta, _ = rates(given, w, lane, slot, True, theta, omega, eta, speed, a, g, p, q, general, linear)
-    _, x, z, _ = acceleration(w, slot, theta, omega, a, g, p, q, general, linear)
+    alpha, beta, _, x, z = start
     force, sine, cosine = given[lane, r.Q_MODAL_FORCE], math.sin(theta), math.cos(theta)
     across, along = beta - eta * omega * omega, 2.0 * speed * omega + eta * alpha
     right = a - g * p + w[r.H, slot] * q + x * alpha + z * omega * omega
@@ -118,12 +125,13 @@ def note_demand(
 
 @called
 def lifting(
-    given: Table, w: Table, lane: int, slot: int, side: float, eta: float, speed: float, record: Table, i: int,
-    f: float, general: Any, linear: Any,
+    given: Table, w: Table, lane: int, slot: int, side: float, eta: float, beta: float,
+    a: float, g: float, p: float, q: float,
 ) -> float:  # fmt: skip
-    """Moment over M, the bending wall's included, that lifts the base onto ``side``: positive means uplift."""
-    a, g, p, q = inputs(w, slot, record, i, f)
-    _, beta, _ = rates(given, w, lane, slot, False, 0.0, 0.0, eta, speed, a, g, p, q, general, linear)
+    """Moment over M, the bending wall's included, that lifts the base onto ``side``: positive means uplift.
+
+    ``beta``: eta'' of the wall that stands.
+    """
     h = given[lane, r.Q_HEIGHT]
     own = given[lane, r.Q_INERTIA] / given[lane, r.Q_MASS] + h * h
     moment = given[lane, r.Q_MODAL_MOMENT] * beta + (a - g * p) * h + own * q - g * given[lane, r.Q_MODAL_FORCE] * eta
@@ -139,22 +147,26 @@ def piece(
     up = result[lane, r.R_MODE] == r.UP
     theta, omega = w[r.TH, slot], w[r.OM, slot]
     side = w[r.SIDE, slot]
+    eta, speed = w[r.U, slot], w[r.U1, slot]
+    a, g, p, q = inputs(w, slot, record, i, f)
+    if up and omega != 0.0:
+        w[r.DIRECTION, slot] = 1.0 if omega > 0.0 else -1.0
+    start = rates(given, w, lane, slot, up, theta, omega, eta, speed, a, g, p, q, general, linear)
     if up:
-        if omega != 0.0:
-            w[r.DIRECTION, slot] = 1.0 if omega > 0.0 else -1.0
-        note_demand(given, w, lane, slot, record, i, f, general, linear)
+        note_demand(given, w, lane, slot, start, a, g, p, q)
     else:
-        eta, speed = w[r.U, slot], w[r.U1, slot]
         for s in (1.0, -1.0):
-            if lifting(given, w, lane, slot, s, eta, speed, record, i, f, general, linear) > 0.0:
+            if lifting(given, w, lane, slot, s, eta, start[1], a, g, p, q) > 0.0:
                 lift_off(given, result, w, lane, slot, s, (i + f) * h, log, count, linear)
                 return f
     low, high, side_up = 0.0, 1.0 - f, 0.0
-    th1, om1, eta1, speed1, work = move(given, w, lane, slot, up, record, i, f, high, h, general, linear)
+    th1, om1, eta1, speed1, work = move(given, w, lane, slot, up, start, record, i, f, high, h, general, linear)
     over = up and side * th1 < 0.0
     if not up:
+        a, g, p, q = inputs(w, slot, record, i, 1.0)
+        _, beta, _, _, _ = rates(given, w, lane, slot, False, 0.0, 0.0, eta1, speed1, a, g, p, q, general, linear)
         for s in (1.0, -1.0):
-            if lifting(given, w, lane, slot, s, eta1, speed1, record, i, 1.0, general, linear) > 0.0:
+            if lifting(given, w, lane, slot, s, eta1, beta, a, g, p, q) > 0.0:
                 side_up, over = s, True
     share = high
     if over:
@@ -166,17 +178,21 @@ def piece(
             if before > 0.0 and after < 0.0 and k % 3 < 2:
                 share = low + (high - low) * before / (before - after)
                 share = min(max(share + (1e-3 if k % 3 else -1e-3) * (high - low), low), high)
-            th1, om1, eta1, speed1, work = move(given, w, lane, slot, up, record, i, f, share, h, general, linear)
+            th1, om1, eta1, speed1, work = move(
+                given, w, lane, slot, up, start, record, i, f, share, h, general, linear
+            )
             if up:
                 margin = side * th1
             else:
-                margin = -lifting(given, w, lane, slot, side_up, eta1, speed1, record, i, f + share, general, linear)
+                a, g, p, q = inputs(w, slot, record, i, f + share)
+                rest = rates(given, w, lane, slot, False, 0.0, 0.0, eta1, speed1, a, g, p, q, general, linear)
+                margin = -lifting(given, w, lane, slot, side_up, eta1, rest[1], a, g, p, q)
             if margin > 0.0:
                 low, before = share, margin
             else:
                 high, after = share, margin
         share = high
-        th1, om1, eta1, speed1, work = move(given, w, lane, slot, up, record, i, f, share, h, general, linear)
+        th1, om1, eta1, speed1, work = move(given, w, lane, slot, up, start, record, i, f, share, h, general, linear)
     if omega * om1 < 0.0:
         raise_peak(result, w, lane, slot, turning_point(theta, omega, th1, om1, share * h))
     w[r.TH, slot], w[r.OM, slot] = th1, om1
