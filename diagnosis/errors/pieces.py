@@ -19,6 +19,7 @@ from diagnosis.errors.components import Component, Diagonal, Kind, LowRank, Part
 from diagnosis.errors.drifts import Knots, knots_of
 from diagnosis.errors.likelihood import Piece, Prior
 from diagnosis.errors.own import own_error
+from diagnosis.fit.from_rest import from_rest, samples_within_noise
 from diagnosis.fit.misfit import Linear, Misfit
 from diagnosis.fit.solver import Fitted
 from diagnosis.fit.unknowns import without_instruments
@@ -27,6 +28,8 @@ from models.base import FloatArray
 
 LONGEST_STILL = 300
 """Averages of a still stretch that are used: the first and the last half of them."""
+FEWEST_STILL, SHORTEST_BEGINNING = 8, 0.5
+"""Averages that a still stretch has at least; s from rest to a motion beyond the noise that tell of that noise."""
 LARGEST_DRIFT = 1.0
 """Variance of a drift over that of the noise; a sensor that is knocked goes further."""
 LARGEST: dict[Kind, float] = {"scatter": 0.03**2}
@@ -127,43 +130,74 @@ def stills(scene: Scene, components: Sequence[Component]) -> list[Piece]:
 
     A block may rock by little from the first sample to the last: it is still where the base does not start a motion.
     Accelerometers and load cells read the base's acceleration though nothing moves on it, and a wall on rubber sways
-    slowly with a base that moves little: they are still where the base is.
+    with a base that moves little: they are still where the base is. Before that wall first moves beyond the noise, what
+    the model predicts from rest is taken off: then it need not be still.
     """
     m = scene.fitted.measured
     found = []
-    k, knots, onset = scene.linear.by_unknown.shape[-1], knots_of(m, components), _onset(scene.fitted)
+    onset = _onset(scene.fitted)
     for r, recording in enumerate(m.recordings):
         own = np.flatnonzero(m.recording_of == r)
         if not own.size:
             continue
+        begins = _beginning(scene.fitted, r) if m.stretches is None and m.identification.onset is None else None
         size = int(m.strides[own[0]])
         for c, name in enumerate(m.channels):
-            values, quiet = recording.channels[name], still(recording.channels[name], recording.time_step)
+            unit = float(m.units[own[0], c])
+            after = 0
+            if begins is not None:
+                after = begins.shape[1]
+                rest = _means(begins[c] - recording.channels[name][:after], size)
+                latest = np.arange(rest.size)[-LONGEST_STILL:]
+                found += _still(scene, components, r, c, latest, rest[latest] / unit)
             on_base = name in m.places and m.places[name].absolute
-            quiet = calm(quiet, recording, 0.0 if on_base else onset)
-            at = np.array([i for s in quiet for i in range(-(-s.start // size), s.stop // size)], np.int64)
-            if at.size < 8:
-                continue
+            quiet = calm(still(recording.channels[name], recording.time_step), recording, 0.0 if on_base else onset)
+            means = _means(recording.channels[name], size)
+            at = np.array([i for s in quiet for i in range(-(-max(s.start, after) // size), s.stop // size)], np.int64)
             if at.size > LONGEST_STILL:
                 at = np.concatenate([at[: LONGEST_STILL // 2], at[-LONGEST_STILL // 2 :]])
-            means = values[: values.size // size * size].reshape(-1, size).mean(axis=1)
-            level = np.asarray(
-                (means[at].mean() - means[at]) / m.units[own[0], c], np.float64
-            )  # predicted minus measured
-            inside = slice(0, at.size)
-            parts = tuple(
-                _stationary(component, at, recording.time_step * size, inside, float(size))
-                if component.channel == c and not component.moving and not component.shared
-                else None
-                for component in components
-            )
-            known = np.diag(np.full(at.size, FLOOR / size))
-            time = np.asarray(at * recording.time_step * size, np.float64)
-            channel = np.full(at.size, c)
-            blank = np.zeros((at.size, k))
-            touched = _touched(knots, r, channel, time)
-            found.append(Piece(time, channel, level, np.ones((at.size, 1)), blank, known, parts, *touched))
+            found += _still(scene, components, r, c, at, -means[at] / unit)
     return found
+
+
+def _still(
+    scene: Scene, components: Sequence[Component], r: int, c: int, at: NDArray[np.int64], rest: FloatArray
+) -> list[Piece]:
+    """The averages ``at`` of a channel, predicted minus measured to within a level: a piece, unless they are few."""
+    if at.size < FEWEST_STILL:
+        return []
+    m, inside = scene.fitted.measured, slice(0, at.size)
+    knots, k = knots_of(m, components), scene.linear.by_unknown.shape[-1]
+    size = float(m.strides[int(np.flatnonzero(m.recording_of == r)[0])])
+    step = m.recordings[r].time_step * size
+    parts = tuple(
+        _stationary(component, at, step, inside, size)
+        if component.channel == c and not component.moving and not component.shared
+        else None
+        for component in components
+    )
+    known, time, channel = (
+        np.diag(np.full(at.size, FLOOR / size)),
+        np.asarray(at * step, np.float64),
+        np.full(at.size, c),
+    )
+    touched, blank = _touched(knots, r, channel, time), np.zeros((at.size, k))
+    return [Piece(time, channel, rest - rest.mean(), np.ones((at.size, 1)), blank, known, parts, *touched)]
+
+
+def _means(values: FloatArray, size: int) -> FloatArray:
+    """Averages over ``size`` successive samples (n,)."""
+    return np.asarray(values[: values.size // size * size].reshape(-1, size).mean(axis=1))
+
+
+def _beginning(fitted: Fitted, recording: int) -> FloatArray | None:
+    """Channels (C, n) from rest to the first motion beyond the noise, as predicted; None where that comes at once."""
+    m, predictor = fitted.measured, fitted.misfit.predictor
+    samples = samples_within_noise(m, recording)
+    if samples * m.recordings[recording].time_step < SHORTEST_BEGINNING:
+        return None
+    found = from_rest(predictor, fitted.misfit.point(fitted.u, fitted.states), recording, samples)
+    return found if np.all(np.isfinite(found)) else None
 
 
 def _onset(fitted: Fitted) -> float:

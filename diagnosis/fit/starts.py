@@ -1,4 +1,4 @@
-"""Where the fit of a base model starts: searched over its ranges, from the measured states or from those of a fit."""
+"""Where a fit starts: searched over the ranges of its model, from the measured states or from those of a fit."""
 
 from __future__ import annotations
 
@@ -31,7 +31,11 @@ def best_start(misfit: Misfit, seed: int = 0, origins: Sequence[Origin] = ()) ->
 
     Unknowns with a range are those of a Sobol set, the others nominal; from ``origins`` what is not known there.
     """
-    origins = (nominal(misfit), *origins)
+    return searched(misfit, (nominal(misfit), *origins), seed)
+
+
+def searched(misfit: Misfit, origins: Sequence[Origin], seed: int = 0) -> Fitted:
+    """The best of starts from ``origins`` over what is not known there, a few iterations on if there are several."""
     starts = [start for origin in origins for start in _over_ranges(misfit, origin, seed, len(origins))]
     if len(starts) == 1:
         ((u, states),) = starts

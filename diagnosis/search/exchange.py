@@ -14,7 +14,7 @@ from diagnosis.search.beside import extended, seconds
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.found import Search, adjusted
 from diagnosis.search.left_out import predicts_worse
-from diagnosis.search.refit import Explanation, again, gain_by_window, reshaped, without
+from diagnosis.search.refit import Explanation, again, gain_by_window, over_ranges, reshaped, without
 from diagnosis.search.weighing import weigh_again
 
 ROUNDS = 4
@@ -38,7 +38,7 @@ def exchanged(found: Search, progress: Progress) -> None:
         found.best = better
         if not others:
             return
-        found.best = again(reshaped(better))
+        found.best = over_ranges(again(reshaped(better)))
         weigh_again(found)
         if frozenset(found.best.candidates) in held:
             return

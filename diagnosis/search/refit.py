@@ -10,6 +10,7 @@ import numpy as np
 from diagnosis.data.measured import Measured
 from diagnosis.fit.memory import counted
 from diagnosis.fit.solver import ITERATIONS, Fitted, fit, fit_thoroughly
+from diagnosis.fit.starts import Origin, searched
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.spells import in_spell
 from models.base import FloatArray
@@ -131,6 +132,22 @@ def from_other(explanation: Explanation, other: Explanation) -> Explanation:
         ]
     )
     tried = Explanation(explanation.candidates, fit(mine.misfit, u, other.fitted.states))
+    return min((explanation, tried), key=lambda e: e.loss)
+
+
+def over_ranges(explanation: Explanation) -> Explanation:
+    """The best of this fit and of one from elsewhere in the ranges of the specimen's parameters; the effects stay.
+
+    A model that lacks something goes astray in its ranges, layers to their softest and their dashpots to their
+    strongest, and a fit with what it lacked ends in that valley.
+    """
+    fitted = explanation.fitted
+    effects = {x.name for c in explanation.candidates for x in c.unknowns}
+    known = np.array([x.prior is not None or x.name in effects for x in fitted.misfit.unknowns], bool)
+    if known.all() or fitted.measured.stretches is not None:
+        return explanation
+    origins = [Origin(fitted.u, states, known) for states in (fitted.states, fitted.measured.states)]
+    tried = again(replace(explanation, fitted=searched(fitted.misfit, origins)))
     return min((explanation, tried), key=lambda e: e.loss)
 
 

@@ -29,6 +29,7 @@ from diagnosis.search.refit import (
     best_of,
     extend,
     from_other,
+    over_ranges,
     reshaped,
     with_memory,
 )
@@ -138,7 +139,7 @@ def _singles(found: Search, progress: Progress) -> None:
         return
     if adequate(found.base) and found.gain(found.singles[0]) < FAINT:
         return
-    found.singles[0] = again(reshaped(found.singles[0]))
+    found.singles[0] = over_ranges(again(reshaped(found.singles[0])))
     if found.gain(found.singles[0]) < MISSING:
         return
     if led_by(found, found.singles[0]):
@@ -237,7 +238,7 @@ def _pairs(found: Search, progress: Progress) -> None:
     pair = min(pairs, key=adjusted)
     alone = best_of([e for e in found.singles if e.names[0] in pair.names] or [found.best])
     if adjusted(found.best) - adjusted(pair) >= found.more and survives(alone, pair, found.more):
-        found.best = again(reshaped(pair))
+        found.best = over_ranges(again(reshaped(pair)))
         weigh_again(found)
         exchanged(found, progress)  # before a third: what stands in for another effect leaves traces of its own
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 import models
 from diagnosis.errors.components import Component
-from diagnosis.errors.pieces import Piece, opened, stills
+from diagnosis.errors.pieces import LONGEST_STILL, Piece, opened, stills
 from diagnosis.fit.setup import base_fit, measure
 from diagnosis.fit.solver import fit
 from grids.recordings.base import Recording
@@ -14,13 +15,13 @@ from models.shaking import Shaking
 from tests.diagnosis.fit.test_walls import TRUE, WALL, misfit
 from tests.diagnosis.made import PEAK, SPECIMEN, TIME_STEP, motion, recording
 
-REST = 1.5
+REST, SWAYS = 1.5, 3.0
 
 
 def recorded(rest: float) -> Recording:
-    """A wall that the table first moves slowly, so that it sways by less than the noise of its sensors."""
+    """A wall that the table first moves slowly, so that it sways by some times the noise of its sensors."""
     strong, lead = motion(1, pga=3.0).horizontal, np.zeros(round(rest / TIME_STEP))
-    slow = 0.02 * np.sin(2.0 * np.pi * 0.3 * TIME_STEP * np.arange(round(3.0 / TIME_STEP)))
+    slow = 0.15 * np.sin(2.0 * np.pi * 0.6 * TIME_STEP * np.arange(round(SWAYS / TIME_STEP)))
     base = Shaking(TIME_STEP, np.concatenate([lead, slow, strong]))
     ran, rng = models.get("interface").simulate(TRUE, base, duration=base.duration), np.random.default_rng(8)
     channels = {"base_acceleration_x": base.horizontal + 0.002 * rng.normal(size=base.horizontal.size)}
@@ -38,10 +39,23 @@ def quiet(rest: float) -> list[Piece]:
     return stills(opened(found, nothing, nothing), [Component("white", 0)])
 
 
-def test_a_wall_on_rubber_is_still_only_while_its_base_is() -> None:
-    assert not quiet(0.0)  # swaying by less than the noise is no noise
-    rested = quiet(REST)
-    assert rested and all(piece.time.max() < REST for piece in rested)
+def correlation(values: np.ndarray) -> float:
+    """Of a series with itself one sample later."""
+    return float(np.corrcoef(values[1:], values[:-1])[0, 1])
+
+
+def test_what_a_wall_on_rubber_sways_by_before_it_moves_beyond_the_noise_is_no_noise() -> None:
+    swaying = recorded(0.0)
+    for piece, channel in zip(quiet(0.0), ("rotation_1", "rotation_2"), strict=True):
+        assert piece.time.max() > 0.8 * SWAYS
+        assert abs(correlation(piece.residual)) < 0.2 and piece.residual.std() == pytest.approx(np.sqrt(0.5), rel=0.1)
+        means = swaying.channels[channel][: 2 * piece.residual.size].reshape(-1, 2).mean(axis=1)
+        assert correlation(means) > 0.7
+
+
+def test_rest_before_it_is_part_of_it_but_no_more_than_is_needed() -> None:
+    for piece in quiet(REST):
+        assert piece.time.max() > REST + 0.8 * SWAYS and piece.residual.size <= LONGEST_STILL
 
 
 def still_while_rocking(before: float) -> list[Piece]:
