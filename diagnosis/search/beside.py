@@ -22,7 +22,8 @@ SHARE_OF_SECOND = 0.25
 """Of the strongest statistic: what a further mechanism must reach to be refitted."""
 FEWEST_SECOND, SECOND_TRIES = 2, 6
 HOPELESS = 8.0
-"""Statistic of the strongest further mechanism under which a model that explains all windows is not extended."""
+"""Statistic under which a further mechanism does not extend a model that explains all windows, and one of many short
+steps is not refitted."""
 HEAVY = 5.0
 """Lane-steps of a trial, over those of most mechanisms, from which a mechanism counts as one of many short steps."""
 APART = 3.0
@@ -33,16 +34,24 @@ POOL_SHARE = 0.25
 
 
 def worth_a_refit(scores: Sequence[Score], fewest: int, share: float) -> list[Score]:
-    """Those whose statistic is worth it beside the strongest one's, and the ``fewest`` first in any case."""
+    """Those whose statistic is worth it beside the strongest one's, and the ``fewest`` first in any case.
+
+    But not those of many short steps where the statistic, which of them is a gain at values tried, leaves no hope.
+    """
     largest = max((s.statistic for s in scores), default=0.0)
     least = max(WORTH, share * largest)
-    return [s for k, s in enumerate(scores) if s.starts and (k < fewest or s.statistic >= least)]
+    hopeful = [s for s in scores if s.starts and not (s.statistic < HOPELESS and _heavy(s, scores))]
+    return [s for k, s in enumerate(hopeful) if k < fewest or s.statistic >= least]
 
 
 def starts_of(entry: Score, scores: Sequence[Score]) -> tuple[FloatArray, ...]:
     """Where its refits start; from the better one alone where the kernel needs many short steps."""
-    usual = float(np.median([s.work for s in scores]))
-    return entry.starts[:1] if entry.work > HEAVY * usual else entry.starts
+    return entry.starts[:1] if _heavy(entry, scores) else entry.starts
+
+
+def _heavy(entry: Score, scores: Sequence[Score]) -> bool:
+    """Whether its kernel needs many short steps beside that of most mechanisms."""
+    return bool(entry.work > HEAVY * float(np.median([s.work for s in scores])))
 
 
 def seconds(found: Search, explanation: Explanation) -> list[Score]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from diagnosis.errors.model import calibrated
@@ -11,7 +12,7 @@ from diagnosis.search import beside
 from diagnosis.search.candidates import candidates
 from diagnosis.search.found import Search
 from diagnosis.search.refit import QUICK, Explanation, extend
-from diagnosis.search.screen import score
+from diagnosis.search.screen import Score, score
 from tests.diagnosis.made import SPECIMEN, recording
 
 
@@ -32,3 +33,19 @@ def test_a_single_that_clashes_with_what_was_found_is_said_and_passed_over(monke
     monkeypatch.setattr(beside, "_strong_alone", lambda search, one: [bending])
     assert beside.extended(found, corner, [], widely=True) == []
     assert "do not act together" in found.not_tried["wall_flexibility"]
+
+
+def test_a_mechanism_of_many_short_steps_is_refitted_where_its_statistic_gives_hope() -> None:
+    measured = measure(SPECIMEN, [recording("a", 1)])
+    some = candidates(measured, SPECIMEN)[:6]
+    start, column = (np.zeros(1),), np.zeros((1, 1))
+
+    def chosen(statistic: float, work: float) -> list[int]:
+        entries = [Score(c, 9.0 - k, start, column, work=100.0) for k, c in enumerate(some[1:])]
+        one = Score(some[0], statistic, start, column, work=work)
+        taken = beside.worth_a_refit(sorted([one, *entries], key=lambda s: -s.statistic), 6, 0.5)
+        return [some.index(s.candidate) for s in taken]
+
+    assert chosen(7.5, 100.0) == [1, 2, 0, 3, 4, 5]
+    assert chosen(7.5, 1000.0) == [1, 2, 3, 4, 5]
+    assert chosen(8.5, 1000.0) == [1, 0, 2, 3, 4, 5]
