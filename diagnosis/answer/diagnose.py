@@ -16,8 +16,9 @@ from diagnosis.answer.ladder import confirmed, other_model
 from diagnosis.answer.located import located
 from diagnosis.answer.missing_force import missing_force
 from diagnosis.answer.posterior import posterior
+from diagnosis.answer.ranges import beyond_ranges
 from diagnosis.answer.rescale import over_peak, true_peak
-from diagnosis.answer.result import Diagnosis, Effect, Located, Rival, Screened, Visited
+from diagnosis.answer.result import Beyond, Diagnosis, Effect, Located, Rival, Screened, Visited
 from diagnosis.answer.shows import shows
 from diagnosis.answer.statement import statement
 from diagnosis.answer.when import stages_of
@@ -148,7 +149,10 @@ def _assemble(
 
     first_held = stages.needed(lambda: of_held(judged, to_show, 0.88)) if to_show else None
     against = contradicted(found, first_held) if first_held and climbed is None else None
-    doubted = bool(flagged) or errors.inadequacy.large or against is not None
+    beyond: tuple[Beyond, ...] = ()
+    if found.best is not None and climbed is None and not flagged:
+        beyond = stages.optional("whether effects go beyond their ranges", lambda: beyond_ranges(found), tuple)
+    doubted = bool(flagged) or errors.inadequacy.large or against is not None or bool(beyond)
     verdict = verdict_of(found, near, doubted, not unexplained, finished)
     gains = [climbed.gain] if climbed else stages.needed(lambda: evidence(found))
     p_value = p_of_missing(found, gains, errors.inadequacy, flagged, finished)
@@ -172,7 +176,7 @@ def _assemble(
     if law:
         gains = [gain for c, gain in zip(chosen.candidates, gains, strict=True) if c in final.candidates]
         if not final.candidates:  # nothing is told of what the law replaced
-            near, against = [], None
+            near, against, beyond = [], None, ()
         shown = [stages.needed(lambda: compare(found.base, final, measured, found.errors))]
     settled_at, effects, base = stages.optional(
         "the profile likelihood (the intervals are symmetric instead)",
@@ -242,6 +246,7 @@ def _assemble(
         missing_force=force,
         held_stages=held.held_stages if held else (),
         contradicted=against,
+        beyond=beyond,
         other_model=other_model(climbed, final) if climbed else None,
         errors=errors,
         channels=stages.optional("what each channel adds", lambda: added_by_channels(final.fitted), dict),

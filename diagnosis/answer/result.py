@@ -211,6 +211,21 @@ class OtherModel:
 
 
 @dataclass(frozen=True)
+class Beyond:
+    """An ``effect`` whose ``parameter`` ends at the ``limit`` of its range and, released, goes on to ``wanted``.
+
+    ``evidence``: what that gains in 2 log likelihood.
+    """
+
+    effect: str
+    parameter: str
+    limit: float
+    wanted: float
+    unit: str
+    evidence: float
+
+
+@dataclass(frozen=True)
 class Diagnosis:
     """The answer. Everything the report shows is here; nothing in the report is computed anew."""
 
@@ -245,6 +260,8 @@ class Diagnosis:
     """In which state recordings held out were predicted, of effects that do not always act."""
     contradicted: tuple[float, float] | None = None
     """Misfit on recordings held out without and with the effects found, where that is why they are no explanation."""
+    beyond: tuple[Beyond, ...] = ()
+    """Effects found that would have to be larger than the library takes for possible: they are no explanation."""
     visited: tuple[Visited, ...] = ()
     """The force, jump or error of each named effect over what was visited."""
     reference_peak: float | None = None

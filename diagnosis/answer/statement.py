@@ -7,7 +7,7 @@ from string import Formatter
 from typing import Any
 
 from diagnosis.answer.phases import EVERYWHERE, words_of
-from diagnosis.answer.result import Diagnosis, Effect, Extrapolated, Fit, Located
+from diagnosis.answer.result import Beyond, Diagnosis, Effect, Extrapolated, Fit, Located
 from diagnosis.answer.when import comes_and_goes, held_text, when_text
 from diagnosis.data.measured import identification_of
 from diagnosis.fit.unknowns import effects
@@ -61,6 +61,7 @@ def statement(found: Diagnosis, model: Model) -> str:
         parts.append("That does not settle it: what is missing is not in the library of mechanisms.")
         parts += _left_out(found)
         parts += _contradicted(found)
+        parts += [_beyond(one) for one in found.beyond]
         acting = declared if found.other_model is None else identification_of(get(found.other_model.model))
         parts += [_flag(flag, acting) for flag in _distinct(found.constancy)[:2]]
         if found.missing_force:
@@ -117,6 +118,16 @@ def _extrapolated(one: Extrapolated) -> str:
         f"{one.recording} reaches {one.peak:.3g} {one.unit}, {one.peak / one.learned:.1f} times the largest that was "
         f"learned from ({one.learned:.3g} {one.unit}): its prediction extrapolates, with a misfit of {one.after:.3f} "
         f"of {one.channel}."
+    )
+
+
+def _beyond(one: Beyond) -> str:
+    """That an effect would have to be larger than it may be."""
+    unit = "" if one.unit == "1" else f" {one.unit}"
+    return (
+        f"{one.effect.replace('_', ' ').capitalize()} would have to go on beyond the range of the library: its "
+        f"{one.parameter.replace('_', ' ')} ends at {one.limit:.3g}{unit}, and {one.wanted:.3g}{unit} fits better "
+        f"(evidence {one.evidence:.0f})."
     )
 
 

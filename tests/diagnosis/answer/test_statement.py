@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import models
-from diagnosis.answer.result import Diagnosis, Effect, EffectStage, Fit, Located, OtherModel, Undecided, Verdict
+from diagnosis.answer.result import Beyond, Diagnosis, Effect, EffectStage, Fit, Located, OtherModel, Undecided, Verdict
 from diagnosis.answer.statement import effect_text, statement
 from diagnosis.data.measured import identification_of
 from diagnosis.fit.intervals import Estimate
@@ -55,6 +55,15 @@ def test_what_recordings_held_out_contradict_is_said_with_both_misfits() -> None
     assert "held out worse" not in said("not_in_library") and "Best explanation" not in text
     read = json.loads(diagnosis_json(answer("not_in_library", contradicted=(0.037, 0.069))))
     assert read["fit"]["holdout"]["contradicted"] == [0.037, 0.069]
+
+
+def test_an_effect_that_needs_more_than_its_range_is_said_with_what_it_needs() -> None:
+    beyond = (Beyond("viscous_damping", "rate", 1.0, 1.3209, "s-1", 173.4),)
+    text = said("not_in_library", beyond=beyond)
+    assert "Viscous damping would have to go on beyond the range of the library: its rate ends at 1 s-1" in text
+    assert "1.32 s-1 fits better (evidence 173)" in text and "range of the library" not in said("not_in_library")
+    (read,) = json.loads(diagnosis_json(answer("not_in_library", beyond=beyond)))["beyond_range"]
+    assert read["effect"] == "viscous_damping" and read["wanted"] == 1.3209
 
 
 @pytest.mark.parametrize("rests_on", ["one window", "one recording", ""])

@@ -83,6 +83,15 @@ class SuspicionPart(Part):
     suspicion: str
 
 
+class BeyondPart(Part):
+    effect: str
+    parameter: str
+    limit: float
+    wanted: float
+    unit: str
+    evidence: float
+
+
 class TrainPart(Part):
     before: float
     after: float
@@ -222,6 +231,7 @@ class AnswerFile(Part):
     shows: list[ShowsPart]
     constancy: list[ConstancyPart]
     undecided: UndecidedPart | None
+    beyond_range: list[BeyondPart]
     suspicions: list[SuspicionPart]
     base: dict[str, ParameterPart]
     screen: list[ScreenPart]
