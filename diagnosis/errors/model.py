@@ -14,9 +14,10 @@ from diagnosis.errors.kicks import Kicks, kicks
 from diagnosis.errors.likelihood import Piece, Prior, climbed, maximise, robust_deviance
 from diagnosis.errors.lines import lines
 from diagnosis.errors.own import AS_MOTION, own_error
-from diagnosis.errors.pieces import LARGEST, Scene, opened, peaks_of, prior_of, stills, windows
+from diagnosis.errors.pieces import LARGEST, Scene, opened, peaks_of, prior_of, windows
 from diagnosis.errors.scattered import Events, gauss_newton, known_changes, linear_about, shortened
 from diagnosis.errors.sensors import of_sensors
+from diagnosis.errors.stills import stills
 from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.setup import base_fit, with_noise_of_the_base
 from diagnosis.fit.solver import Fitted, fit_thoroughly

@@ -1,8 +1,8 @@
-"""The pieces of the recordings that tell of their errors: windows of the motion, and stretches in which nothing moves.
+"""The pieces of the recordings that tell of their errors: here the windows of the motion.
 
-While nothing moves a sensor's noise stands alone; in a window the model's residual lies on top of it. Both enter one
-likelihood, so that noise is told from what the model lacks. Values are averages (`diagnosis.data.averaging`) in units
-of each channel's noise level.
+While nothing moves (`diagnosis.errors.stills`) a sensor's noise stands alone; in a window the model's residual lies on
+top of it. Both enter one likelihood, so that noise is told from what the model lacks. Values are averages
+(`diagnosis.data.averaging`) in units of each channel's noise level.
 """
 
 from __future__ import annotations
@@ -14,22 +14,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.data.measured import Measured
-from diagnosis.data.noise import calm, still
 from diagnosis.errors.components import Component, Diagonal, Kind, LowRank, Part, Stationary
 from diagnosis.errors.drifts import Knots, knots_of
 from diagnosis.errors.likelihood import Piece, Prior
 from diagnosis.errors.own import own_error
-from diagnosis.fit.from_rest import from_rest, samples_within_noise
 from diagnosis.fit.misfit import Linear, Misfit
 from diagnosis.fit.solver import Fitted
-from diagnosis.fit.unknowns import without_instruments
 from diagnosis.fit.whitening import Whitening
 from models.base import FloatArray
 
-LONGEST_STILL = 300
-"""Averages of a still stretch that are used: the first and the last half of them."""
-FEWEST_STILL, SHORTEST_BEGINNING = 8, 0.5
-"""Averages that a still stretch has at least; s from rest to a motion beyond the noise that tell of that noise."""
 LARGEST_DRIFT = 1.0
 """Variance of a drift over that of the noise; a sensor that is knocked goes further."""
 LARGEST: dict[Kind, float] = {"scatter": 0.03**2}
@@ -93,7 +86,7 @@ def windows(scene: Scene, components: Sequence[Component]) -> list[Piece]:
         at = np.tile(np.arange(m.compared.shape[2]), len(m.channels))[keep]
         parts: list[Part | None] = []
         kicked = scene.kicks[w].reshape(keep.size, -1)[keep]
-        touched = _touched(knots, window.recording, channel, at * step + window.first * step / m.strides[w])
+        near = touched(knots, window.recording, channel, at * step + window.first * step / m.strides[w])
         for component in components:
             if component.shared:
                 parts.append(None)
@@ -112,113 +105,27 @@ def windows(scene: Scene, components: Sequence[Component]) -> list[Piece]:
                 values[inside] = grown[w].ravel()[keep][inside] / m.strides[w]
                 parts.append(Diagonal(values))
             else:
-                parts.append(_stationary(component, at[inside], step, inside, float(m.strides[w])))
+                parts.append(stationary(component, at[inside], step, inside, float(m.strides[w])))
         base = scene.base[w].reshape(keep.size, -1)[keep]
         known = base @ base.T + np.diag(np.full(channel.size, FLOOR / m.strides[w]))
         linear = scene.linear
         found.append(
             Piece(
                 at * step, channel, linear.residual[w][keep], linear.by_state[w][keep], linear.by_unknown[w][keep],
-                known, tuple(parts), *touched,
+                known, tuple(parts), *near,
             )
         )  # fmt: skip
     return found
 
 
-def stills(scene: Scene, components: Sequence[Component]) -> list[Piece]:
-    """One piece a channel and recording, of all that is still there; its level is unknown.
-
-    A block may rock by little from the first sample to the last: it is still where the base does not start a motion.
-    Accelerometers and load cells read the base's acceleration though nothing moves on it, and a wall on rubber sways
-    with a base that moves little: they are still where the base is. Before that wall first moves beyond the noise, what
-    the model predicts from rest is taken off: then it need not be still.
-    """
-    m = scene.fitted.measured
-    found = []
-    onset = _onset(scene.fitted)
-    for r, recording in enumerate(m.recordings):
-        own = np.flatnonzero(m.recording_of == r)
-        if not own.size:
-            continue
-        begins = _beginning(scene.fitted, r) if m.stretches is None and m.identification.onset is None else None
-        size = int(m.strides[own[0]])
-        for c, name in enumerate(m.channels):
-            unit = float(m.units[own[0], c])
-            after = 0
-            if begins is not None:
-                after = begins.shape[1]
-                rest = _means(begins[c] - recording.channels[name][:after], size)
-                latest = np.arange(rest.size)[-LONGEST_STILL:]
-                found += _still(scene, components, r, c, latest, rest[latest] / unit)
-            on_base = name in m.places and m.places[name].absolute
-            quiet = calm(still(recording.channels[name], recording.time_step), recording, 0.0 if on_base else onset)
-            means = _means(recording.channels[name], size)
-            at = np.array([i for s in quiet for i in range(-(-max(s.start, after) // size), s.stop // size)], np.int64)
-            if at.size > LONGEST_STILL:
-                at = np.concatenate([at[: LONGEST_STILL // 2], at[-LONGEST_STILL // 2 :]])
-            found += _still(scene, components, r, c, at, -means[at] / unit)
-    return found
-
-
-def _still(
-    scene: Scene, components: Sequence[Component], r: int, c: int, at: NDArray[np.int64], rest: FloatArray
-) -> list[Piece]:
-    """The averages ``at`` of a channel, predicted minus measured to within a level: a piece, unless they are few."""
-    if at.size < FEWEST_STILL:
-        return []
-    m, inside = scene.fitted.measured, slice(0, at.size)
-    knots, k = knots_of(m, components), scene.linear.by_unknown.shape[-1]
-    size = float(m.strides[int(np.flatnonzero(m.recording_of == r)[0])])
-    step = m.recordings[r].time_step * size
-    parts = tuple(
-        _stationary(component, at, step, inside, size)
-        if component.channel == c and not component.moving and not component.shared
-        else None
-        for component in components
-    )
-    known, time, channel = (
-        np.diag(np.full(at.size, FLOOR / size)),
-        np.asarray(at * step, np.float64),
-        np.full(at.size, c),
-    )
-    touched, blank = _touched(knots, r, channel, time), np.zeros((at.size, k))
-    return [Piece(time, channel, rest - rest.mean(), np.ones((at.size, 1)), blank, known, parts, *touched)]
-
-
-def _means(values: FloatArray, size: int) -> FloatArray:
-    """Averages over ``size`` successive samples (n,)."""
-    return np.asarray(values[: values.size // size * size].reshape(-1, size).mean(axis=1))
-
-
-def _beginning(fitted: Fitted, recording: int) -> FloatArray | None:
-    """Channels (C, n) from rest to the first motion beyond the noise, as predicted; None where that comes at once."""
-    m, predictor = fitted.measured, fitted.misfit.predictor
-    samples = samples_within_noise(m, recording)
-    if samples * m.recordings[recording].time_step < SHORTEST_BEGINNING:
-        return None
-    found = from_rest(predictor, fitted.misfit.point(fitted.u, fitted.states), recording, samples)
-    return found if np.all(np.isfinite(found)) else None
-
-
-def _onset(fitted: Fitted) -> float:
-    """Base acceleration (m s-2) that starts a motion at a fit; 0 where every one does."""
-    predictor = fitted.misfit.predictor
-    m = predictor.measured
-    if m.identification.onset is None:
-        return 0.0
-    (point,) = predictor.declared([fitted.misfit.point(fitted.u, fitted.states)])
-    derived = m.model.derive(without_instruments(point.values), predictor.options)
-    return float(np.min(m.identification.onset(derived)))
-
-
-def _touched(
+def touched(
     knots: Knots | None, recording: int, channel: NDArray[np.int64], time: FloatArray
 ) -> tuple[()] | tuple[NDArray[np.intp], FloatArray]:
     """Knots of drifts and their weights in samples at ``time`` (s from the recording's start), for `Piece`."""
     return () if knots is None else knots.near(recording, channel, time)
 
 
-def _stationary(component: Component, at: np.ndarray, step: float, inside: slice, stride: float) -> Stationary:
+def stationary(component: Component, at: np.ndarray, step: float, inside: slice, stride: float) -> Stationary:
     """A kernel among averages at whole numbers ``at`` of ``step`` s; white noise falls with what is averaged."""
     lag = np.abs(at[:, None] - at[None, :]) * step
     return Stationary(inside, component.kernel(lag) / (stride if component.kind == "white" else 1.0))

@@ -7,7 +7,9 @@ import pytest
 
 import models
 from diagnosis.errors.components import Component
-from diagnosis.errors.pieces import LONGEST_STILL, Piece, opened, stills
+from diagnosis.errors.likelihood import Piece
+from diagnosis.errors.pieces import opened
+from diagnosis.errors.stills import LONGEST_STILL, stills
 from diagnosis.fit.setup import base_fit, measure
 from diagnosis.fit.solver import fit
 from grids.recordings.base import Recording
