@@ -280,9 +280,8 @@ class Rung:
 class Identification:
     """The declaration of one model.
 
-    ``chaotic``: neighbouring trajectories diverge quickly, so that runs from rest show little. ``onset``: of the
-    constants of one wall, horizontal base acceleration (m s-2) below which nothing at rest starts to move; None where
-    the bodies move with every motion of the base, and are still only where it is. ``windows`` None: the model runs
+    ``chaotic``: neighbouring trajectories diverge quickly, so that runs from rest show little. ``elastic``: the bodies
+    move with every motion of the base, and are still only where it is. ``windows`` None: the model runs
     through whole recordings (``stretches``). ``forces`` empty: laws outside the library are not tested for.
     ``phases``: every phase word in plain English. ``scatter`` None: events are taken to repeat exactly.
     ``most_effects``: how many a search adds at most; ``further_work``: what it may cost, over that of other models;
@@ -320,7 +319,7 @@ class Identification:
     same: Mapping[str, str] = field(default_factory=dict)
     ladder: tuple[Rung, ...] = ()
     exposures: tuple[Exposure, ...] = ()
-    onset: Callable[[Derived], FloatArray] | None = None
+    elastic: bool = False
 
     def seen(self, observed: Mapping[str, FloatArray]) -> Mapping[str, FloatArray]:
         """The observables of a run, with those that `same` makes of them."""

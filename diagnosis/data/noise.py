@@ -25,8 +25,8 @@ BAND = 15.0
 """Hz, below which the effects of mechanisms lie."""
 STILL, FEWEST = 0.35, 3
 """s that nothing moves, and how many such stretches must follow one another."""
-CALM, BELOW = 5.0, 0.8
-"""Largest acceleration of the base over its noise while nothing shakes it; over what starts a motion, to start none."""
+CALM = 10.0
+"""Range of the base's acceleration over its noise while nothing shakes it."""
 LIKE = 1.5
 """Range of a still stretch over that of the stillest ones."""
 MOST = 200.0
@@ -70,18 +70,14 @@ def _block(time_step: float) -> int:
     return max(8, round(STILL / time_step))
 
 
-def calm(stretches: Sequence[slice], recording: Recording, onset: float = 0.0) -> list[slice]:
-    """The parts of ``stretches`` in which the base, for as long as counts as still, moves nothing that stands on it.
-
-    Its acceleration is noise about its median, or well below the ``onset`` (m s-2) of a motion.
-    """
+def calm(stretches: Sequence[slice], recording: Recording) -> list[slice]:
+    """The parts of ``stretches`` in which the base, for as long as counts as still, moves by no more than its noise."""
     base, size = recording.channels[REQUIRED], _block(recording.time_step)
-    most, reach = max(CALM * base_noise(recording), BELOW * onset), FEWEST * size
+    most, reach = CALM * base_noise(recording), FEWEST * size
     found: list[slice] = []
     for stretch in stretches:
         for k in range(stretch.start, stretch.stop - reach + 1, size):
-            part = base[k : k + reach]
-            if np.max(np.abs(part - np.median(part))) > most:
+            if np.ptp(base[k : k + reach]) > most:
                 continue
             begin = k if not found else max(k, found[-1].stop)
             found.append(slice(begin, k + reach))

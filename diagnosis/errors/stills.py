@@ -1,9 +1,9 @@
 """The pieces in which nothing moves, or by no more than a model can be trusted with: a sensor's noise stands alone.
 
-A block may rock by little from the first sample to the last: it is still where the base does not start a motion.
-Accelerometers and load cells read the base's acceleration though nothing moves on it, and a wall on rubber sways with
-a base that moves little: they are still where the base is. Before such a wall first moves beyond the noise, what the
-model predicts from rest is taken off: then it need not be still.
+A block may rock by little from the first sample to the last: then the stillest stretch is no rest. Accelerometers and
+load cells read the base's acceleration though nothing moves on it, and a wall on rubber sways with a base that moves
+little: they are still where the base is. Until such a wall first moves beyond the noise what the model predicts from
+rest is taken off: then it need not be still.
 """
 
 from __future__ import annotations
@@ -20,25 +20,25 @@ from diagnosis.errors.likelihood import Piece
 from diagnosis.errors.pieces import FLOOR, Scene, stationary, touched
 from diagnosis.fit.from_rest import from_rest, samples_within_noise
 from diagnosis.fit.solver import Fitted
-from diagnosis.fit.unknowns import without_instruments
 from models.base import FloatArray
 
 LONGEST_STILL = 300
 """Averages of a still stretch that are used: the first and the last half of them."""
 FEWEST_STILL, SHORTEST_BEGINNING = 8, 0.5
 """Averages that a still stretch has at least; s from rest to a motion beyond the noise that tell of that noise."""
+MOVES = 5.0
+"""Standard deviation of the stillest stretch over the noise from which on it is motion: nothing is still."""
 
 
 def stills(scene: Scene, components: Sequence[Component]) -> list[Piece]:
     """Of each channel and recording the beginning and all that is still later; the level of each is unknown."""
     m = scene.fitted.measured
     found = []
-    onset = _onset(scene.fitted)
     for r, recording in enumerate(m.recordings):
         own = np.flatnonzero(m.recording_of == r)
         if not own.size:
             continue
-        begins = _beginning(scene.fitted, r) if m.stretches is None and m.identification.onset is None else None
+        begins = _beginning(scene.fitted, r) if m.identification.elastic else None
         size = int(m.strides[own[0]])
         for c, name in enumerate(m.channels):
             unit = float(m.units[own[0], c])
@@ -48,9 +48,11 @@ def stills(scene: Scene, components: Sequence[Component]) -> list[Piece]:
                 rest = _means(begins[c] - recording.channels[name][:after], size)
                 latest = np.arange(rest.size)[-LONGEST_STILL:]
                 found += _still(scene, components, r, c, latest, rest[latest] / unit)
-            on_base = name in m.places and m.places[name].absolute
-            quiet = calm(still(recording.channels[name], recording.time_step), recording, 0.0 if on_base else onset)
-            means = _means(recording.channels[name], size)
+            values = recording.channels[name]
+            quiet = [s for s in still(values, recording.time_step) if np.std(values[s]) < MOVES * unit]
+            if m.identification.elastic or (name in m.places and m.places[name].absolute):
+                quiet = calm(quiet, recording)
+            means = _means(values, size)
             at = np.array([i for s in quiet for i in range(-(-max(s.start, after) // size), s.stop // size)], np.int64)
             if at.size > LONGEST_STILL:
                 at = np.concatenate([at[: LONGEST_STILL // 2], at[-LONGEST_STILL // 2 :]])
@@ -93,14 +95,3 @@ def _beginning(fitted: Fitted, recording: int) -> FloatArray | None:
         return None
     found = from_rest(predictor, fitted.misfit.point(fitted.u, fitted.states), recording, samples)
     return found if np.all(np.isfinite(found)) else None
-
-
-def _onset(fitted: Fitted) -> float:
-    """Base acceleration (m s-2) that starts a motion at a fit; 0 where every one does."""
-    predictor = fitted.misfit.predictor
-    m = predictor.measured
-    if m.identification.onset is None:
-        return 0.0
-    (point,) = predictor.declared([fitted.misfit.point(fitted.u, fitted.states)])
-    derived = m.model.derive(without_instruments(point.values), predictor.options)
-    return float(np.min(m.identification.onset(derived)))

@@ -78,6 +78,7 @@ IDENTIFICATION = Identification(
         unit=lambda d: 1.0 / d["frequency_1"],
     ),
     chaotic=False,
+    elastic=True,
     coordinates=("base_stiffness", "top_stiffness", "layer_modulus", "base_layer_modulus", "top_layer_modulus"),
     whole={"bouc_wen.exponent": (1.0, 2.0)},
     carrying=True,

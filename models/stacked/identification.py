@@ -31,5 +31,4 @@ IDENTIFICATION = Identification(
     dependences=DEPENDENCES,
     phases=PHASES,
     ladder=LADDER,
-    onset=lambda d: d["onset_acceleration"],
 )

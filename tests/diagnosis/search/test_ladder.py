@@ -23,6 +23,7 @@ from diagnosis.search.refit import Explanation
 from grids.recordings.base import Recording
 from grids.specimen import Specimen, parse_specimen
 from grids.write_specimen import specimen_text
+from models.shaking import Shaking
 from tests.diagnosis.made import TIME_STEP, motion
 from tests.diagnosis.report.example import diagnosis
 
@@ -35,9 +36,14 @@ MAT = {
 }  # fmt: skip
 
 
+REST = 1.5
+"""s, that tell sensors' noise from what a model gets wrong."""
+
+
 @cache
 def recorded(model: str, rotations: int) -> Recording:
-    base = motion(1, duration=6.0, pga=4.0)
+    strong = motion(1, duration=6.0, pga=4.0).horizontal
+    base = Shaking(TIME_STEP, np.concatenate([np.zeros(round(REST / TIME_STEP)), strong]))
     values, options = (MAT, {"joints": "base"}) if model == "interface" else (PIER.parameters, {})
     ran = models.get(model).simulate(values, base, duration=base.duration, options=options)
     rng = np.random.default_rng(3)
