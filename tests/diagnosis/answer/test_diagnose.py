@@ -10,7 +10,7 @@ import pytest
 
 from diagnosis import calibrate, diagnose
 from diagnosis.answer.heldout import Shown
-from diagnosis.answer.result import Diagnosis
+from diagnosis.answer.result import Beyond, Diagnosis
 from diagnosis.search.found import MISSING, Search
 from models.errors import InputError
 from tests.diagnosis.made import SPECIMEN, TRUE, recording
@@ -75,6 +75,21 @@ def test_an_answer_that_recordings_held_out_contradict_is_not_in_the_library(mon
     assert judged == [("restitution",)]
     assert found.verdict == "not_in_library" and found.contradicted == (0.04, 0.07)
     assert found.effects[0].name == "restitution" and "recordings held out" in found.statement
+
+
+def test_an_answer_that_needs_more_than_its_range_is_not_in_the_library(monkeypatch: pytest.MonkeyPatch) -> None:
+    judged: list[tuple[str, ...]] = []
+    needs = Beyond("restitution", "factor_on_housner", 0.5, 0.4, "1", 60.0)
+
+    def more(found: Search) -> tuple[Beyond, ...]:
+        judged.append(found.chosen.names)
+        return (needs,)
+
+    monkeypatch.setattr(import_module("diagnosis.answer.diagnose"), "beyond_ranges", more)
+    found = diagnosed({"restitution": {"factor_on_housner": 0.93}})
+    assert judged == [("restitution",)]
+    assert found.verdict == "not_in_library" and found.beyond == (needs,)
+    assert found.effects[0].name == "restitution" and "beyond the range of the library" in found.statement
 
 
 @pytest.mark.parametrize("stage", ["intervals", "bootstrap", "before and after"])

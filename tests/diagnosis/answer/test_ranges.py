@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diagnosis import diagnose
 from diagnosis.answer.ranges import beyond_ranges
 from diagnosis.errors.model import calibrated
 from diagnosis.fit.setup import measure
@@ -36,12 +35,3 @@ def test_one_that_needs_more_is_said_with_what_it_needs() -> None:
     (one,) = beyond_ranges(found_with(1.5))
     assert one.effect == "viscous_damping" and one.parameter == "rate" and one.limit == 1.0
     assert one.wanted == pytest.approx(1.5, rel=0.03) and one.evidence > 100.0
-
-
-@pytest.mark.slow
-def test_the_answer_is_then_not_in_the_library_and_says_why() -> None:
-    effect = {"viscous_damping": {"rate": 1.15}}
-    answer = diagnose(SPECIMEN, [recording("a", 1, effect), recording("b", 2, effect)])
-    assert answer.verdict == "not_in_library" and answer.effects[0].name == "viscous_damping"
-    (one,) = answer.beyond
-    assert one.wanted == pytest.approx(1.15, rel=0.02) and "beyond the range of the library" in answer.statement
