@@ -281,8 +281,8 @@ class Identification:
     """The declaration of one model.
 
     ``chaotic``: neighbouring trajectories diverge quickly, so that runs from rest show little. ``elastic``: the bodies
-    move with every motion of the base, and are still only where it is. ``windows`` None: the model runs
-    through whole recordings (``stretches``). ``forces`` empty: laws outside the library are not tested for.
+    move with every motion of the base, and are still only where it is. ``windows`` None: the
+    model runs through whole recordings (``stretches``). ``forces`` empty: laws outside the library are not tested for.
     ``phases``: every phase word in plain English. ``scatter`` None: events are taken to repeat exactly.
     ``most_effects``: how many a search adds at most; ``further_work``: what it may cost, over that of other models;
     ``speed``: lane-steps a second of the model's kernel over those of a wall's, with which a search's budget of work
