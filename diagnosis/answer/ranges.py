@@ -22,7 +22,7 @@ FARTHER = 2.0
 
 
 def beyond_ranges(found: Search) -> tuple[Beyond, ...]:
-    """Those of the best explanation's effects, by size, that need more than their range."""
+    """Those of the best explanation's effects that need more than their range."""
     chosen = found.chosen
     tested = [_beyond(chosen, candidate) for candidate in chosen.candidates]
     return tuple(one for one in tested if one is not None and one.evidence >= found.more)

@@ -171,7 +171,7 @@ def estimate(fitted: Fitted, base: FloatArray, start: Errors | None = None) -> E
     if not quiet and not own:
         components = tuple(c for c in components if c.kind != "inadequacy")
     theta = _start(components) if start is None else np.maximum(start.theta, 1e-4 * _start(components))
-    pieces = (*windows(scene, components), *stills(scene, components))
+    pieces = (*windows(scene, components), *quiet)
     prior = prior_of(scene, components)
     moving = len(fitted.measured.windows)
     weights = np.ones(len(pieces))

@@ -6,12 +6,14 @@ left of the recording is the noise of its sensors.
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from diagnosis.data.measured import Measured
 from diagnosis.data.noise import smooth
 from diagnosis.data.windows import ABOVE_NOISE
-from diagnosis.fit.prediction import Point, Predictor
+from diagnosis.fit.prediction import Point, Predictor, held
 from diagnosis.fit.unknowns import instruments_of
 from grids.instruments.base import Surroundings
 from grids.instruments.staged import moved_in_stages, recorded_in_stages
@@ -57,9 +59,9 @@ def from_rest(predictor: Predictor, point: Point, recording: int, samples: int) 
         m.model, [part.values for part in parts], np.array([[part.first for part in parts[1:]]], np.int64), shaking,
         first=first, samples=run, initial={}, options=predictor.options,
     )  # fmt: skip
-    held = Observed({name: lambda name=name: ran[name].reshape(1, 1, run) for name in ran})  # type: ignore[misc]
+    seen = Observed({name: partial(held, ran, name, (1, 1, run), shaking, first) for name in ran})
     along = ground_along(shaking, first, run)
-    true = m.sensed(held, shaking.time_step, along)
+    true = m.sensed(seen, shaking.time_step, along)
     around = Surroundings(taken.time_step, along[0], m.reference_peak, np.zeros((1, 1)))
     recorded = recorded_in_stages({c: true[c] for c in m.channels}, sets, around)
     return np.stack([np.ravel(recorded[c])[:samples] for c in m.channels])

@@ -212,9 +212,9 @@ class Predictor:
         ran = trajectories(
             m.model, parts, instants, shaking, first=first, samples=samples, initial=initial, options=self.options
         )
-        held = Observed({c: partial(_held, ran, c, (count, n, samples), shaking, m.first[windows]) for c in ran})
+        seen = Observed({c: partial(held, ran, c, (count, n, samples), shaking, m.first[windows]) for c in ran})
         along = ground_along(ground, m.first[windows], samples)
-        found = m.sensed(held, shaking.time_step, along)
+        found = m.sensed(seen, shaking.time_step, along)
         start = np.asarray(time_step * m.first[windows, None], float)
         around = Surroundings(time_step, along[0], m.reference_peak, start)
         for alike in _alike([instruments[p] for p in members]):
@@ -296,7 +296,7 @@ def _alike(instruments: Sequence[Switched]) -> list[list[int]]:
     return list(groups.values())
 
 
-def _held(
+def held(
     ran: Mapping[str, FloatArray], name: str, shape: tuple[int, ...], shaking: Shaking, first: NDArray[np.int64]
 ) -> FloatArray:
     """A channel in the shape (P, n, samples) with the last value held beyond the end of the recording."""

@@ -7,9 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from diagnosis.errors.model import calibrated
 from diagnosis.fit.setup import base_fit, measure
 from diagnosis.fit.solver import fit
+from diagnosis.progress import silent
+from diagnosis.search import exchange, select
 from diagnosis.search.candidates import candidates
+from diagnosis.search.found import Search
 from diagnosis.search.refit import QUICK, Explanation, again, extend, over_ranges
 from models.runs import DONE
 from tests.diagnosis import made
@@ -44,3 +48,36 @@ def test_a_specimen_without_ranges_is_left_as_it_is() -> None:
     stands = Explanation((), base_fit(made.SPECIMEN, measured))
     before = replace(DONE)
     assert over_ranges(stands) is stands and before == DONE
+
+
+def test_the_leading_single_and_what_an_exchange_finds_start_anew_over_the_ranges(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked: list[tuple[str, ...]] = []
+
+    def noted(explanation: Explanation) -> Explanation:
+        asked.append(explanation.names)
+        return explanation
+
+    for where in (select, exchange):
+        monkeypatch.setattr(where, "over_ranges", noted)
+    effect = {"restitution": {"factor_on_housner": 0.93}}
+    measured = measure(made.SPECIMEN, [made.recording(name, k, effect) for k, name in ((1, "a"), (2, "b"))])
+    fitted, errors = calibrated(made.SPECIMEN, measured)
+    base, known = Explanation((), fitted), candidates(measured, made.SPECIMEN)
+    found = Search(base, known, errors)
+    for _ in select.first_effect(found, silent):
+        pass
+    assert asked[0] == ("restitution",)
+
+    pair = tuple(next(c for c in known if c.name == name) for name in ("restitution", "gain"))
+    better = Explanation(pair, fitted)
+    monkeypatch.setattr(exchange, "drop", lambda search: None)
+    monkeypatch.setattr(exchange, "_try_others", lambda search, widely: None)
+    monkeypatch.setattr(exchange, "_better", lambda search, incomplete: better)
+    monkeypatch.setattr(exchange, "reshaped", lambda explanation: explanation)
+    monkeypatch.setattr(exchange, "again", lambda explanation: explanation)
+    monkeypatch.setattr(exchange, "weigh_again", lambda search: None)
+    other = Explanation((next(c for c in known if c.name == "tilt"), pair[1]), fitted)
+    exchange.exchanged(Search(base, known, errors, best=other), silent)
+    assert asked[-1] == better.names
