@@ -224,15 +224,16 @@ class Model(Placing, ABC, Generic[C]):
         shaking: Shaking,
         *,
         first: NDArray[np.int64],
-        samples: int,
+        samples: int | NDArray[np.int64],
         initial: Mapping[str, FloatArray],
         options: Mapping[str, str] | None = None,
     ) -> Mapping[str, FloatArray]:
         """Observables ``(n, samples)`` of n lanes, lane k from sample ``first[k]`` of the shaking and its own state.
 
+        ``samples`` (n,): how many of each lane are wanted, as many columns as of the longest; meaningless behind them.
         ``initial``: arrays ``(n,)`` by the names of `states`, and of what laws with a memory need, ``(n, ...)``.
         """
-        steps = np.full(first.size, samples - 1)
+        steps = np.broadcast_to(np.asarray(samples) - 1, first.shape)
         return self.follow(values, shaking, first=first, steps=steps, initial=initial, options=options)[0]
 
     def follow(

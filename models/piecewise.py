@@ -175,7 +175,7 @@ def trajectories(
     shaking: Shaking,
     *,
     first: NDArray[np.int64],
-    samples: int,
+    samples: int | NDArray[np.int64],
     initial: Mapping[str, FloatArray],
     options: Mapping[str, str] | None = None,
 ) -> Mapping[str, FloatArray]:
@@ -202,7 +202,7 @@ def trajectories(
             initial={name: v[lanes] for name, v in state.items()}, options=options,
         )  # fmt: skip
         for name, channel in channels.items():
-            whole = found.setdefault(name, np.full((n, *channel.shape[1:-1], samples), np.nan))
+            whole = found.setdefault(name, np.full((n, *channel.shape[1:-1], np.max(samples)), np.nan))
             for row, lane in enumerate(lanes):
                 at = start[lane] - first[lane]
                 whole[lane, ..., at : at + length[row] + 1] = channel[row, ..., : length[row] + 1]

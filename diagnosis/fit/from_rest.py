@@ -59,7 +59,7 @@ def from_rest(predictor: Predictor, point: Point, recording: int, samples: int) 
         m.model, [part.values for part in parts], np.array([[part.first for part in parts[1:]]], np.int64), shaking,
         first=first, samples=run, initial={}, options=predictor.options,
     )  # fmt: skip
-    seen = Observed({name: partial(held, ran, name, (1, 1, run), shaking, first) for name in ran})
+    seen = Observed({name: partial(held, ran, name, (1, 1, run), np.array([run - 1])) for name in ran})
     along = ground_along(shaking, first, run)
     true = m.sensed(seen, shaking.time_step, along)
     around = Surroundings(taken.time_step, along[0], m.reference_peak, np.zeros((1, 1)))

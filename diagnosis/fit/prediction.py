@@ -197,9 +197,10 @@ class Predictor:
     ) -> None:
         m, time_step, ways = self.measured, recording.time_step, self._ways(recording)
         shaking, ground = shakings
-        compared = max(m.windows[w].samples for w in windows)
+        compared = np.array([m.windows[w].samples for w in windows])
         ahead = max(seconds_ahead(instruments[p]) for p in members)
-        samples = compared + int(np.ceil(ahead / time_step)) + any(place.order for place in m.places.values())
+        wanted = compared + int(np.ceil(ahead / time_step)) + any(place.order for place in m.places.values())
+        longest, samples = int(compared.max()), int(wanted.max())
         n, count = len(windows), len(members)
         parts = [self._values([complete[p] for p in members], off, n) for _, off in ways]
         instants = np.tile(np.array([first for first, _ in ways[1:]], np.int64), (n * count, 1))
@@ -210,9 +211,11 @@ class Predictor:
         initial |= {k: v[members].reshape(n * count, *v.shape[2:]) for k, v in carried.items()}
         first = np.tile(m.first[windows], count)
         ran = trajectories(
-            m.model, parts, instants, shaking, first=first, samples=samples, initial=initial, options=self.options
-        )
-        seen = Observed({c: partial(held, ran, c, (count, n, samples), shaking, m.first[windows]) for c in ran})
+            m.model, parts, instants, shaking, first=first, samples=np.tile(wanted, count), initial=initial,
+            options=self.options,
+        )  # fmt: skip
+        last = np.clip(shaking.horizontal.size - 1 - m.first[windows], 0, wanted - 1)
+        seen = Observed({c: partial(held, ran, c, (count, n, samples), last) for c in ran})
         along = ground_along(ground, m.first[windows], samples)
         found = m.sensed(seen, shaking.time_step, along)
         start = np.asarray(time_step * m.first[windows, None], float)
@@ -223,7 +226,7 @@ class Predictor:
             recorded = recorded_in_stages(true, sets, around, recorded_in_windows)
             rows = np.array([members[k] for k in alike])[:, None]
             for c, channel in enumerate(m.channels):
-                out[rows, windows, c, :compared] = recorded[channel][..., :compared]
+                out[rows, windows, c, :longest] = recorded[channel][..., :longest]
 
     def _through(
         self,
@@ -297,15 +300,13 @@ def _alike(instruments: Sequence[Switched]) -> list[list[int]]:
 
 
 def held(
-    ran: Mapping[str, FloatArray], name: str, shape: tuple[int, ...], shaking: Shaking, first: NDArray[np.int64]
+    ran: Mapping[str, FloatArray], name: str, shape: tuple[int, ...], last: NDArray[np.int64]
 ) -> FloatArray:
-    """A channel in the shape (P, n, samples) with the last value held beyond the end of the recording."""
+    """A channel in the shape (P, n, samples) with the value at sample ``last`` (n,) held beyond it."""
     channel = ran[name].reshape(shape)
-    left = shaking.horizontal.size - 1 - first
-    short = np.flatnonzero(left < channel.shape[2] - 1)
+    short = np.flatnonzero(last < shape[2] - 1)
     if short.size:
         channel = channel.copy()
-    for w in short:
-        last = max(int(left[w]), 0)
-        channel[:, w, last:] = channel[:, w, last, None]
+        for w, end in zip(short, last[short], strict=True):
+            channel[:, w, end + 1 :] = channel[:, w, end, None]
     return channel
