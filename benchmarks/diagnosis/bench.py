@@ -31,8 +31,10 @@ BENCHES = {
     "diagnosis": Bench(suite.suite, report.grouped),
     "laboratory": Bench(laboratory.suite, report.by_imperfection),
     "beginnings": Bench(beginnings.suite, report.by_beginning),
-    "walls": Bench(walls.designs, report.of_all, ("walls.py", "two_bodies.py", "fibre_wall.py")),
-    "stacks": Bench(stacks.designs, report.of_all, ("stacks.py", "two_bodies.py", "rigid_stack.py", "bases.py")),
+    "walls": Bench(walls.designs, report.of_all, ("walls.py", "two_bodies.py", "body_size.py", "fibre_wall.py")),
+    "stacks": Bench(
+        stacks.designs, report.of_all, ("stacks.py", "two_bodies.py", "body_size.py", "rigid_stack.py", "bases.py")
+    ),
     "bases": Bench(bases.designs, report.by_base, ("bases.py",)),
 }
 

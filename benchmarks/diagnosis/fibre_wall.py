@@ -37,8 +37,8 @@ SMALL, TURN = 1e-5, 1e-4
 """m, of the differences of J, and of those of J'."""
 STILL = 1e-3
 """m s-2, of the ends of the undersides at rest."""
-SLIDES = 2e-4
-"""rad s-1 over which dry friction changes its sign."""
+SLIDES = 5e-6
+"""rad s-1 over which dry friction changes its sign: what it holds creeps so fast, and walls turn by less than 1e-3."""
 NULLS = {
     "maxwell.arm_stiffness_ratio": 0.0,
     "maxwell.relaxation_time": 1.0,
@@ -90,6 +90,7 @@ def run(
     resists = lever[1] * np.arctan2(wall["wall_length"] / 2.0, lever[2])
     geometry = np.array([resists / largest, largest, GRAVITY, lever[3], largest])
     rate = sum(float(layer[1] * layer[3]) for layer in layers) * 2.0 / wall["wall_mass"]
+    rate = max(rate, float(couples[3]) / (lever[0] * SLIDES))
     per = max(1, int(np.ceil(step / LONGEST)), int(np.ceil(step * rate / STABLE)))
     couple, lean = law.couple if law else nothing, np.array([-GRAVITY * np.sin(tilt), GRAVITY * np.cos(tilt)])
     fixed = (body, *layers, couples, geometry, np.asarray(numbers, float), lean)

@@ -11,10 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchmarks.diagnosis import bases, rigid_stack, shakings, suite
+from benchmarks.diagnosis.body_size import HELD
 from benchmarks.diagnosis.cases import Case
 from benchmarks.diagnosis.open_laws import Law
 from benchmarks.diagnosis.scene import FloatArray, Unsuitable
-from benchmarks.diagnosis.two_bodies import HELD, Bodies, Hidden, Motion, Values
+from benchmarks.diagnosis.two_bodies import Bodies, Hidden, Motion, Values
 from models.shaking import Shaking
 from models.stacked.model import MODEL
 

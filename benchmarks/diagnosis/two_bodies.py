@@ -5,7 +5,9 @@ case, and of those with a law outside the catalogue, are those of a program apar
 lanes at an eighth of the shaking's step. Half of the cases have one of a laboratory's errors (`imperfections`) besides.
 
 Nominal size: 10 times the noise (rms over windows and rotations) is what the effect changes in windows that start from
-the true rotations, less what a linear refit of the parameters in ``refitted`` takes up.
+the true rotations, less what a linear refit of the parameters in ``refitted`` takes up. At least as much as the noise is
+left by a refit within their ranges: a dashpot of a layer may stand for a damping couple at many times its size, and what
+it takes up nobody can find.
 """
 
 from __future__ import annotations
@@ -17,22 +19,19 @@ from typing import Protocol
 import numpy as np
 
 from benchmarks.diagnosis import imperfections, instruments, shakings, suite
+from benchmarks.diagnosis.body_size import HELD, NOISE, ROTATIONS, left, strength
 from benchmarks.diagnosis.cases import LOW_PASS, RECORDINGS, Case, drawn
 from benchmarks.diagnosis.imperfections import Imperfections
 from benchmarks.diagnosis.open_laws import LAWS, Law
 from benchmarks.diagnosis.scene import FloatArray, Unsuitable
 from benchmarks.diagnosis.unseen_laws import UNSEEN
 from models.model import Model
-from models.runs import Prescribed
 from models.shaking import Shaking
 
-ROTATIONS = ("rotation_1", "rotation_2")
-HELD = (*ROTATIONS, "rotation_rate_1", "rotation_rate_2")
-NOMINAL, WITHIN = 10.0, 0.1
+NOMINAL, WITHIN, LEFT = 10.0, 0.1, 1.0
 SHARES = np.geomspace(0.01, 1.0, 12)
 BEYOND = np.geomspace(0.01, 100.0, 23)
 """Shares tried of a law outside the catalogue, whose range is one of free-standing blocks."""
-NOISE = 0.01
 FALLEN = 1.0
 """rad, of a body that no longer stands."""
 COUNTS: dict[suite.Kind, int] = {"null": 60, "single": 84, "pair": 20, "open": 20}
@@ -86,6 +85,13 @@ class Bodies:
     apart: Apart
     knows: Callable[[Law], bool]
     calibrated: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+
+    def bounds(self, name: str, true: float) -> tuple[float, float]:
+        """Of the logarithm of a refitted parameter over its ``true`` value; three tolerances where it has one."""
+        if name not in self.calibrated:
+            return -3.0 * self.refitted[name], 3.0 * self.refitted[name]
+        low, high = self.calibrated[name]
+        return float(np.log(low / true)), float(np.log(high / true))
 
     def designs(self, seed: int, design: type[suite.CaseDesign]) -> list[suite.CaseDesign]:
         """All cases in mixed order; every effect as often as every other one, pairs of two classes at random.
@@ -188,12 +194,15 @@ def _sized(
     def at(share: float) -> dict[str, float]:
         return {row.parameter: row.null + share * (end - row.null), **shapes}
 
-    def size(share: float) -> float:
+    def largest(measure: Callable[..., float], share: float) -> float:
         sensors = {name: at(share)} if row.sensor else {}
         wall = {} if row.sensor else {f"{name}.{k}": v for k, v in at(share).items()}
-        return max(strength(Truth(of, true, wall, False), sensors, shaking, peak) for _, shaking, _ in drawn[:2])
+        return max(measure(Truth(of, true, wall, False), sensors, shaking, peak) for _, shaking, _ in drawn[:2])
 
-    return name, at(_nominal(size))
+    share = _nominal(lambda share: largest(strength, share))
+    if largest(left, share) < LEFT:
+        raise Unsuitable
+    return name, at(share)
 
 
 def _law(law: Law, plain: Truth, drawn: Sequence[Motion], rng: np.random.Generator) -> tuple[Truth, float]:
@@ -224,43 +233,10 @@ def _nominal(size: Callable[[float], float], shares: FloatArray = SHARES) -> flo
             middle = 0.5 * (low + high)
             found = size(middle)
             if abs(found / NOMINAL - 1.0) < WITHIN:
-                return middle
+                return float(middle)
             low, high = (middle, high) if found < NOMINAL else (low, middle)
         raise Unsuitable
     raise Unsuitable
-
-
-def strength(truth: Truth, sensors: instruments.Sensors, shaking: Shaking, peak: float, coarse: bool = False) -> float:
-    """Of an effect in one recording, over its noise."""
-    of, true, step = truth.of, truth.values, shaking.time_step
-    channels = truth.rotations(shaking, coarse)
-    base = instruments.base(shaking.horizontal, step, sensors)
-    seen = np.stack([instruments.response(channels[c], shaking.horizontal, step, sensors, peak) for c in ROTATIONS])
-    noise = NOISE * np.max(np.abs(seen), axis=1)
-    samples = round(of.window(true) / step)
-    first = np.arange(0, shaking.horizontal.size - samples, samples)
-    first = first[[np.max(np.abs(seen[0, k : k + samples])) > 8.0 * noise[0] for k in first]]
-    if not first.size:
-        return 0.0
-    names, measured = list(of.refitted), Shaking(step, base)
-    changes = np.ones((1 + 2 * len(names), len(names)))
-    for k in range(len(names)):
-        changes[1 + 2 * k : 3 + 2 * k, k] += [1e-2, -1e-2]
-    varied = {**true, **{name: true[name] * changes[:, k] for k, name in enumerate(names)}}
-    lanes = changes.shape[0]
-    motion = {name: channels[name][None] for name in HELD}
-    carried = of.model.carry(varied, measured, Prescribed(motion, first, np.zeros(lanes, np.int64)))
-    initial = {name: np.tile(channels[name][first], lanes) for name in HELD}
-    initial |= {name: x.reshape(-1, *x.shape[2:]) for name, x in carried.items()}
-    each = {name: np.repeat(value, first.size) if np.ndim(value) else value for name, value in varied.items()}
-    ran = of.model.trajectories(each, measured, first=np.tile(first, lanes), samples=samples, initial=initial)
-    index = first[:, None] + np.arange(samples)
-    predicted = np.stack([ran[c].reshape(lanes, -1) / s for c, s in zip(ROTATIONS, noise, strict=True)], axis=1)
-    wanted = np.stack([x[index].ravel() / s for x, s in zip(seen, noise, strict=True)]) - predicted[0]
-    columns = ((predicted[1::2] - predicted[2::2]) / 2e-2).reshape(len(names), -1).T
-    rows = np.vstack([columns, np.diag([1.0 / tolerance for tolerance in of.refitted.values()])])
-    change = np.linalg.lstsq(rows, np.concatenate([wanted.ravel(), np.zeros(len(names))]), rcond=None)[0]
-    return float(np.sqrt(np.mean((wanted.ravel() - columns @ change) ** 2)))
 
 
 def _recorded(

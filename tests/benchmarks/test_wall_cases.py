@@ -9,7 +9,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from benchmarks.diagnosis import stacks, two_bodies, walls
+from benchmarks.diagnosis import body_size, stacks, two_bodies, walls
 from benchmarks.diagnosis.files import write_case
 from benchmarks.diagnosis.scene import Unsuitable
 from grids.instruments import INSTRUMENTS
@@ -56,12 +56,27 @@ def test_size_is_nothing_without_an_effect_and_grows_with_one(of: ModuleType) ->
             continue
     true, (_, shaking, peak) = drawn
     plain = two_bodies.Truth(of.BODIES, true, {}, apart=False)
-    assert two_bodies.strength(plain, {}, shaking, peak) < 0.05
+    assert body_size.strength(plain, {}, shaking, peak) < 0.05
     small, twice = (
-        two_bodies.strength(plain, {"offset": {"offset_over_peak": share}}, shaking, peak) for share in (0.05, 0.1)
+        body_size.strength(plain, {"offset": {"offset_over_peak": share}}, shaking, peak) for share in (0.05, 0.1)
     )
     assert small > 1.0
     assert twice / small == pytest.approx(2.0, rel=0.1)  # an offset adds, and no refit takes it up
+
+
+def test_a_dashpot_of_a_layer_takes_up_a_damping_couple() -> None:
+    """Many times as strong: no refit by small changes of the parameters finds that."""
+    of, rng = walls.BODIES, np.random.default_rng(1)
+    taken = []
+    while len(taken) < 2:
+        try:
+            true = of.specimen(rng)[1]
+            _, shaking, peak = of.motion(true, rng, 88.0)
+        except Unsuitable:
+            continue
+        truth = two_bodies.Truth(of, true, {"viscous_damping.couple_damping": 3e5}, apart=False)
+        taken.append((body_size.strength(truth, {}, shaking, peak), body_size.left(truth, {}, shaking, peak)))
+    assert all(left < change / 3.0 for change, left in taken)
 
 
 @MODULES
