@@ -5,9 +5,9 @@ case, and of those with a law outside the catalogue, are those of a program apar
 lanes at an eighth of the shaking's step. Half of the cases have one of a laboratory's errors (`imperfections`) besides.
 
 Nominal size: 10 times the noise (rms over windows and rotations) is what the effect changes in windows that start from
-the true rotations, less what a linear refit of the parameters in ``refitted`` takes up. At least as much as the noise is
-left by a refit within their ranges: a dashpot of a layer may stand for a damping couple at many times its size, and what
-it takes up nobody can find.
+the true rotations, less what a linear refit of the parameters in ``refitted`` takes up. A refit within their ranges has
+to leave as much as the noise: a dashpot of a layer may stand for a damping couple at many times its size, and what it
+takes up nobody can find.
 """
 
 from __future__ import annotations
