@@ -170,10 +170,16 @@ def _quick(
     cost: float,
     most: int = MOST,
 ) -> Iterator[Explanation]:
-    """Quick refits of the strongest mechanisms, each in the run in which its statistic is largest."""
+    """Quick refits of the strongest mechanisms, each in the run in which its statistic is largest.
+
+    None where by the screen something that always acts explains as much: to what began late the windows before that
+    say no.
+    """
     m = found.measured
     strongest = sorted(screened, key=lambda one: -float(one.statistic.max()))
     largest = float(strongest[0].statistic.max()) if strongest else 0.0
+    if largest - cost <= max((one.score.statistic for one in screened), default=0.0):
+        return
     whole = _of_whole_recordings(m.recording_of, ends)
     for one in strongest[:most]:
         if float(one.statistic.max()) < max(FAINT + cost, SHARE * largest):

@@ -8,15 +8,15 @@ from models.runs import DONE
 
 CALL = 50_000
 """What a call of a kernel costs beside its lane-steps, in lane-steps: coefficients, tables, instruments (5 ms)."""
-MOST = 300_000_000
+MOST = 220_000_000
 """Lane-steps of the search for the first effect: half a minute to a minute of one core."""
-FURTHER = 500_000_000
+FURTHER = 360_000_000
 """Lane-steps for effects beside the first, whatever was spent before: where two act, the first explains little."""
-LAST = 200_000_000
+LAST = 150_000_000
 """Lane-steps for others in the place of each of several effects at the end, whatever was spent before."""
-RESERVED = 150_000_000
+RESERVED = 110_000_000
 """Lane-steps for effects that begin or end, whatever was spent before: they come last and may explain everything."""
-LADDER = 150_000_000
+LADDER = 110_000_000
 """Lane-steps after which no further base model is tried."""
 ENDED = "the search's budget of work ended before it"
 

@@ -40,6 +40,7 @@ def exchanged(found: Search, progress: Progress) -> None:
             return
         found.best = over_ranges(again(reshaped(better)))
         weigh_again(found)
+        found.exchanged.clear()  # what was tried beside effects that had not settled tells little
         if frozenset(found.best.candidates) in held:
             return
 

@@ -53,7 +53,7 @@ class Search:
     tried: list[Explanation] = field(default_factory=list)
     best: Explanation | None = None
     exchanged: set[frozenset[Candidate]] = field(default_factory=set)
-    """The mechanisms beside which others were tried in the place of one (`diagnosis.search.exchange`)."""
+    """The mechanisms beside which others were tried in the place of one, since the last exchange."""
     weighed: tuple[Candidate, ...] = ()
     """The mechanisms with which the errors were estimated."""
     at_null: Search | None = None

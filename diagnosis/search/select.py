@@ -89,8 +89,7 @@ def further_effects(found: Search, progress: Progress) -> Iterator[Search]:
             _more(found, progress)
             yield found
     if found.best is not None and len(found.best.candidates) > 1:
-        found.exchanged.clear()  # what was tried beside effects that had not settled yet tells little
-        with found.work_of_its_own(LAST):
+        with found.work_of_its_own(LAST):  # goes on where the budget ended
             exchanged(found, progress)
     settle_ties(found)
     if found.best is not None:

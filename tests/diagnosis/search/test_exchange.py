@@ -10,10 +10,13 @@ from diagnosis.errors.model import disturbance_about, estimate
 from diagnosis.fit.setup import base_fit, measure
 from diagnosis.progress import silent
 from diagnosis.search import exchange, select
+from diagnosis.search.beside import extended
+from diagnosis.search.budget import Budget
 from diagnosis.search.candidates import candidates
 from diagnosis.search.exchange import exchanged
 from diagnosis.search.found import Search, adjusted
 from diagnosis.search.refit import Explanation, extend, joined
+from diagnosis.search.screen import Score
 from diagnosis.search.weighing import reweighed
 from tests.diagnosis.made import SPECIMEN, recording
 
@@ -50,7 +53,7 @@ def taken(found: Search, *names: str) -> Explanation:
 
 
 def exchanged_from(found: Search, best: Explanation) -> Explanation:
-    search = replace(found, best=best, tried=[best], exchanged=set())
+    search = replace(found, best=best, tried=[best], exchanged=set(), budget=Budget())
     exchanged(search, silent)
     assert search.best is not None
     return search.best
@@ -108,13 +111,27 @@ def test_the_least_sure_effect_is_questioned_first(found: Search, monkeypatch: p
     assert standing[0].loss < standing[1].loss
 
 
-def test_effects_are_questioned_once_more_at_the_end(found: Search, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Whatever was tried beside them before they had settled."""
+def test_others_are_tried_again_beside_what_stays_once_its_company_has_changed(
+    found: Search, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[tuple[str, ...]] = []
+
+    def noted(found: Search, rest: Explanation, scores: list[Score], widely: bool) -> list[Explanation]:
+        asked.append(rest.names)
+        return extended(found, rest, scores, widely)
+
+    monkeypatch.setattr(exchange, "extended", noted)
+    best = exchanged_from(found, taken(found, "tilt", "velocity_restitution"))
+    assert set(best.names) == set(TRUE)
+    assert asked.count(("velocity_restitution",)) == asked.count(("restitution",)) > 0
+    assert asked.count(("tilt",)) == 2 * asked.count(("restitution",))
+
+
+def test_what_the_budget_left_untried_is_tried_at_the_end(found: Search, monkeypatch: pytest.MonkeyPatch) -> None:
     for more in ("_pairs", "_more", "settle_ties"):
         monkeypatch.setattr(select, more, lambda *_: None)
     best = taken(found, "tilt", "velocity_restitution")
-    tried = {frozenset([one]) for one in found.candidates}
-    search = replace(found, best=best, tried=[best], weighed=best.candidates, exchanged=tried)
+    search = replace(found, best=best, tried=[best], weighed=best.candidates, exchanged=set(), budget=Budget(most=0.0))
     for _ in select.further_effects(search, silent):
         pass
     assert search.best is not None and set(search.best.names) == set(TRUE)

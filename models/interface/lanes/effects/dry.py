@@ -39,7 +39,7 @@ def hold(t: Table, m: More) -> None:
     for i in range(lanes):
         t[e.HELD_1 + i], t[e.HELD_X + i] = 0.0, 0.0
     slips = m.size > 4
-    for _ in range(SWEEPS):
+    for _ in range(SWEEPS if slips else 1):
         for i in range(lanes):
             far = t[r.FAR * W + i]
             per = 1.0 / far if far > 0.0 else HUGE
