@@ -299,9 +299,7 @@ def _alike(instruments: Sequence[Switched]) -> list[list[int]]:
     return list(groups.values())
 
 
-def held(
-    ran: Mapping[str, FloatArray], name: str, shape: tuple[int, ...], last: NDArray[np.int64]
-) -> FloatArray:
+def held(ran: Mapping[str, FloatArray], name: str, shape: tuple[int, ...], last: NDArray[np.int64]) -> FloatArray:
     """A channel in the shape (P, n, samples) with the value at sample ``last`` (n,) held beyond it."""
     channel = ran[name].reshape(shape)
     short = np.flatnonzero(last < shape[2] - 1)

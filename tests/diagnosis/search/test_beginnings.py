@@ -14,6 +14,7 @@ from diagnosis.errors.model import calibrated
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.setup import measure
 from diagnosis.progress import silent
+from diagnosis.search import beginnings
 from diagnosis.search.beginnings import _in_the_spell, alone
 from diagnosis.search.candidates import candidates
 from diagnosis.search.found import MISSING, Search, adjusted
@@ -123,6 +124,22 @@ def test_what_always_acts_does_not_begin() -> None:
     from_rest = [(1.0, {"restitution.factor_on_housner": 0.93})]  # before anything moves
     _, yielded = searched([made("a", 13, from_rest), made("b", 6, from_rest)])
     assert yielded == []
+
+
+def test_no_part_of_the_recordings_is_refitted_where_what_always_acts_explains_as_much(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """An effect that always acts says so in the windows before any instant: refits would be in vain."""
+
+    def refitted(*_: object) -> Explanation:
+        raise AssertionError("refitted in a part of the recordings")
+
+    monkeypatch.setattr(beginnings, "_in_run", refitted)
+    always = [(1.0, {"restitution.factor_on_housner": 0.93})]
+    searched([made("a", 13, always), made("b", 6, always)])
+    late = [(6.0, {"restitution.factor_on_housner": 0.93})]
+    with pytest.raises(AssertionError, match="in a part"):
+        searched([made("a", 13, late), made("b", 6, always)])
 
 
 def test_what_may_change_again_is_told_from_what_stays_or_is_gone() -> None:
