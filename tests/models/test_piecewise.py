@@ -103,6 +103,22 @@ def test_windows_before_after_and_over_the_instant(name: str) -> None:
         np.testing.assert_allclose(found["rotation_1"][k], wanted, atol=max(ALIKE[name], 1e-6) * peak)
 
 
+@pytest.mark.parametrize("name", OF_MODEL)
+def test_lanes_of_their_own_lengths_are_those_of_the_longest_to_their_ends(name: str) -> None:
+    model, values = models.get(name), OF_MODEL[name]
+    other = {**values, "pivot_inset.inset_over_half_width": 0.05}
+    values = {**values, "pivot_inset.inset_over_half_width": 0.0}
+    first, lengths = np.array([0, 0, 0]), np.array([90, 400, 251])
+    for parts, changes in (([values], np.zeros((3, 0), np.int64)), ([values, other], np.full((3, 1), 200))):
+        whole, own = (
+            trajectories(model, parts, changes, SHAKING, first=first, samples=samples, initial={})["rotation_1"]
+            for samples in (400, lengths)
+        )
+        assert own.shape == whole.shape
+        for k, length in enumerate(lengths):
+            np.testing.assert_array_equal(own[k, :length], whole[k, :length])
+
+
 def test_what_remembers_more_than_its_states_is_refused() -> None:
     with pytest.raises(InputError, match="bounce remembers more than the motion"):
         bounces = {**BLOCK, "bounce.contact_restitution": 0.3}
