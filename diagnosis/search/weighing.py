@@ -89,9 +89,10 @@ def evidence(found: Search) -> list[float]:
         return []
     if len(best.candidates) == 1:
         start = found if found.at_null is None else found.at_null
-        same = [e for e in start.tried if e.candidates == best.candidates]
-        if same:
-            return [max(found.marginal, start.base.loss - min(e.loss for e in same))]
+        if same := [e for e in start.tried if e.candidates == best.candidates]:
+            # a fit that came later, in place of another effect, may have found what the first one had not
+            losses = [e.loss for e in (*same, reweighed(best, start.errors))]
+            return [max(found.marginal, start.base.loss - min(losses))]
     return [_evidence(best, without(best, c), found.errors) for c in best.candidates]
 
 

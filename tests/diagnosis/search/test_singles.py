@@ -16,7 +16,7 @@ from diagnosis.search.candidates import candidates
 from diagnosis.search.found import Search
 from diagnosis.search.refit import Explanation, extend, with_memory
 from diagnosis.search.select import _in_turn, _singles, led_by
-from diagnosis.search.weighing import reweighed
+from diagnosis.search.weighing import evidence, reweighed
 from tests.diagnosis.made import SPECIMEN, recording
 
 AWAY = -8.0
@@ -57,6 +57,15 @@ def test_a_base_that_is_not_stuck_stays(free: Search) -> None:
     found = replace(free, singles=list(free.singles))
     assert not led_by(found, free.singles[0])
     assert found.base is free.base and found.singles == free.singles
+
+
+def test_evidence_is_of_the_best_fit_of_an_effect_whatever_its_first_one_was(free: Search) -> None:
+    """It may have come in the place of another one; with the first fit it was named with an evidence of 0, p = 1."""
+    (tilt,) = (e for e in free.singles if e.names == ("tilt",))
+    off = replace(tilt, fitted=replace(tilt.fitted, loss=free.base.loss + 3.0))
+    found = replace(free, best=tilt, tried=[tilt], at_null=replace(free, tried=[off]))
+    assert evidence(found)[0] == pytest.approx(free.gain(tilt), rel=0.02)
+    assert free.gain(tilt) > 15.0
 
 
 def test_every_law_with_a_memory_counts_events_along_its_own_motion() -> None:
