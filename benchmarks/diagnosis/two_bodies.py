@@ -167,6 +167,8 @@ def _case(of: Bodies, design: suite.CaseDesign, seed: int, rng: np.random.Genera
         found = [_sized(of, name, true, drawn, rng) for name in design.names]
         wall = {f"{n}.{k}": v for n, p in found if not of.catalogue[n].sensor for k, v in p.items()}
         truth, sensors = replace(truth, mechanisms=wall), {n: p for n, p in found if of.catalogue[n].sensor}
+        if len(found) > 1:  # what a sensor reads is in shares of the rotation that the other effect leaves
+            peak = float(np.max(np.abs(truth.rotations(drawn[0][1])["rotation_1"])))
         effects = [
             {"name": n, "class": of.catalogue[n].effect_class, "parameters": p, "primary": of.catalogue[n].parameter}
             for n, p in found

@@ -34,7 +34,7 @@ OF_TOP_MASS = Mechanism(
     ),
     equation="G2 = T + Rot(theta2)(d, h2), T the middle of the upper body's underside",
     signature="differs left and right; the wall leans at rest",
-    sentence="the mass centre of the upper body lies {offset_top:+.4f} m off its middle (positive to +x)",
+    sentence="the mass centre of the upper body lies {offset_top:+.3g} m off its middle (positive to +x)",
     acts={"interface": on_interface},
     static_test="turn the top mass by 180 degrees and repeat a run",
     source="geometry: models/interface/chain.py",
