@@ -38,6 +38,7 @@ from diagnosis.search import bootstrap as bootstrapping
 from diagnosis.search.beginnings import alone, beside
 from diagnosis.search.budget import Budget
 from diagnosis.search.candidates import absent, candidates
+from diagnosis.search.details import least
 from diagnosis.search.found import Search, misfit_per_sample, rivals
 from diagnosis.search.ladder import Climbed, climb, rungs
 from diagnosis.search.law import missing_law
@@ -124,11 +125,14 @@ def _assemble(
         return found.about if found.about is not None and tested else forces(chosen.fitted)
 
     tested: list[Tested] = []
+    detail: Constancy | None = None
+    allowed = stages.needed(lambda: least(found, chosen))
     flagged: tuple[Constancy, ...] = ()
     if measured.identification.forces:
         about = stages.needed(of_chosen)
         tested = stages.needed(lambda: tests(about, found.errors))
-        flagged = () if unexplained else flags(about, tested, found.more)
+        flagged = () if unexplained else flags(about, tested, allowed)
+        detail = next(iter(flags(about, tested, found.more)), None)
     if found.outside is not None:
         flagged = (found.outside, *(f for f in flagged if f.parameter != found.outside.parameter))
     if found.blow is not None:
@@ -137,7 +141,7 @@ def _assemble(
         changing: list[Tested] = stages.optional(
             "whether it changes", lambda: varying(about, _about_the_fit(found)), list
         )
-        flagged = flags(about, changing, found.more)
+        flagged = flags(about, changing, allowed)
     near = rivals(found)
     progress("stating the errors", 0.87)
     errors = stages.needed(lambda: summary(found.errors, measured))
@@ -228,6 +232,7 @@ def _assemble(
         visited=acting[1],
         shows=shows(shown[0], explained, seed) if missing else (),
         constancy=flagged,
+        detail=None if flagged else detail,
         train=train,
         holdout=held_fit,
         base=base,
@@ -253,7 +258,7 @@ def _assemble(
         posterior=drawn,
         not_tried=not_tried(found),
         reference_peak=true_peak(chosen),
-        provenance=_provenance(specimen, found, tested, seed),
+        provenance=_provenance(specimen, found, tested, allowed, seed),
         finished=finished,
         undecided=undecided(found, p_value) if verdict == "nothing_missing" else None,
         unexplained=unexplained,
@@ -334,7 +339,9 @@ def _horizons(shown: Sequence[Shown], before: Explanation, after: Explanation) -
     return {k: v for s in shown for k, v in horizons(s, *predictors).items()}
 
 
-def _provenance(specimen: Specimen, found: Search, tested: Sequence[Tested], seed: int) -> Mapping[str, Any]:
+def _provenance(
+    specimen: Specimen, found: Search, tested: Sequence[Tested], allowed: float, seed: int
+) -> Mapping[str, Any]:
     measured = found.measured
     gains, recordings = gain_by_window(found.base, found.chosen), list(enumerate(measured.recordings))
     return {
@@ -350,7 +357,7 @@ def _provenance(specimen: Specimen, found: Search, tested: Sequence[Tested], see
         },
         "misfit_per_sample": misfit_per_sample(found.chosen),
         "gain_by_recording": {r.name: float(gains[measured.recording_of == k].sum()) for k, r in recordings},
-        "constancy_threshold": found.more,
+        "constancy_threshold": allowed,
         "largest_constancy": tested[0].statistic if tested else 0.0,
         "largest_constancy_of": f"{tested[0].kind} / {tested[0].depends_on}" if tested else "",
         "seed": seed,

@@ -283,6 +283,8 @@ class Diagnosis:
     """What the recordings show of their instruments by themselves."""
     instruments: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     """Of the specimen, those seen included."""
+    detail: Constancy | None = None
+    """What is not the same everywhere and is taken for a detail of a named law (`diagnosis.search.details`)."""
     extrapolated: tuple[Extrapolated, ...] = ()
     """Recordings held out that lie beyond the amplitudes learned from."""
     channels: Mapping[str, Mapping[str, float]] = field(default_factory=dict)

@@ -72,6 +72,8 @@ def statement(found: Diagnosis, model: Model) -> str:
     elif found.rivals:
         names = ", ".join(r.name.replace("_", " ") for r in found.rivals)
         parts.append(f"{names[0].upper()}{names[1:]} would explain nearly as much.")
+    if found.detail is not None and found.verdict != "not_in_library":
+        parts.append(_detail(found.detail, found.effects))
     parts.append(_fit(found.train, found.holdout))
     parts += [_extrapolated(one) for one in found.extrapolated]
     parts += held_text(found.held_stages)
@@ -244,6 +246,15 @@ def _flag(found: Constancy, declared: Identification) -> str:
     if found.depends_on.startswith("recording"):
         return f"{what} that is not the same in {found.depends_on}."
     return f"{what} that depends on the {found.depends_on}{stronger}."
+
+
+def _detail(found: Constancy, named: Sequence[Effect]) -> str:
+    strongest = max(effect.evidence for effect in named)
+    what = found.parameter.replace("_", " ")
+    return (
+        f"What is left is not the same everywhere ({what}, by {found.depends_on}; evidence {found.evidence:.0f} of "
+        f"{strongest:.0f}): less than a tenth of the force of the law named, and taken for a detail of it."
+    )
 
 
 def _shows(places: Sequence[Located], words: Mapping[str, str]) -> list[str]:

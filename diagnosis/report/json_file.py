@@ -25,6 +25,7 @@ def as_mapping(diagnosis: Diagnosis) -> dict[str, Any]:
         "located": _entries(diagnosis.located),
         "shows": [_without_effect(place) for place in _entries(diagnosis.shows)],
         "constancy": _entries(diagnosis.constancy),
+        "detail": None if diagnosis.detail is None else entry(asdict(diagnosis.detail)),
         "beyond_range": _entries(diagnosis.beyond),
         "undecided": None if diagnosis.undecided is None else entry(asdict(diagnosis.undecided)),
         "suspicions": [

@@ -32,6 +32,7 @@ from diagnosis.search.asked import asked_for
 from diagnosis.search.beside import seconds
 from diagnosis.search.budget import RESERVED
 from diagnosis.search.candidates import Candidate
+from diagnosis.search.details import least
 from diagnosis.search.found import MISSING, Search, adjusted, explains_all, price, survives
 from diagnosis.search.instants import WHOLE, ends_of
 from diagnosis.search.null import null_distribution
@@ -144,7 +145,7 @@ def _needed(found: Search, start: Explanation, single: Explanation) -> bool:
     always = Explanation((*others, replace(candidate, spell=None, price=0.0)), fitted)
     if found.best is not None and found.best.names == always.names:
         always = min(always, found.best, key=adjusted)
-    return adjusted(always) - adjusted(single) >= found.more and survives(always, single)
+    return adjusted(always) - adjusted(single) >= least(found, always) and survives(always, single)
 
 
 def _settled(found: Search) -> bool:
@@ -159,7 +160,7 @@ def _settled(found: Search) -> bool:
     if not found.measured.identification.forces:
         return True
     found.about = forces(found.best.fitted)
-    return not flags(found.about, tests(found.about, found.errors), found.more)
+    return not flags(found.about, tests(found.about, found.errors), least(found, found.best))
 
 
 def _quick(

@@ -12,6 +12,7 @@ import numpy as np
 from diagnosis.progress import Progress
 from diagnosis.search.beside import extended, seconds
 from diagnosis.search.candidates import Candidate
+from diagnosis.search.details import least
 from diagnosis.search.found import Search, adjusted
 from diagnosis.search.left_out import predicts_worse
 from diagnosis.search.refit import Explanation, again, gain_by_window, over_ranges, reshaped, without
@@ -82,7 +83,7 @@ def drop(found: Search) -> None:
         dropping = False
         for candidate in found.best.removable:
             rest = without(found.best, candidate)
-            if adjusted(rest) - adjusted(found.best) < found.more:
+            if adjusted(rest) - adjusted(found.best) < least(found, rest, candidate):
                 found.best, dropping = rest, True
                 break
 

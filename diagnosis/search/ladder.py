@@ -32,6 +32,7 @@ from diagnosis.forces.constancy import flags, tests
 from diagnosis.progress import Progress
 from diagnosis.search.budget import ENDED, LADDER, Budget
 from diagnosis.search.candidates import Candidate
+from diagnosis.search.details import least
 from diagnosis.search.found import Search, adjusted, misfit_per_sample, price
 from diagnosis.search.refit import Explanation
 from diagnosis.search.weighing import reweighed
@@ -153,7 +154,7 @@ def _leaves_a_law(found: Search) -> bool:
     if not found.measured.identification.forces:
         return False
     found.about = forces(found.chosen.fitted)
-    return bool(flags(found.about, tests(found.about, found.errors), found.more))
+    return bool(flags(found.about, tests(found.about, found.errors), least(found, found.chosen)))
 
 
 def _meant_for(rung: Rung, recordings: Sequence[Recording]) -> bool:

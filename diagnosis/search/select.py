@@ -16,6 +16,7 @@ from diagnosis.progress import Progress
 from diagnosis.search.beside import POOL_SHARE, THOROUGH, extended, seconds, starts_of, worth_a_refit
 from diagnosis.search.budget import FURTHER, LAST
 from diagnosis.search.candidates import Candidate, firsts
+from diagnosis.search.details import least
 from diagnosis.search.exchange import drop, exchanged
 from diagnosis.search.found import GAP, MISSING, Search, adequate, adjusted, survives
 from diagnosis.search.hidden import take_hidden
@@ -234,12 +235,23 @@ def _pairs(found: Search, progress: Progress) -> None:
             return
         found.outside = None
     found.tried += pairs
-    pair = min(pairs, key=adjusted)
-    alone = best_of([e for e in found.singles if e.names[0] in pair.names] or [found.best])
-    if adjusted(found.best) - adjusted(pair) >= found.more and survives(alone, pair, found.more):
+    pair = _pair_that_counts(found, found.best, pairs)
+    if pair is not None:
         found.best = over_ranges(again(reshaped(pair)))
         weigh_again(found)
         exchanged(found, progress)  # before a third: what stands in for another effect leaves traces of its own
+
+
+def _pair_that_counts(found: Search, best: Explanation, pairs: Sequence[Explanation]) -> Explanation | None:
+    """The likeliest pair, if it counts; what may be a detail of a law of the joints is passed over."""
+    for pair in sorted(pairs, key=adjusted):
+        alone = best_of([e for e in found.singles if e.names[0] in pair.names] or [best])
+        needed = least(found, alone, next(c for c in pair.candidates if c.name not in alone.names))
+        gain = adjusted(best) - adjusted(pair)
+        if found.more <= gain < needed:
+            continue
+        return pair if gain >= needed and survives(alone, pair, needed) else None
+    return None
 
 
 def _more(found: Search, progress: Progress) -> None:
@@ -272,7 +284,10 @@ def _next(found: Search, before: Explanation, further: Sequence[Explanation]) ->
     """
     incomplete = found.incomplete
     for one in sorted(further, key=adjusted):
-        if adjusted(before) - adjusted(one) < found.more or not survives(before, one, found.more):
+        needed, gain = least(found, before, one.candidates[-1]), adjusted(before) - adjusted(one)
+        if found.more <= gain < needed:  # a detail of a law of the joints
+            continue
+        if gain < needed or not survives(before, one, needed):
             return None
         if not (incomplete and predicts_worse(before, one)):
             return one

@@ -230,6 +230,7 @@ class AnswerFile(Part):
     located: list[LocatedPart]
     shows: list[ShowsPart]
     constancy: list[ConstancyPart]
+    detail: ConstancyPart | None
     undecided: UndecidedPart | None
     beyond_range: list[BeyondPart]
     suspicions: list[SuspicionPart]
