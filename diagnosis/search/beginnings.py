@@ -48,7 +48,7 @@ FAINT = 8.0
 """Statistic less the price of a spell under which nothing is refitted."""
 SHARE, NEAR = 0.25, 0.85
 """Of the strongest statistic, what a mechanism must reach to be refitted; of the largest gain, to be refined."""
-MOST, MOST_HIDDEN, THOROUGH = 6, 3, 3
+MOST, MOST_HIDDEN, MOST_SINGLES, THOROUGH = 6, 3, 2, 3
 TURNS = 3
 FEWEST_WINDOWS = 4
 
@@ -119,6 +119,8 @@ def _in_spells(found: Search, start: Explanation) -> list[Explanation]:
     cost = max(0.0, chance(screen, scores, ends).band - null_distribution(screen, scores).band)
     fits = list(_quick(found, start, in_runs(screen, scores, ends), ends, cost))
     fits += _quick(found, start, _hidden_by_errors(found, start, scores, ends), ends, cost, MOST_HIDDEN)
+    if start is found.base:
+        fits += [single for one in found.singles[:MOST_SINGLES] if (single := _in_part(one, cost)) is not None]
     fits.sort(key=adjusted)
     if not fits:
         return []
@@ -133,6 +135,18 @@ def _hidden_by_errors(
     """The same screen against white noise: scatter of events holds much of a law of them that changes."""
     white = linearise_about(as_white_noise(start.fitted, found.errors))
     return in_runs(white, score(white, [one.candidate for one in scores]), ends)
+
+
+def _in_part(single: Explanation, cost: float) -> Explanation | None:
+    """A single in the run of windows that asks for it, if that gains: what begins early explains most acting always."""
+    (candidate,) = single.candidates
+    spell = asked_for(single)
+    staged = replace(single, candidates=(replace(candidate, price=cost),))
+    try:
+        part = _in(staged, spell)
+    except InputError:  # it cannot change within a recording
+        return None
+    return _moved(part) if adjusted(single) - adjusted(part) >= MISSING else None
 
 
 def _needed(found: Search, start: Explanation, single: Explanation) -> bool:

@@ -10,6 +10,8 @@ CALL = 50_000
 """What a call of a kernel costs beside its lane-steps, in lane-steps: coefficients, tables, instruments (5 ms)."""
 MOST = 220_000_000
 """Lane-steps of the search for the first effect: half a minute to a minute of one core."""
+JOINTS = 180_000_000
+"""Lane-steps for the law of the strongest single at other joints."""
 FURTHER = 360_000_000
 """Lane-steps for effects beside the first, whatever was spent before: where two act, the first explains little."""
 LAST = 150_000_000

@@ -14,12 +14,13 @@ from diagnosis.errors.model import estimate
 from diagnosis.fit.linearisation import Linearisation, linearise_about
 from diagnosis.progress import Progress
 from diagnosis.search.beside import POOL_SHARE, THOROUGH, extended, seconds, starts_of, worth_a_refit
-from diagnosis.search.budget import FURTHER, LAST
+from diagnosis.search.budget import FURTHER, JOINTS, LAST
 from diagnosis.search.candidates import Candidate, firsts
 from diagnosis.search.details import least
 from diagnosis.search.exchange import drop, exchanged
 from diagnosis.search.found import GAP, MISSING, Search, adequate, adjusted, survives
 from diagnosis.search.hidden import take_hidden
+from diagnosis.search.joints import at_other_joints
 from diagnosis.search.left_out import predicts_worse
 from diagnosis.search.null import null_distribution
 from diagnosis.search.outside import outside
@@ -144,6 +145,8 @@ def _singles(found: Search, progress: Progress) -> None:
         return
     if led_by(found, found.singles[0]):
         found.singles[0] = again(reshaped(found.singles[0]))
+    with found.work_of_its_own(JOINTS):
+        at_other_joints(found)
     leader = found.singles[0]
     near = NEAR_ADEQUATE if adequate(leader) else NEAR
     for k, single in enumerate(found.singles[1:], start=1):

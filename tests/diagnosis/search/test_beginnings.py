@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,11 +17,12 @@ from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.setup import measure
 from diagnosis.progress import silent
 from diagnosis.search import beginnings
+from diagnosis.search import found as finding
 from diagnosis.search.beginnings import _in_the_spell, alone
 from diagnosis.search.candidates import candidates
-from diagnosis.search.found import MISSING, Search, adjusted
+from diagnosis.search.found import BADLY, MISSING, Search, adjusted, by_window, survives
 from diagnosis.search.null import null_distribution
-from diagnosis.search.refit import Explanation, extend
+from diagnosis.search.refit import Explanation, again, extend
 from diagnosis.search.runs import InRuns
 from diagnosis.search.screen import score
 from diagnosis.search.spells import Spell
@@ -140,6 +143,49 @@ def test_no_part_of_the_recordings_is_refitted_where_what_always_acts_explains_a
     late = [(6.0, {"restitution.factor_on_housner": 0.93})]
     with pytest.raises(AssertionError, match="in a part"):
         searched([made("a", 13, late), made("b", 6, always)])
+
+
+def test_what_begins_early_is_found_where_it_explains_most_acting_always(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Then no run of windows stands out in the screen, and the single itself is asked where it acts."""
+    monkeypatch.setattr(beginnings, "_quick", lambda *_: iter(()))
+    inset = {"pivot_inset.inset_over_half_width": 0.15}
+    measured = measure(SPECIMEN, [made("a", 6, [(3.5, inset)]), made("b", 13, [(1.0, inset)])])
+    fitted, errors = calibrated(SPECIMEN, measured)
+    some = tuple(c for c in candidates(measured, SPECIMEN) if c.name in (*FEW, "pivot_inset"))
+    found = Search(Explanation((), fitted), some, errors)
+    opened = linearise_about(fitted)
+    found.scores = score(opened, some)
+    found.null = null_distribution(opened, found.scores)
+    corner = next(c for c in some if c.name == "pivot_inset")
+    always = again(extend(found.base, corner, np.array([corner.unknowns[0].coordinate(0.12)])))
+    found.best, found.singles = always, [always]
+    assert np.sum(by_window(always) > BADLY) == 1
+    *_, last = alone(found, silent)
+    assert last.best is not None and last.best.names == ("pivot_inset",)
+    spell = last.best.candidates[0].spell
+    assert spell is not None and (spell.first, spell.last, spell.ends) == (0, 1, None)
+    assert spell.begins == pytest.approx(3.5, abs=0.5)
+    assert last.best.fitted.values["pivot_inset.inset_over_half_width"] == pytest.approx(0.15, rel=0.05)
+
+
+@pytest.mark.parametrize(("begins", "counts"), [(3.0, True), (None, False)])
+def test_one_window_may_say_that_an_effect_had_not_begun_and_not_that_it_acts(
+    begins: float | None, counts: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """All of the gain is in the first window, of a spell that begins after it, or that is it."""
+    measured: Any = SimpleNamespace(
+        windows=[SimpleNamespace(recording=0, first=k * 100, samples=101) for k in range(4)],
+        recordings=[SimpleNamespace(name="a", time_step=0.02)],
+    )
+    spell = Spell(0, begins, 0, None if begins else 2.0)
+    after: Any = SimpleNamespace(in_spell=True, measured=measured, candidates=[SimpleNamespace(spell=spell)])
+    before: Any = SimpleNamespace(loss=0.0)
+    monkeypatch.setattr(finding, "gain_by_window", lambda *_: np.array([300.0, 1.0, 2.0, 0.0]))
+    monkeypatch.setattr(finding, "adjusted", lambda e: 0.0 if e is before else -303.0)
+    monkeypatch.setattr(finding, "settles", lambda *_: True)
+    assert survives(before, after) is counts
+    monkeypatch.setattr(finding, "settles", lambda *_: False)
+    assert not survives(before, after)
 
 
 def test_what_may_change_again_is_told_from_what_stays_or_is_gone() -> None:
