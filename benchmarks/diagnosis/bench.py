@@ -27,14 +27,13 @@ class Bench:
     """Files of this folder that its cases depend on beside those of `suite.MAKERS`."""
 
 
+OF_TWO_BODIES = ("two_bodies.py", "bodies.py", "body_size.py")
 BENCHES = {
     "diagnosis": Bench(suite.suite, report.grouped),
     "laboratory": Bench(laboratory.suite, report.by_imperfection),
     "beginnings": Bench(beginnings.suite, report.by_beginning),
-    "walls": Bench(walls.designs, report.of_all, ("walls.py", "two_bodies.py", "body_size.py", "fibre_wall.py")),
-    "stacks": Bench(
-        stacks.designs, report.of_all, ("stacks.py", "two_bodies.py", "body_size.py", "rigid_stack.py", "bases.py")
-    ),
+    "walls": Bench(walls.designs, report.of_all, ("walls.py", *OF_TWO_BODIES, "fibre_wall.py")),
+    "stacks": Bench(stacks.designs, report.of_all, ("stacks.py", *OF_TWO_BODIES, "rigid_stack.py", "bases.py")),
     "bases": Bench(bases.designs, report.by_base, ("bases.py",)),
 }
 

@@ -6,22 +6,17 @@ Windows start from the true rotations; what the layers carry is carried along th
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
 from benchmarks.diagnosis import instruments
+from benchmarks.diagnosis.bodies import HELD, ROTATIONS, Truth
 from benchmarks.diagnosis.scene import FloatArray
 from models.runs import Prescribed
 from models.shaking import Shaking
 
-if TYPE_CHECKING:
-    from benchmarks.diagnosis.two_bodies import Truth
-
-ROTATIONS = ("rotation_1", "rotation_2")
-HELD = (*ROTATIONS, "rotation_rate_1", "rotation_rate_2")
 NOISE = 0.01
 """Of a rotation, over its peak."""
 SEEN = 8.0

@@ -10,12 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.diagnosis import bases, rigid_stack, shakings, suite
-from benchmarks.diagnosis.body_size import HELD
+from benchmarks.diagnosis import bases, rigid_stack, shakings, suite, two_bodies
+from benchmarks.diagnosis.bodies import HELD, Bodies, Hidden, Motion, Values
 from benchmarks.diagnosis.cases import Case
 from benchmarks.diagnosis.open_laws import Law
 from benchmarks.diagnosis.scene import FloatArray, Unsuitable
-from benchmarks.diagnosis.two_bodies import Bodies, Hidden, Motion, Values
 from models.shaking import Shaking
 from models.stacked.model import MODEL
 
@@ -59,12 +58,12 @@ class StackDesign(suite.CaseDesign):
 
 def designs(seed: int) -> list[suite.CaseDesign]:
     """All cases in mixed order."""
-    return BODIES.designs(seed, StackDesign)
+    return two_bodies.designs(BODIES, seed, StackDesign)
 
 
 def make(design: suite.CaseDesign, seed: int) -> Case:
     """The case, the same for the same design and seed. Raises RuntimeError when no draw was suitable."""
-    return BODIES.make(design, seed)
+    return two_bodies.make(BODIES, design, seed)
 
 
 def _stack(rng: np.random.Generator) -> tuple[dict[str, float], dict[str, float]]:

@@ -12,142 +12,63 @@ takes up nobody can find.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import Protocol
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from benchmarks.diagnosis import imperfections, instruments, shakings, suite
-from benchmarks.diagnosis.body_size import HELD, NOISE, ROTATIONS, left, strength
+from benchmarks.diagnosis.bodies import ROTATIONS, Bodies, Motion, Truth, Values
+from benchmarks.diagnosis.body_size import NOISE, left, strength
 from benchmarks.diagnosis.cases import LOW_PASS, RECORDINGS, Case, drawn
 from benchmarks.diagnosis.imperfections import Imperfections
 from benchmarks.diagnosis.open_laws import LAWS, Law
 from benchmarks.diagnosis.scene import FloatArray, Unsuitable
 from benchmarks.diagnosis.unseen_laws import UNSEEN
-from models.model import Model
 from models.shaking import Shaking
 
 NOMINAL, WITHIN, LEFT = 10.0, 0.1, 1.0
 SHARES = np.geomspace(0.01, 1.0, 12)
 BEYOND = np.geomspace(0.01, 100.0, 23)
 """Shares tried of a law outside the catalogue, whose range is one of free-standing blocks."""
-FALLEN = 1.0
-"""rad, of a body that no longer stands."""
 COUNTS: dict[suite.Kind, int] = {"null": 60, "single": 84, "pair": 20, "open": 20}
 ERRORS = (*imperfections.COLOURS, *imperfections.OTHERS)
 """A laboratory's errors of two bodies: nothing that scatters."""
-Values = Mapping[str, float]
-Motion = tuple[str, Shaking, float]
-"""Name and motion of a recording, and the largest rotation (rad) of the lower body without effects."""
 
 
-@dataclass(frozen=True)
-class Hidden:
-    """A row of the catalogue: class, primary parameter, its null, the ends of its range, how the others are drawn."""
+def designs(of: Bodies, seed: int, design: type[suite.CaseDesign]) -> list[suite.CaseDesign]:
+    """All cases in mixed order; every effect as often as every other one, pairs of two classes at random.
 
-    effect_class: str
-    parameter: str
-    null: float
-    ends: tuple[float, ...]
-    sensor: bool = False
-    shapes: Callable[[np.random.Generator], dict[str, float]] = lambda rng: {}
-
-
-class Apart(Protocol):
-    """A program apart: rotations and rates (`HELD`) of two bodies at the shaking's steps, nan once one falls.
-
-    ``coarse``: as precisely as the search for a size needs.
+    Every second case of a kind has one of a laboratory's errors, in turn. Laws outside the catalogue are those kept
+    for the evaluation at its seed, the others at any other.
     """
-
-    def __call__(
-        self, values: Values, mechanisms: Values, shaking: Shaking, law: Law | None, numbers: Sequence[float],
-        largest: float, coarse: bool,
-    ) -> dict[str, FloatArray]: ...  # fmt: skip
-
-
-@dataclass(frozen=True)
-class Bodies:
-    """What is of one model: its catalogue, its specimens, its motions and the program apart.
-
-    ``refitted``: parameters that a refit moves, with their relative tolerances; ``calibrated``: ranges of those that
-    the specimen leaves open. ``window(values)``: s. ``specimen(rng)``: nominal and true values; ``motion(true, rng,
-    low_pass)``: a motion under which it moves well. ``knows``: whether the program apart can take a law.
-    """
-
-    model: Model
-    catalogue: Mapping[str, Hidden]
-    tolerance: Values
-    refitted: Values
-    window: Callable[[Values], float]
-    specimen: Callable[[np.random.Generator], tuple[dict[str, float], dict[str, float]]]
-    motion: Callable[[Values, np.random.Generator, float], Motion]
-    apart: Apart
-    knows: Callable[[Law], bool]
-    calibrated: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-
-    def bounds(self, name: str, true: float) -> tuple[float, float]:
-        """Of the logarithm of a refitted parameter over its ``true`` value; three tolerances where it has one."""
-        if name not in self.calibrated:
-            return -3.0 * self.refitted[name], 3.0 * self.refitted[name]
-        low, high = self.calibrated[name]
-        return float(np.log(low / true)), float(np.log(high / true))
-
-    def designs(self, seed: int, design: type[suite.CaseDesign]) -> list[suite.CaseDesign]:
-        """All cases in mixed order; every effect as often as every other one, pairs of two classes at random.
-
-        Every second case of a kind has one of a laboratory's errors, in turn. Laws outside the catalogue are those kept
-        for the evaluation at its seed, the others at any other.
-        """
-        rng = np.random.default_rng(seed)
-        laws = [n for n, law in (UNSEEN if seed == suite.EVALUATION_SEED else LAWS).items() if self.knows(law)]
-        groups: list[list[tuple[suite.Kind, tuple[str, ...], str]]] = []
-        for kind, count in COUNTS.items():
-            pairs = kind == "pair"
-            chosen = self._pairs(count, rng) if pairs else suite.names_of(kind, count, list(self.catalogue), laws, rng)
-            errors = [str(one) for _ in range(count) for one in rng.permutation(ERRORS)]
-            groups.append([(kind, names, errors[k // 2] if k % 2 else "") for k, names in enumerate(chosen)])
-        return [
-            design(number, kind, chosen, NOISE, 1.0, error)
-            for number, (kind, chosen, error) in enumerate(suite.in_mixed_order(groups, rng))
-        ]
-
-    def _pairs(self, count: int, rng: np.random.Generator) -> list[tuple[str, ...]]:
-        """Pairs of two classes."""
-        found: list[tuple[str, ...]] = []
-        while len(found) < count:
-            one, other = rng.choice(list(self.catalogue), 2, replace=False).tolist()
-            if self.catalogue[one].effect_class != self.catalogue[other].effect_class:
-                found.append((one, other))
-        return found
-
-    def make(self, design: suite.CaseDesign, seed: int) -> Case:
-        """The case, the same for the same design and seed. Raises RuntimeError when no draw was suitable."""
-        return drawn(design, seed, lambda design, seed, rng: _case(self, design, seed, rng))
+    rng = np.random.default_rng(seed)
+    laws = [n for n, law in (UNSEEN if seed == suite.EVALUATION_SEED else LAWS).items() if of.knows(law)]
+    groups: list[list[tuple[suite.Kind, tuple[str, ...], str]]] = []
+    for kind, count in COUNTS.items():
+        pairs = kind == "pair"
+        chosen = _pairs(of, count, rng) if pairs else suite.names_of(kind, count, list(of.catalogue), laws, rng)
+        errors = [str(one) for _ in range(count) for one in rng.permutation(ERRORS)]
+        groups.append([(kind, names, errors[k // 2] if k % 2 else "") for k, names in enumerate(chosen)])
+    return [
+        design(number, kind, chosen, NOISE, 1.0, error)
+        for number, (kind, chosen, error) in enumerate(suite.in_mixed_order(groups, rng))
+    ]
 
 
-@dataclass(frozen=True)
-class Truth:
-    """Two bodies, what is missing in them, and whether a program ``apart`` moves them, or the lanes."""
+def _pairs(of: Bodies, count: int, rng: np.random.Generator) -> list[tuple[str, ...]]:
+    """Pairs of two classes."""
+    found: list[tuple[str, ...]] = []
+    while len(found) < count:
+        one, other = rng.choice(list(of.catalogue), 2, replace=False).tolist()
+        if of.catalogue[one].effect_class != of.catalogue[other].effect_class:
+            found.append((one, other))
+    return found
 
-    of: Bodies
-    values: Values
-    mechanisms: Values
-    apart: bool
-    law: Law | None = None
-    numbers: tuple[float, ...] = (0.0,) * 7
-    largest: float = 1.0
 
-    def rotations(self, shaking: Shaking, coarse: bool = False) -> dict[str, FloatArray]:
-        """Rotations (rad) and their rates at the shaking's steps. Raises Unsuitable where a body falls."""
-        if self.apart:
-            found = self.of.apart(self.values, self.mechanisms, shaking, self.law, self.numbers, self.largest, coarse)
-        else:
-            channels = self.of.model.simulate({**self.values, **self.mechanisms}, shaking).channels
-            found = {name: channels[name] for name in HELD}
-        if not all(np.max(np.abs(found[name])) < FALLEN for name in ROTATIONS):  # nan too
-            raise Unsuitable
-        return found
+def make(of: Bodies, design: suite.CaseDesign, seed: int) -> Case:
+    """The case, the same for the same design and seed. Raises RuntimeError when no draw was suitable."""
+    return drawn(design, seed, lambda design, seed, rng: _case(of, design, seed, rng))
 
 
 def _case(of: Bodies, design: suite.CaseDesign, seed: int, rng: np.random.Generator) -> Case:

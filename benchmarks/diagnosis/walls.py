@@ -11,12 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.diagnosis import fibre_wall, shakings, suite
-from benchmarks.diagnosis.body_size import HELD
+from benchmarks.diagnosis import fibre_wall, shakings, suite, two_bodies
+from benchmarks.diagnosis.bodies import HELD, Bodies, Hidden, Motion, Values
 from benchmarks.diagnosis.cases import Case
 from benchmarks.diagnosis.open_laws import Law
 from benchmarks.diagnosis.scene import FloatArray, Unsuitable
-from benchmarks.diagnosis.two_bodies import Bodies, Hidden, Motion, Values
 from models.interface.model import MODEL
 from models.shaking import Shaking
 
@@ -71,12 +70,12 @@ class WallDesign(suite.CaseDesign):
 
 def designs(seed: int) -> list[suite.CaseDesign]:
     """All cases in mixed order."""
-    return BODIES.designs(seed, WallDesign)
+    return two_bodies.designs(BODIES, seed, WallDesign)
 
 
 def make(design: suite.CaseDesign, seed: int) -> Case:
     """The case, the same for the same design and seed. Raises RuntimeError when no draw was suitable."""
-    return BODIES.make(design, seed)
+    return two_bodies.make(BODIES, design, seed)
 
 
 def _wall(rng: np.random.Generator) -> tuple[dict[str, float], dict[str, float]]:

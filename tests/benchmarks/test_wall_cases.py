@@ -9,7 +9,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from benchmarks.diagnosis import body_size, stacks, two_bodies, walls
+from benchmarks.diagnosis import bodies, body_size, stacks, two_bodies, walls
 from benchmarks.diagnosis.files import write_case
 from benchmarks.diagnosis.scene import Unsuitable
 from grids.instruments import INSTRUMENTS
@@ -55,7 +55,7 @@ def test_size_is_nothing_without_an_effect_and_grows_with_one(of: ModuleType) ->
         except Unsuitable:
             continue
     true, (_, shaking, peak) = drawn
-    plain = two_bodies.Truth(of.BODIES, true, {}, apart=False)
+    plain = bodies.Truth(of.BODIES, true, {}, apart=False)
     assert body_size.strength(plain, {}, shaking, peak) < 0.05
     small, twice = (
         body_size.strength(plain, {"offset": {"offset_over_peak": share}}, shaking, peak) for share in (0.05, 0.1)
@@ -74,7 +74,7 @@ def test_a_dashpot_of_a_layer_takes_up_a_damping_couple() -> None:
             _, shaking, peak = of.motion(true, rng, 88.0)
         except Unsuitable:
             continue
-        truth = two_bodies.Truth(of, true, {"viscous_damping.couple_damping": 3e5}, apart=False)
+        truth = bodies.Truth(of, true, {"viscous_damping.couple_damping": 3e5}, apart=False)
         taken.append((body_size.strength(truth, {}, shaking, peak), body_size.left(truth, {}, shaking, peak)))
     assert all(left < change / 3.0 for change, left in taken)
 
@@ -86,6 +86,6 @@ def test_a_case_is_read_as_it_was_made(of: ModuleType, tmp_path: Path) -> None:
     write_case(case, tmp_path / "case", tmp_path / "key.json")
     specimen, recording = read_specimen(tmp_path / "case/specimen.toml"), read_recording(tmp_path / "case/train_1.nc")
     assert specimen.model == of.MODEL.name and set(specimen.calibrate) == set(of.BODIES.calibrated)
-    assert set(two_bodies.ROTATIONS) <= set(recording.channels)
+    assert set(bodies.ROTATIONS) <= set(recording.channels)
     again = of.make(design, 7).channels["train_1"]["rotation_1"]
     np.testing.assert_array_equal(case.channels["train_1"]["rotation_1"], again)
