@@ -139,7 +139,7 @@ def _assemble(
         flagged = (found.blow, *flagged)
     if measured.identification.forces and not flagged and not unexplained:
         changing: list[Tested] = stages.optional(
-            "whether it changes", lambda: varying(about, _about_the_fit(found)), list
+            "whether it changes", lambda: varying(about, _about_the_fit(found), allowed), list
         )
         flagged = flags(about, changing, allowed)
     near = rivals(found)

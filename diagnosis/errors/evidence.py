@@ -22,6 +22,9 @@ from diagnosis.errors.likelihood import Piece, Prior, State, evaluate, maximise
 from diagnosis.errors.model import Errors
 from models.base import FloatArray
 
+HOPEFUL = 0.2
+"""Share of what a gain must reach under which no window is left out to see whether it does."""
+
 
 @dataclass(frozen=True)
 class Evidence:
@@ -70,11 +73,12 @@ class Without:
         gain = start.deviance - found.deviance + float(start.estimate[last]) ** 2 / variance
         return Evidence(gain, -float(found.estimate[last]), each[: len(self.measured.windows)])
 
-    def from_window_to_window(self, column: FloatArray) -> float:
+    def from_window_to_window(self, column: FloatArray, least: float) -> float:
         """Gain by a random share of a ``column`` (W, C, N) in each window, without the one that adds most or is worst.
 
         One window that is badly off makes the errors of all look large; with a share of its own all would gain.
-        The column itself is ``beside``: what is the same in all windows is no part of it.
+        The column itself is ``beside``: what is the same in all windows is no part of it. With all windows it must gain
+        `HOPEFUL` of ``least``; else that is what is given.
         """
         shares = _columns(self.measured, column[..., None])
         size = np.sqrt(np.mean([np.sum(own**2) for own in shares]))
@@ -88,6 +92,9 @@ class Without:
         if evaluate(pieces, prior, theta, self.weights).slope[-1] >= 0.0:
             return 0.0
         theta, found = maximise(pieces, prior, theta, self.weights)
+        gain = self.state.deviance - found.deviance
+        if gain < HOPEFUL * least:
+            return gain
         each = self.state.determinants - found.determinants + self.weights * (self.state.chi2 - found.chi2)
         count = len(shares)
         worst = self.state.chi2[:count] / [piece.residual.size for piece in pieces[:count]]

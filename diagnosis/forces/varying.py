@@ -18,13 +18,15 @@ from diagnosis.errors.evidence import Without
 from diagnosis.errors.model import Errors
 from diagnosis.fit.solver import Fitted
 from diagnosis.forces.columns import Forces
-from diagnosis.forces.constancy import Tested
+from diagnosis.forces.constancy import FLAG, Tested
 
 WINDOW = "window"
 
 
-def varying(forces: Forces, errors: Errors) -> list[Tested]:
+def varying(forces: Forces, errors: Errors, least: float = FLAG) -> list[Tested]:
     """One test a kind of force, strongest first; ``errors``: those estimated about the fit of the forces itself.
+
+    ``least``: the statistic that counts.
 
     None about a law that wears: it changes from window to window itself, by counts of events not known exactly.
     """
@@ -36,7 +38,7 @@ def varying(forces: Forces, errors: Errors) -> list[Tested]:
         if not column.any():  # nothing of this kind happens
             continue
         without = Without.estimated(errors, forces.fitted.measured, column[..., None], smooth_error=True)
-        found.append(Tested(kind.name, WINDOW, without.from_window_to_window(column)))
+        found.append(Tested(kind.name, WINDOW, without.from_window_to_window(column, least)))
     return sorted(found, key=lambda t: -t.statistic)
 
 

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
+from diagnosis.errors import evidence
+from diagnosis.errors.likelihood import Piece, maximise
 from diagnosis.errors.model import Errors
 from diagnosis.forces.columns import Forces
 from diagnosis.forces.constancy import FLAG
@@ -55,6 +59,23 @@ def test_one_window_that_is_badly_off_is_none(errors: tuple[Forces, Errors]) -> 
     one = np.broadcast_to((np.arange(shape_of(errors)[0]) == 4)[:, None], about.time.shape).astype(float)
     size = 200.0 / np.sqrt(about.screen.product(about.column(KINDS["contact"]), about.column(KINDS["contact"])))
     assert max(strongest(about, with_residual(errors, size * about.predicted(KINDS["contact"], one))).values()) < 5.0
+
+
+def test_no_window_is_left_out_where_all_gain_far_too_little(
+    errors: tuple[Forces, Errors], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pieces: list[int] = []
+
+    def counted(some: Sequence[Piece], *rest: Any) -> Any:
+        pieces.append(len(some))
+        return maximise(some, *rest)
+
+    monkeypatch.setattr(evidence, "maximise", counted)
+    full = len(errors[1].pieces)
+    for least, left_out in ((FLAG, False), (0.0, True)):
+        pieces.clear()
+        assert max(test.statistic for test in varying(*errors, least)) < 5.0
+        assert (min(pieces) < full) is left_out
 
 
 def test_nothing_missing_gains_nothing(errors: tuple[Forces, Errors]) -> None:
