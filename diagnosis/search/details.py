@@ -36,5 +36,8 @@ def _of_strongest_law(found: Search, explanation: Explanation) -> float:
     laws = [c for c in explanation.candidates if of_joints(c, explanation)]
     if len(explanation.candidates) == 1:
         return found.gain(explanation) if laws else 0.0
-    rests = (without(explanation, law, QUICK) for law in laws)
-    return max((adjusted(rest) - adjusted(explanation) for rest in rests), default=0.0)
+    if found.strongest_law is None or found.strongest_law[0] is not explanation:
+        rests = (without(explanation, law, QUICK) for law in laws)
+        strongest = max((adjusted(rest) - adjusted(explanation) for rest in rests), default=0.0)
+        found.strongest_law = explanation, strongest
+    return found.strongest_law[1]

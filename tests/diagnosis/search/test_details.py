@@ -29,7 +29,7 @@ def explanation(gain: float, *candidates: Any, model: str = "interface") -> Any:
 
 
 def search(*singles: Any) -> Any:
-    return SimpleNamespace(gain=lambda e: e.gain, more=MORE, singles=singles)
+    return SimpleNamespace(gain=lambda e: e.gain, more=MORE, singles=singles, strongest_law=None)
 
 
 @pytest.fixture(autouse=True)
@@ -52,8 +52,19 @@ def test_what_is_no_law_of_the_joints_counts_from_the_ordinary_threshold_on() ->
 
 
 def test_of_several_effects_the_law_counts_by_its_own_evidence(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(details, "without", lambda e, c, n: explanation(10_000.0 if c is ARM else 1_000.0))
-    assert least(search(), explanation(50_000.0, ARM, LEAN), YIELDING) == MISSING + OF_LAW * 40_000.0
+    asked = []
+
+    def rest(whole: Any, left_out: Any, iterations: int) -> Any:
+        asked.append(left_out)
+        return explanation(10_000.0)
+
+    monkeypatch.setattr(details, "without", rest)
+    found, both = search(), explanation(50_000.0, ARM, LEAN)
+    for _ in range(2):
+        assert least(found, both, YIELDING) == MISSING + OF_LAW * 40_000.0
+    assert asked == [ARM]  # once, and nothing for the lean
+    least(found, explanation(50_000.0, ARM, LEAN), YIELDING)
+    assert asked == [ARM, ARM]
 
 
 def test_a_detail_is_passed_over_and_a_sensor_that_explains_less_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
