@@ -5,14 +5,15 @@ while its edge is lifted). Where such a law moves the specimen by many times the
 noise too, and another law of the same layer, or a force that is not the same everywhere, makes them up. Evidence goes
 with the square of a force, so what brings less than `OF_LAW` of a law's own evidence is less than a tenth of its force.
 
-Effects of other kinds (sensors, a lean, a mass off its centre) are no details of a law and are named from the ordinary
-threshold on (`Search.more`).
+Only where the explanation is adequate: what leaves more than the noise in all windows leaves no details. And effects
+of other kinds (sensors, a lean, a mass off its centre) are none: they are named from the ordinary threshold on
+(`Search.more`).
 """
 
 from __future__ import annotations
 
 from diagnosis.search.candidates import Candidate
-from diagnosis.search.found import MISSING, Search, adjusted
+from diagnosis.search.found import MISSING, Search, adequate, adjusted
 from diagnosis.search.refit import QUICK, Explanation, without
 
 OF_LAW = 0.01
@@ -21,7 +22,7 @@ OF_LAW = 0.01
 
 def least(found: Search, before: Explanation, new: Candidate | None = None) -> float:
     """What a ``new`` effect must bring beside those of ``before``; None: what a departure from constancy must bring."""
-    if new is not None and not of_joints(new, before):
+    if (new is not None and not of_joints(new, before)) or not adequate(before):
         return found.more
     return max(found.more, MISSING + OF_LAW * _of_strongest_law(found, before))
 

@@ -34,6 +34,7 @@ def search(*singles: Any) -> Any:
 
 @pytest.fixture(autouse=True)
 def prices_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(details, "adequate", lambda e: True)
     for module in (details, select):
         monkeypatch.setattr(module, "adjusted", lambda e: e.loss)
 
@@ -49,6 +50,12 @@ def test_what_is_no_law_of_the_joints_counts_from_the_ordinary_threshold_on() ->
     assert least(search(), explanation(50_000.0, LEAN), YIELDING) == MORE
     assert least(search(), explanation(50_000.0, LEAN)) == MORE
     assert least(search(), explanation(50_000.0, LANDING, model="housner")) == MORE
+
+
+def test_what_leaves_more_than_noise_leaves_no_details(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(details, "adequate", lambda e: False)
+    strong = explanation(50_000.0, ARM)
+    assert least(search(), strong, YIELDING) == least(search(), strong) == MORE
 
 
 def test_of_several_effects_the_law_counts_by_its_own_evidence(monkeypatch: pytest.MonkeyPatch) -> None:
