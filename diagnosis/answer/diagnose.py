@@ -30,8 +30,7 @@ from diagnosis.fit.channels import added_by_channels
 from diagnosis.fit.intervals import Estimate, settled
 from diagnosis.fit.one_thread import one_thread
 from diagnosis.fit.setup import as_recorded, measure
-from diagnosis.forces.columns import Forces, forces
-from diagnosis.forces.constancy import Constancy, Tested, flags, tests
+from diagnosis.forces.constancy import About, Constancy, Tested, flags
 from diagnosis.forces.varying import varying
 from diagnosis.progress import Progress, Stages, silent
 from diagnosis.search import bootstrap as bootstrapping
@@ -119,10 +118,9 @@ def _assemble(
         shown = [replace(shown[0], after=shown[0].before, point_after=shown[0].point_before)]
     chosen = found.chosen
 
-    def of_chosen() -> Forces:
+    def of_chosen() -> About:
         progress("testing constancy", 0.85)
-        tested = found.about is not None and found.about.fitted is chosen.fitted
-        return found.about if found.about is not None and tested else forces(chosen.fitted)
+        return found.tested(chosen)
 
     tested: list[Tested] = []
     detail: Constancy | None = None
@@ -130,18 +128,18 @@ def _assemble(
     flagged: tuple[Constancy, ...] = ()
     if measured.identification.forces:
         about = stages.needed(of_chosen)
-        tested = stages.needed(lambda: tests(about, found.errors))
-        flagged = () if unexplained else flags(about, tested, allowed)
-        detail = next(iter(flags(about, tested, found.more)), None)
+        tested = about.tested
+        flagged = () if unexplained else about.flags(allowed)
+        detail = next(iter(about.flags(found.more)), None)
     if found.outside is not None:
         flagged = (found.outside, *(f for f in flagged if f.parameter != found.outside.parameter))
     if found.blow is not None:
         flagged = (found.blow, *flagged)
     if measured.identification.forces and not flagged and not unexplained:
         changing: list[Tested] = stages.optional(
-            "whether it changes", lambda: varying(about, _about_the_fit(found), allowed), list
+            "whether it changes", lambda: varying(about.forces, _about_the_fit(found), allowed), list
         )
-        flagged = flags(about, changing, allowed)
+        flagged = flags(about.forces, changing, allowed)
     near = rivals(found)
     progress("stating the errors", 0.87)
     errors = stages.needed(lambda: summary(found.errors, measured))

@@ -16,7 +16,9 @@ import numpy as np
 
 from diagnosis.errors.evidence import Without
 from diagnosis.errors.model import Errors
+from diagnosis.fit.solver import Fitted
 from diagnosis.forces.columns import Forces
+from diagnosis.forces.columns import forces as forces_about
 from models.base import FloatArray
 from models.identification import Force, Identification, Port
 
@@ -59,6 +61,23 @@ class Tested:
     statistic: float
     sign: float = 0.0
     extra: float = 0.0
+
+
+@dataclass(frozen=True)
+class About:
+    """The force columns about a fit and all tests of them under these errors, strongest first."""
+
+    forces: Forces
+    errors: Errors
+    tested: list[Tested]
+
+    @classmethod
+    def of(cls, fitted: Fitted, errors: Errors) -> About:
+        columns = forces_about(fitted)
+        return cls(columns, errors, tests(columns, errors))
+
+    def flags(self, threshold: float) -> tuple[Constancy, ...]:
+        return flags(self.forces, self.tested, threshold)
 
 
 def modulations(forces: Forces, port: Port) -> Iterator[tuple[str, FloatArray]]:

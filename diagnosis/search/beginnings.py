@@ -25,8 +25,7 @@ from numpy.typing import NDArray
 from diagnosis.data.measured import Measured
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.solver import fit
-from diagnosis.forces.columns import forces
-from diagnosis.forces.constancy import BLOW, FOR_A_WHILE, Constancy, flags, tests
+from diagnosis.forces.constancy import BLOW, FOR_A_WHILE, Constancy
 from diagnosis.progress import Progress
 from diagnosis.search.asked import asked_for
 from diagnosis.search.beside import seconds
@@ -173,8 +172,7 @@ def _settled(found: Search) -> bool:
         return False
     if not found.measured.identification.forces:
         return True
-    found.about = forces(found.best.fitted)
-    return not flags(found.about, tests(found.about, found.errors), least(found, found.best))
+    return not found.tested(found.best).flags(least(found, found.best))
 
 
 def _quick(

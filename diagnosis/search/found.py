@@ -16,8 +16,7 @@ import numpy as np
 from diagnosis.data.measured import Measured
 from diagnosis.errors.adequacy import errs
 from diagnosis.errors.model import Errors
-from diagnosis.forces.columns import Forces
-from diagnosis.forces.constancy import Constancy
+from diagnosis.forces.constancy import About, Constancy
 from diagnosis.search.budget import ENDED, Budget
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.null import Null
@@ -72,8 +71,8 @@ class Search:
     """This search with one effect that begins or ends, that leaves something unexplained."""
     strongest_law: tuple[Explanation, float] | None = None
     """Of an explanation of several effects, with the evidence of its strongest law (`diagnosis.search.details`)."""
-    about: Forces | None = None
-    """The force columns about an explanation that was tested for constancy."""
+    about: About | None = None
+    """What was tested last for constancy."""
 
     @property
     def measured(self) -> Measured:
@@ -97,6 +96,13 @@ class Search:
     def blow(self) -> Constancy | None:
         """A force that acts for a moment, unless what stands explains every window without one."""
         return None if self.struck is None or explains_all(self.chosen) else self.struck
+
+    def tested(self, explanation: Explanation) -> About:
+        """The tests for constancy of an explanation under the errors as they are."""
+        known = self.about
+        if known is None or known.forces.fitted is not explanation.fitted or known.errors is not self.errors:
+            self.about = known = About.of(explanation.fitted, self.errors)
+        return known
 
     def affordable(self, *names: str) -> bool:
         """Whether the budget lasts; if not, that these mechanisms or stages were not tried (further) is noted."""

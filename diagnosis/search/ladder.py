@@ -27,8 +27,6 @@ from diagnosis.fit.solver import fit, fit_thoroughly
 from diagnosis.fit.starts import Origin, best_start
 from diagnosis.fit.unknowns import clip, fixed_values, in_range, of_specimen
 from diagnosis.fit.whitening import sensor_noise_only
-from diagnosis.forces.columns import forces
-from diagnosis.forces.constancy import flags, tests
 from diagnosis.progress import Progress
 from diagnosis.search.budget import ENDED, LADDER, Budget
 from diagnosis.search.candidates import Candidate
@@ -150,11 +148,10 @@ def climb(found: Search, tried: Sequence[tuple[Rung, Weighed]], *, decisive: boo
 
 
 def _leaves_a_law(found: Search) -> bool:
-    """Whether a force that no mechanism has acts beside what was found; its `about` then holds the columns."""
+    """Whether a force that no mechanism has acts beside what was found."""
     if not found.measured.identification.forces:
         return False
-    found.about = forces(found.chosen.fitted)
-    return bool(flags(found.about, tests(found.about, found.errors), least(found, found.chosen)))
+    return bool(found.tested(found.chosen).flags(least(found, found.chosen)))
 
 
 def _meant_for(rung: Rung, recordings: Sequence[Recording]) -> bool:

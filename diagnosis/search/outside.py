@@ -10,9 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from diagnosis.errors.model import Errors
-from diagnosis.forces.columns import forces
-from diagnosis.forces.constancy import Constancy, flag, tests
+from diagnosis.forces.constancy import Constancy, flag
+from diagnosis.search.found import Search
 from diagnosis.search.refit import Explanation
 from diagnosis.search.screen import Score
 
@@ -21,14 +20,13 @@ MARGIN = 25.0
 """What an outside force must have over the library: this factor and this much more."""
 
 
-def outside(single: Explanation, seconds: Sequence[Score], errors: Errors) -> Constancy | None:
+def outside(found: Search, single: Explanation, seconds: Sequence[Score]) -> Constancy | None:
     """The force outside the library that gains more than any second mechanism, and by how much; None if none does."""
     if not single.measured.identification.forces:
         return None
-    about = forces(single.fitted)
-    found = tests(about, errors)
-    plain = {t.kind: t.statistic for t in found if not t.depends_on}
-    dependent = [(plain[t.kind] + t.statistic, t) for t in found if t.depends_on]
+    tested = found.tested(single).tested
+    plain = {t.kind: t.statistic for t in tested if not t.depends_on}
+    dependent = [(plain[t.kind] + t.statistic, t) for t in tested if t.depends_on]
     if not dependent:
         return None
     largest, test = max(dependent, key=lambda pair: pair[0])

@@ -219,7 +219,7 @@ def _pairs(found: Search, progress: Progress) -> None:
     progress("comparing with laws outside the library", 0.48)
     others = seconds(found, found.best)
     if not adequate(found.best):
-        found.outside = outside(found.best, others, found.errors)
+        found.outside = outside(found, found.best, others)
     leading, widely = pool(found, found.best), found.incomplete
     pairs: list[Explanation] = []
     for k, alike in enumerate(leading):
@@ -264,7 +264,7 @@ def _more(found: Search, progress: Progress) -> None:
         progress("looking for a further effect", 0.8)
         others = seconds(found, found.best)
         if not adequate(found.best):
-            found.outside = outside(found.best, others, found.errors)
+            found.outside = outside(found, found.best, others)
             if found.outside is not None:
                 return
         further = extended(found, found.best, others, found.incomplete)

@@ -22,15 +22,20 @@ def observe(wall: LayeredWall, state: FloatArray) -> Observed:
     if wall.effects is not None and state.shape[2] == 16:
         x1, x2, tm, zm, _, _, vm, _ = np.moveaxis(state[:, :, 8:], 2, 0)
         beside = wall.effects.top_offset[:, None]
-    toe = 1.0 if wall.toe_held else 0.0
 
     def lane(values: FloatArray) -> FloatArray:
         return values[:, None]
 
     half = lane(0.5 * wall.height_1)
 
+    def rolled(slip: FloatArray, half_width: FloatArray, turn: FloatArray) -> FloatArray:
+        """Slip of a joint, and what it moves on by its edge."""
+        if not wall.toe_held:
+            return slip
+        return np.asarray(slip + np.sign(turn) * lane(half_width) * (1.0 - np.cos(turn)))
+
     def foot() -> FloatArray:
-        return np.asarray(x1 + toe * np.sign(t1) * lane(wall.base_half_width) * (1.0 - np.cos(t1)))
+        return rolled(x1, wall.base_half_width, t1)
 
     def leaning() -> tuple[FloatArray, FloatArray]:
         """sin of the lower and of the upper half."""
@@ -43,11 +48,13 @@ def observe(wall: LayeredWall, state: FloatArray) -> Observed:
         return np.asarray(foot() + 0.75 * half * lower + (0.25 * half + 0.5 * zm) * upper)
 
     def block_centre() -> FloatArray:
-        turn = t2 - tm
-        along = x2 + toe * np.sign(turn) * lane(wall.top_half_width) * (1.0 - np.cos(turn))
+        along = rolled(x2, wall.top_half_width, t2 - tm)
         above = half + lane(wall.top_thickness_in_height) + zm + z2
         lower, upper = leaning()
-        centre = foot() + half * lower + along * np.cos(tm) + above * upper + lane(wall.centre_2) * np.sin(t2)
+        centre = foot() + half * lower
+        if np.any(along):
+            centre += along * np.cos(tm)
+        centre += above * upper + lane(wall.centre_2) * np.sin(t2)
         return np.asarray(centre + beside * np.cos(t2) if np.any(beside) else centre)
 
     def contact_1() -> FloatArray:

@@ -15,6 +15,7 @@ from diagnosis.fit.setup import measure
 from diagnosis.fit.solver import Fitted, fit_thoroughly
 from diagnosis.fit.starts import best_start
 from diagnosis.forces.columns import forces
+from diagnosis.forces.constancy import About
 from diagnosis.progress import silent
 from diagnosis.report import extend
 from diagnosis.search import ladder
@@ -74,7 +75,7 @@ def test_rubber_under_a_pier_is_named_with_its_stiffness_and_the_answer_is_a_spe
     assert all(np.all(np.isfinite(about.column(kind))) and np.any(about.column(kind)) for kind in about.kinds)
     assert ladder.climb(found, tried, decisive=True) is not None
     with pytest.MonkeyPatch.context() as patch:  # a law outside the library: pairs of mechanisms are still to be tried
-        patch.setattr(ladder, "flags", lambda about, tested, threshold: tested[:1])
+        patch.setattr(About, "flags", lambda about, threshold: about.tested[:1])
         assert ladder.climb(found, tried, decisive=True) is None
         assert ladder.climb(found, tried, decisive=False) is not None
     other = other_model(climbed, climbed.after.chosen)
