@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from diagnosis.errors.model import calibrated
 from diagnosis.fit.setup import measure
-from diagnosis.forces.constancy import tests
+from diagnosis.forces import constancy
 from diagnosis.search.found import Search
 from diagnosis.search.refit import Explanation
 from tests.diagnosis.made import SPECIMEN, recording
@@ -16,7 +16,7 @@ def test_a_fit_is_tested_again_under_other_errors_only() -> None:
     fitted, errors = calibrated(SPECIMEN, measure(SPECIMEN, [recording("a", 1)]))
     found = Search(Explanation((), fitted), (), errors)
     first = found.tested(found.base)
-    assert first.tested == tests(first.forces, errors) and found.tested(found.base) is first
+    assert first.tested == constancy.tests(first.forces, errors) and found.tested(found.base) is first
     assert replace(found).tested(Explanation((), fitted)) is first  # the same fit, of a copy of the search
     found.errors = replace(errors)
     assert found.tested(found.base) is not first
