@@ -230,7 +230,7 @@ def _assemble(
         visited=acting[1],
         shows=shows(shown[0], explained, seed) if missing else (),
         constancy=flagged,
-        detail=None if flagged else detail,
+        detail=None if flagged or unexplained else detail,
         train=train,
         holdout=held_fit,
         base=base,

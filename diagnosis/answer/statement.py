@@ -73,7 +73,7 @@ def statement(found: Diagnosis, model: Model) -> str:
         names = ", ".join(r.name.replace("_", " ") for r in found.rivals)
         parts.append(f"{names[0].upper()}{names[1:]} would explain nearly as much.")
     if found.detail is not None and found.verdict != "not_in_library":
-        parts.append(_detail(found.detail, found.effects))
+        parts.append(_detail(found.detail, found.provenance["constancy_threshold"]))
     parts.append(_fit(found.train, found.holdout))
     parts += [_extrapolated(one) for one in found.extrapolated]
     parts += held_text(found.held_stages)
@@ -248,12 +248,12 @@ def _flag(found: Constancy, declared: Identification) -> str:
     return f"{what} that depends on the {found.depends_on}{stronger}."
 
 
-def _detail(found: Constancy, named: Sequence[Effect]) -> str:
-    strongest = max(effect.evidence for effect in named)
+def _detail(found: Constancy, tenth: float) -> str:
+    """``tenth``: evidence of a tenth of the law's force."""
     what = found.parameter.replace("_", " ")
     return (
-        f"What is left is not the same everywhere ({what}, by {found.depends_on}; evidence {found.evidence:.0f} of "
-        f"{strongest:.0f}): less than a tenth of the force of the law named, and taken for a detail of it."
+        f"What is left is not the same everywhere ({what}, by {found.depends_on}; evidence {found.evidence:.0f}, where "
+        f"a tenth of the force of the law named would have {tenth:.0f}): it is taken for a detail of that law."
     )
 
 

@@ -26,9 +26,8 @@ WINDOW = "window"
 def varying(forces: Forces, errors: Errors, least: float = FLAG) -> list[Tested]:
     """One test a kind of force, strongest first; ``errors``: those estimated about the fit of the forces itself.
 
-    ``least``: the statistic that counts.
-
-    None about a law that wears: it changes from window to window itself, by counts of events not known exactly.
+    ``least``: the statistic that counts. None about a law that wears: it changes from window to window itself, by
+    counts of events not known exactly.
     """
     found: list[Tested] = []
     if _wears(forces.fitted):

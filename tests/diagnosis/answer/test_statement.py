@@ -184,9 +184,12 @@ def test_what_changes_from_window_to_window_is_said() -> None:
 def test_a_detail_of_a_strong_law_is_said_and_no_verdict() -> None:
     arm = Effect("tilt", "tilt", {"tilt": Estimate(0.01, 0.009, 0.011, "rad")}, 50_000.0, 1e-6)
     left = Constancy("viscous_damping", "size of the rotation", 61.0)
-    text = said("missing", effects=(arm,), detail=left)
-    assert "(viscous damping, by size of the rotation; evidence 61 of 50000): less than a tenth of the force" in text
-    assert "detail" not in said("not_in_library", effects=(arm,), detail=left) + said("missing", effects=(arm,))
+    threshold = {"constancy_threshold": 515.0}
+    text = said("missing", effects=(arm,), detail=left, provenance=threshold)
+    assert "(viscous damping, by size of the rotation; evidence 61, where a tenth of the force of the law named" in text
+    assert "would have 515): it is taken for a detail of that law." in text
+    outside = said("not_in_library", effects=(arm,), detail=left, provenance=threshold)
+    assert "detail" not in outside + said("missing", effects=(arm,))
 
 
 def test_what_begins_is_not_said_to_act_throughout() -> None:
