@@ -32,13 +32,24 @@ from diagnosis.search.beside import seconds
 from diagnosis.search.budget import RESERVED
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.details import least
-from diagnosis.search.found import MISSING, Search, adjusted, explains_all, price, survives
+from diagnosis.search.found import ALONE, MISSING, Search, adjusted, explains_all, price, settles, survives
 from diagnosis.search.instants import WHOLE, ends_of
 from diagnosis.search.null import null_distribution
-from diagnosis.search.refit import QUICK, Explanation, again, best_of, extend, further, ways, with_memory, without
+from diagnosis.search.refit import (
+    QUICK,
+    Explanation,
+    again,
+    best_of,
+    extend,
+    further,
+    gain_by_window,
+    ways,
+    with_memory,
+    without,
+)
 from diagnosis.search.runs import InRuns, chance, in_runs, runs
 from diagnosis.search.screen import Score, score
-from diagnosis.search.spells import Spell, in_spell, of_windows
+from diagnosis.search.spells import Spell, holds, in_spell, of_windows
 from diagnosis.search.weighing import as_white_noise, by_white_noise, weigh_again
 from models.base import FloatArray
 from models.errors import InputError
@@ -88,8 +99,8 @@ def _begun(found: Search, start: Explanation) -> Search | None:
     through = found.measured.stretches is not None  # runs through whole recordings cannot be cut at an instant
     if through or len(found.measured.windows) < FEWEST_WINDOWS:
         return None
-    fits = _in_spells(found, start)
-    weighed = _weighed(found, fits) if fits and _needed(found, start, fits[0]) else None
+    fits = [single for single in _in_spells(found, start) if _needed(found, start, single)]
+    weighed = _weighed(found, fits) if fits else None
     if weighed is None or weighed.best is None:
         return None
     for candidate in weighed.best.candidates:
@@ -117,15 +128,18 @@ def _in_spells(found: Search, start: Explanation) -> list[Explanation]:
     ends = runs(len(found.measured.windows))
     cost = max(0.0, chance(screen, scores, ends).band - null_distribution(screen, scores).band)
     fits = list(_quick(found, start, in_runs(screen, scores, ends), ends, cost))
-    fits += _quick(found, start, _hidden_by_errors(found, start, scores, ends), ends, cost, MOST_HIDDEN)
+    hidden = list(_quick(found, start, _hidden_by_errors(found, start, scores, ends), ends, cost, MOST_HIDDEN))
+    fits += hidden
     if start is found.base:
         fits += [single for one in found.singles[:MOST_SINGLES] if (single := _in_part(one, cost)) is not None]
     fits.sort(key=adjusted)
     if not fits:
         return []
     least = max(MISSING, NEAR * (adjusted(start) - adjusted(fits[0])))
-    near = [single for single in fits if adjusted(start) - adjusted(single) >= least]
-    return sorted((_thorough(single) for single in near[:THOROUGH]), key=adjusted)
+    near = [single for single in fits if adjusted(start) - adjusted(single) >= least][:THOROUGH]
+    # a sensor that was knocked passes for noise that drifts: which is likelier is told under errors of its own
+    near += [e for e in hidden[:1] if e.names not in [one.names for one in near]]
+    return sorted((_thorough(single) for single in near), key=adjusted)
 
 
 def _hidden_by_errors(
@@ -158,7 +172,22 @@ def _needed(found: Search, start: Explanation, single: Explanation) -> bool:
     always = Explanation((*others, replace(candidate, spell=None, price=0.0)), fitted)
     if found.best is not None and found.best.names == always.names:
         always = min(always, found.best, key=adjusted)
-    return adjusted(always) - adjusted(single) >= least(found, always) and survives(always, single)
+    if adjusted(always) - adjusted(single) < least(found, always):
+        return False
+    return survives(always, single) or _had_not_begun(always, single, candidate.spell)
+
+
+def _had_not_begun(always: Explanation, single: Explanation, spell: Spell | None) -> bool:
+    """Whether one window says that an effect does not always act, which others have: it had not begun there, or ended.
+
+    The effect does not act in all of that window, which fits to the noise so, and badly with the effect acting always.
+    """
+    gains = gain_by_window(always, single)
+    window = int(np.argmax(gains))
+    rest = adjusted(always) - adjusted(single) - float(gains[window])
+    if spell is None or holds(single.measured, spell, window):
+        return False
+    return gains[window] >= ALONE * MISSING and rest > -MISSING and settles(always, single)
 
 
 def _settled(found: Search) -> bool:

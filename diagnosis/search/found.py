@@ -22,7 +22,6 @@ from diagnosis.search.candidates import Candidate
 from diagnosis.search.null import Null
 from diagnosis.search.refit import Explanation, from_other, gain_by_window
 from diagnosis.search.screen import Score
-from diagnosis.search.spells import acts_in
 from models.base import FloatArray
 
 MISSING = 15.0
@@ -138,15 +137,14 @@ def price(candidate: Candidate) -> float:
 def survives(before: Explanation, after: Explanation, threshold: float = MISSING) -> bool:
     """Whether the gain passes without its most influential window and, of more than two, any one recording.
 
-    What does not always act may rest on one recording, and on one window only if it does not act there: that it had not
-    begun, or had ended, is what that window says.
+    What does not always act may rest on one recording, never on one window.
     """
     gains = gain_by_window(before, after)
     total = before.loss - adjusted(after) + (adjusted(before) - before.loss)
     largest = float(gains.max(initial=0.0))
     if total - largest < threshold:
         return (
-            (not after.in_spell or _not_at_work(after, int(np.argmax(gains))))
+            not after.in_spell
             and largest >= ALONE * threshold
             and total - largest > -threshold
             and settles(before, after)
@@ -156,12 +154,6 @@ def survives(before: Explanation, after: Explanation, threshold: float = MISSING
         each = [float(gains[measured.recording_of == r].sum()) for r in range(len(measured.recordings))]
         return total - max(each) >= 0.3 * threshold
     return True
-
-
-def _not_at_work(explanation: Explanation, window: int) -> bool:
-    """Whether no effect that does not always act acts in a window."""
-    spells = [c.spell for c in explanation.candidates if c.spell is not None]
-    return not any(acts_in(explanation.measured, spell, window) for spell in spells)
 
 
 def settles(before: Explanation, after: Explanation) -> bool:

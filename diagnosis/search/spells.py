@@ -71,13 +71,13 @@ def of_windows(measured: Measured, low: int, high: int) -> Spell:
     )
 
 
-def acts_in(measured: Measured, spell: Spell, window: int) -> bool:
-    """Whether a spell reaches into a window by more than a sample."""
+def holds(measured: Measured, spell: Spell, window: int) -> bool:
+    """Whether a spell holds the whole of a window."""
     cutout = measured.windows[window]
     recording = measured.recordings[cutout.recording]
     stage = spell.stages([r.name for r in measured.recordings])[cutout.recording]
     first, last = (k * recording.time_step for k in (cutout.first, cutout.first + cutout.samples - 1))
-    return stage.begins < last and first < stage.ends
+    return stage.begins <= first and last <= stage.ends
 
 
 def in_spell(misfit: Misfit, mechanism: str, spell: Spell | None) -> Misfit:

@@ -17,10 +17,9 @@ from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.setup import measure
 from diagnosis.progress import silent
 from diagnosis.search import beginnings
-from diagnosis.search import found as finding
-from diagnosis.search.beginnings import _in_the_spell, alone
+from diagnosis.search.beginnings import _had_not_begun, _in_the_spell, alone
 from diagnosis.search.candidates import candidates
-from diagnosis.search.found import BADLY, MISSING, Search, adjusted, by_window, survives
+from diagnosis.search.found import BADLY, MISSING, Search, adjusted, by_window
 from diagnosis.search.null import null_distribution
 from diagnosis.search.refit import Explanation, again, extend
 from diagnosis.search.runs import InRuns
@@ -168,24 +167,40 @@ def test_what_begins_early_is_found_where_it_explains_most_acting_always(monkeyp
     assert last.best.fitted.values["pivot_inset.inset_over_half_width"] == pytest.approx(0.15, rel=0.05)
 
 
-@pytest.mark.parametrize(("begins", "counts"), [(3.0, True), (None, False)])
+def test_the_strongest_against_white_noise_is_taken_along_however_little_it_gains_under_errors_that_hold_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A sensor that is knocked passes for noise that drifts: under the errors about the base it explains little."""
+    found, yielded = searched([made("a", 13, []), made("b", 6, [(6.0, {})], 0.06)])
+    assert yielded[-1].best is not None and yielded[-1].best.names == ("offset",)
+    knocked = yielded[-1].best
+    other = replace(knocked, candidates=(replace(knocked.candidates[0], mechanism=MODEL.mechanisms["tilt"]),))
+    gains = {("tilt",): 1000.0, ("offset",): 100.0}
+    screens = iter(([other], [knocked]))
+    monkeypatch.setattr(beginnings, "_quick", lambda *_: iter(next(screens)))
+    monkeypatch.setattr(beginnings, "_thorough", lambda single: single)
+    monkeypatch.setattr(beginnings, "adjusted", lambda e: -gains.get(e.names, 0.0))
+    assert [e.names for e in beginnings._in_spells(found, found.base)] == [("tilt",), ("offset",)]
+
+
+@pytest.mark.parametrize(("begins", "counts"), [(3.0, True), (1.0, True), (None, False)])
 def test_one_window_may_say_that_an_effect_had_not_begun_and_not_that_it_acts(
     begins: float | None, counts: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """All of the gain is in the first window, of a spell that begins after it, or that is it."""
+    """All of the gain is in the first window, of a spell that begins after it, or within it, or that is it."""
     measured: Any = SimpleNamespace(
         windows=[SimpleNamespace(recording=0, first=k * 100, samples=101) for k in range(4)],
         recordings=[SimpleNamespace(name="a", time_step=0.02)],
     )
-    spell = Spell(0, begins, 0, None if begins else 2.0)
-    after: Any = SimpleNamespace(in_spell=True, measured=measured, candidates=[SimpleNamespace(spell=spell)])
-    before: Any = SimpleNamespace(loss=0.0)
-    monkeypatch.setattr(finding, "gain_by_window", lambda *_: np.array([300.0, 1.0, 2.0, 0.0]))
-    monkeypatch.setattr(finding, "adjusted", lambda e: 0.0 if e is before else -303.0)
-    monkeypatch.setattr(finding, "settles", lambda *_: True)
-    assert survives(before, after) is counts
-    monkeypatch.setattr(finding, "settles", lambda *_: False)
-    assert not survives(before, after)
+    always: Any = SimpleNamespace(measured=measured)
+    single: Any = SimpleNamespace(measured=measured)
+    spell = Spell(0, begins, 0, None if begins else 5.0)
+    monkeypatch.setattr(beginnings, "gain_by_window", lambda *_: np.array([300.0, 1.0, 2.0, 0.0]))
+    monkeypatch.setattr(beginnings, "adjusted", lambda e: 303.0 if e is always else 0.0)
+    monkeypatch.setattr(beginnings, "settles", lambda *_: True)
+    assert _had_not_begun(always, single, spell) is counts
+    monkeypatch.setattr(beginnings, "settles", lambda *_: False)
+    assert not _had_not_begun(always, single, spell)
 
 
 def test_what_may_change_again_is_told_from_what_stays_or_is_gone() -> None:
