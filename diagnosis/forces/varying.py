@@ -18,12 +18,12 @@ from diagnosis.errors.evidence import Without
 from diagnosis.errors.model import Errors
 from diagnosis.fit.solver import Fitted
 from diagnosis.forces.columns import Forces
-from diagnosis.forces.constancy import FLAG, Tested
+from diagnosis.forces.constancy import Tested
 
 WINDOW = "window"
 
 
-def varying(forces: Forces, errors: Errors, least: float = FLAG) -> list[Tested]:
+def varying(forces: Forces, errors: Errors, least: float) -> list[Tested]:
     """One test a kind of force, strongest first; ``errors``: those estimated about the fit of the forces itself.
 
     ``least``: the statistic that counts. None about a law that wears: it changes from window to window itself, by

@@ -135,8 +135,8 @@ def _in_spells(found: Search, start: Explanation) -> list[Explanation]:
     fits.sort(key=adjusted)
     if not fits:
         return []
-    least = max(MISSING, NEAR * (adjusted(start) - adjusted(fits[0])))
-    near = [single for single in fits if adjusted(start) - adjusted(single) >= least][:THOROUGH]
+    enough = max(MISSING, NEAR * (adjusted(start) - adjusted(fits[0])))
+    near = [single for single in fits if adjusted(start) - adjusted(single) >= enough][:THOROUGH]
     # a sensor that was knocked passes for noise that drifts: which is likelier is told under errors of its own
     near += [e for e in hidden[:1] if e.names not in [one.names for one in near]]
     return sorted((_thorough(single) for single in near), key=adjusted)

@@ -54,7 +54,8 @@ def observe(wall: LayeredWall, state: FloatArray) -> Observed:
         centre = foot() + half * lower
         if np.any(along):
             centre += along * np.cos(tm)
-        centre += above * upper + lane(wall.centre_2) * np.sin(t2)
+        centre += above * upper
+        centre += lane(wall.centre_2) * np.sin(t2)
         return np.asarray(centre + beside * np.cos(t2) if np.any(beside) else centre)
 
     def contact_1() -> FloatArray:

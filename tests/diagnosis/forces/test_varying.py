@@ -30,7 +30,7 @@ def errors() -> tuple[Forces, Errors]:
 
 
 def strongest(about: Forces, errors: Errors) -> dict[str, float]:
-    return {test.kind: test.statistic for test in varying(about, errors)}
+    return {test.kind: test.statistic for test in varying(about, errors, FLAG)}
 
 
 def shape_of(errors: tuple[Forces, Errors]) -> tuple[int, int]:
@@ -42,7 +42,7 @@ def test_impacts_of_one_window_that_err_alike_are_a_law_that_changes(errors: tup
     windows, most = shape_of(errors)
     comes_and_goes = np.where(np.arange(windows) % 3 == 0, 1.0, -0.5)
     alike = with_impacts(errors, SIZE * np.repeat(comes_and_goes[:, None], most, axis=1))
-    found = varying(errors[0], alike)
+    found = varying(errors[0], alike, FLAG)
     assert found[0].kind == "restitution" and found[0].depends_on == WINDOW
     assert found[0].statistic > FLAG
 
@@ -100,7 +100,7 @@ def test_a_law_that_wears_is_not_asked(errors: tuple[Forces, Errors]) -> None:
     worn = {"degradation.loss_of_restitution_per_impact": 0.002, "degradation.floor": 0.8}
     fixed = {**about.fitted.misfit.fixed, **worn}
     fitted = replace(about.fitted, misfit=replace(about.fitted.misfit, fixed=fixed))
-    assert varying(replace(about, fitted=fitted), errors[1]) == []
+    assert varying(replace(about, fitted=fitted), errors[1], FLAG) == []
 
 
 def test_every_kind_that_moves_something_is_tested(errors: tuple[Forces, Errors]) -> None:
