@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import reduce
+from functools import partial, reduce
 from operator import itemgetter, or_
 from typing import Any
 
@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from models.base import Event, FloatArray, History, OverParts, Quantity, Values
 from models.errors import InputError
 from models.model import Model, by_lane
+from models.observed import Observed
 from models.shaking import Shaking
 
 JOINED: Mapping[OverParts, Callable[[Sequence[float]], float]] = {
@@ -190,7 +191,7 @@ def trajectories(
     if np.any(np.count_nonzero(np.diff(edges, axis=0) > 0, axis=0) > 1):
         check(model, parts)
     state = {name: by_lane(v, n).copy() for name, v in initial.items()}
-    found: dict[str, FloatArray] = {}
+    pieces: list[_Piece] = []
     for values, start, stop in zip(parts, edges[:-1], edges[1:], strict=True):
         lanes = np.flatnonzero(stop > start)
         if not lanes.size:
@@ -201,11 +202,28 @@ def trajectories(
             own, shaking, first=start[lanes], steps=length,
             initial={name: v[lanes] for name, v in state.items()}, options=options,
         )  # fmt: skip
-        for name, channel in channels.items():
-            whole = found.setdefault(name, np.full((n, *channel.shape[1:-1], np.max(samples)), np.nan))
-            for row, lane in enumerate(lanes):
-                at = start[lane] - first[lane]
-                whole[lane, ..., at : at + length[row] + 1] = channel[row, ..., : length[row] + 1]
+        pieces.append(_Piece(lanes, start[lanes] - first[lanes], length, channels))
         for name, after_lanes in after.items():
             state.setdefault(name, np.zeros(n))[lanes] = after_lanes
-    return found
+    longest = int(np.max(samples))
+    return Observed({name: partial(_whole, pieces, name, n, longest) for one in pieces[:1] for name in one.channels})
+
+
+@dataclass(frozen=True)
+class _Piece:
+    """Channels of some ``lanes`` (k,), from sample ``at`` (k,) of each on, over its ``length`` (k,)."""
+
+    lanes: NDArray[np.intp]
+    at: NDArray[np.int64]
+    length: NDArray[np.int64]
+    channels: Mapping[str, FloatArray]
+
+
+def _whole(pieces: Sequence[_Piece], name: str, n: int, samples: int) -> FloatArray:
+    """One channel of all n lanes; the sample between two pieces is that of the later one."""
+    channels = [piece.channels[name] for piece in pieces]
+    whole = np.full((n, *channels[0].shape[1:-1], samples), np.nan)
+    for piece, channel in zip(pieces, channels, strict=True):
+        for row, (lane, at, length) in enumerate(zip(piece.lanes, piece.at, piece.length, strict=True)):
+            whole[lane, ..., at : at + length + 1] = channel[row, ..., : length + 1]
+    return whole

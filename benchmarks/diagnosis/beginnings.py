@@ -46,6 +46,11 @@ def _within_train_1(at: Sequence[float], durations: Sequence[float]) -> When:
     return ((at[0], min(at[0] + WHILE, durations[0])),), (), ()
 
 
+def _in_each(at: Sequence[float], durations: Sequence[float]) -> When:
+    first, second, third = (((a, min(a + WHILE, d)),) for a, d in zip(at, durations, strict=True))
+    return first, second, third
+
+
 def _train_1_alone(at: Sequence[float], durations: Sequence[float]) -> When:
     return _whole(durations[0]), (), ()
 
@@ -81,6 +86,8 @@ BEGINNINGS = {
         Beginning("the base's accelerometer comes loose", "base_gain", _from_train_1),
         Beginning("a logger starts late", "delay", _from_train_2_whole),
         Beginning("a damper is taken off", "viscous_damping", _train_1_alone),
+        Beginning("a strap tightens in every test", "added_stiffness", _in_each, (0.5,)),
+        Beginning("a guide rubs in every test", "coulomb_damping", _in_each),
     )
 }
 

@@ -1,4 +1,4 @@
-"""Laws that no catalogue lists, invented for this benchmark: those of the development seeds.
+"""Laws that no catalogue lists, and a few that act for a while only: those of the development seeds.
 
 The evaluation has laws of its own, `unseen_laws`.
 
@@ -42,7 +42,8 @@ def unchanged(t, landing, p):  # type: ignore[no-untyped-def]
 class Law:
     """``end``: size up to which the nominal size is sought; ``either``: either sign of it.
 
-    ``lever`` names the place of the lever of ``p`` (0: none).
+    ``lever`` names the place of the lever of ``p`` (0: none). ``effect``: the class of the mechanism of the catalogue
+    that it is, at work for a while in each recording: that is no law outside. ``lasts``: it acts to the end.
     """
 
     name: str
@@ -54,6 +55,17 @@ class Law:
     ratio: Any = unchanged
     either: bool = False
     lever: int = 0
+    effect: str = ""
+    lasts: bool = False
+
+    def described(self, size: float) -> dict[str, Any]:
+        """As an effect of a key."""
+        return {"name": self.name, "class": self.effect or "open", "parameters": {"size": size}}
+
+    @property
+    def kind(self) -> str:
+        """Of the case."""
+        return "single" if self.effect else "open"
 
 
 def no_numbers(rng: np.random.Generator) -> tuple[float, float, float]:
@@ -155,8 +167,8 @@ LAWS = {
     for law in (
         Law("right_damping", "a dashpot works for theta > 0 only", 4.0, no_numbers, _right_damping),
         Law("right_restitution", "landings on the right corner lose more", 0.5, no_numbers, ratio=_right_ratio),
-        Law("passing_stiffness", "a spring holds for part of the time", 0.8, no_numbers, _passing_stiffness,
-            either=True),
+        Law("passing_stiffness", "a spring holds for part of the time", 0.5, no_numbers, _passing_stiffness,
+            either=True, effect="added_stiffness"),
         Law("stribeck_guide", "a guide whose friction fades with speed", 0.4, uniform(0.1, 0.3), _stribeck),
         Law("magnet", "an attraction near the upright position", 0.8, uniform(0.1, 0.3), _magnet),
         Law("right_stop", "a spring stop on one side", 6.0, uniform(0.2, 0.45), _right_stop),
@@ -167,7 +179,8 @@ LAWS = {
             _foundation, either=True),
         Law("passing_couple", "a steady couple for part of the time", 0.6, no_numbers, _passing_couple, either=True),
         Law("upright_damping", "damping only near the upright position", 8.0, uniform(0.15, 0.35), _upright_damping),
-        Law("late_damping", "a dashpot from some instant on", 4.0, no_numbers, _late_damping),
+        Law("late_damping", "a dashpot from some instant on", 1.0, no_numbers, _late_damping,
+            effect="viscous_damping", lasts=True),
         Law("snubber", "damping on the way out beyond a gap", 10.0, uniform(0.25, 0.5), _snubber),
     )
 }  # fmt: skip

@@ -24,7 +24,7 @@ from benchmarks.diagnosis.cases import LOW_PASS, RECORDINGS, Case, drawn
 from benchmarks.diagnosis.imperfections import Imperfections
 from benchmarks.diagnosis.open_laws import LAWS, Law
 from benchmarks.diagnosis.scene import FloatArray, Unsuitable
-from benchmarks.diagnosis.unseen_laws import UNSEEN
+from benchmarks.diagnosis.unseen_laws import EVERY_LAW, UNSEEN
 from models.shaking import Shaking
 
 NOMINAL, WITHIN, LEFT = 10.0, 0.1, 1.0
@@ -80,10 +80,12 @@ def _case(of: Bodies, design: suite.CaseDesign, seed: int, rng: np.random.Genera
     errors = Imperfections()
     if design.imperfection:
         errors = imperfections.draw(design.imperfection, design.names, sampling, rng)
-    truth, sensors, effects = Truth(of, true, {}, apart), {}, []
+    truth, sensors, effects, kind = Truth(of, true, {}, apart), {}, [], str(design.kind)
     if design.kind == "open":
-        truth, size = _law({**LAWS, **UNSEEN}[design.names[0]], truth, drawn, rng)
-        effects = [{"name": design.names[0], "class": "open", "parameters": {"size": size}}]
+        law = EVERY_LAW[design.names[0]]
+        kind = law.kind
+        truth, size = _law(law, truth, drawn, rng)
+        effects = [law.described(size)]
     else:
         found = [_sized(of, name, true, drawn, rng) for name in design.names]
         wall = {f"{n}.{k}": v for n, p in found if not of.catalogue[n].sensor for k, v in p.items()}
@@ -99,7 +101,7 @@ def _case(of: Bodies, design: suite.CaseDesign, seed: int, rng: np.random.Genera
         channels[name], noise = _recorded(truth, sensors, errors, shaking, sampling, peak, design.noise, rng)
         notes[name] = {"motion": source, "pga": shaking.pga, "noise_std": noise, "duration": shaking.duration}
     key = {
-        "kind": design.kind, "model": of.model.name, "seed": seed, "number": design.number,
+        "kind": kind, "model": of.model.name, "seed": seed, "number": design.number,
         "noise_fraction_of_peak": design.noise, "relative_size": 1.0, "sampling_hz": sampling, "weak": False,
         "effects": effects, "over_peak": peak, "true_parameters": true, "recordings": notes, "program_apart": apart,
         "imperfections": errors.described(), "named_rightly": errors.named_rightly,

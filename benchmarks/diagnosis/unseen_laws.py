@@ -10,7 +10,7 @@ import math
 import numpy as np
 from numba import njit
 
-from benchmarks.diagnosis.open_laws import Law, no_numbers, uniform
+from benchmarks.diagnosis.open_laws import LAWS, Law, no_numbers, uniform
 
 SLIDES = 0.004
 """rad s-1 over which dry friction changes its sign."""
@@ -104,12 +104,14 @@ UNSEEN = {
         Law("humming", "a machine shakes the block at its own frequency", 0.5, uniform(0.8, 3.0), _humming),
         Law("pushing_table", "the table pushes more than it pulls", 0.5, no_numbers, _pushing, either=True),
         Law("left_magnet", "an attraction to the upright position on the left", 0.8, uniform(0.1, 0.3), _left_magnet),
-        Law("passing_loss", "impacts lose more for part of the time", 0.5, no_numbers, ratio=_passing_loss),
+        Law("passing_loss", "impacts lose more for part of the time", 0.5, no_numbers, ratio=_passing_loss,
+            effect="restitution"),
         Law("friction_band", "dry friction within a band of rotations", 0.5, uniform(0.1, 0.4), _friction_band),
         Law("fading_stop", "spring stops that wear out", 8.0, uniform(0.2, 0.4), _fading_stop),
         Law("slow_pendulum", "a slow pendulum pulls at the block", 1.0, _slow, _under_a_pendulum, _pendulum,
             either=True),
-        Law("late_prop", "a spring on the right from some instant on", 0.8, no_numbers, _late_prop),
+        Law("late_prop", "a spring on the right from some instant on", 0.8, no_numbers, _late_prop, lasts=True),
         Law("shaken_guide", "damping while the base accelerates", 10.0, no_numbers, _shaken_guide),
     )
 }  # fmt: skip
+EVERY_LAW = {**LAWS, **UNSEEN}

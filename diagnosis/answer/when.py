@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -11,11 +12,11 @@ import numpy as np
 from diagnosis.answer.result import EffectStage, HeldStage
 from diagnosis.fit.misfit import Misfit
 from diagnosis.search.candidates import Candidate
-from diagnosis.search.for_a_while import LASTS, asking, exact, gain
+from diagnosis.search.for_a_while import asking, exact, gain
 from diagnosis.search.found import MISSING
 from diagnosis.search.instants import Instant, ends_of
 from diagnosis.search.refit import Explanation
-from diagnosis.search.spells import Spell
+from diagnosis.search.spells import LASTS, InEach, When
 from diagnosis.search.tables import form_of
 from grids.stages import Stage
 from models.base import FloatArray
@@ -29,16 +30,17 @@ def stages_of(explanation: Explanation, candidate: Candidate) -> tuple[EffectSta
         return ()
     names = [r.name for r in explanation.measured.recordings]
     stages = [EffectStage(one.recording, one.begins, one.ends) for one in spell.stages(names)]
-    if not spell.instants:
-        return tuple(stages)
-    try:
-        ends = ends_of(explanation, candidate.name, spell)
-    except InputError:  # it acts in whole recordings only
-        return tuple(stages)
-    if spell.begins is not None and (interval := _interval(ends.begins, spell.first, spell.begins)):
-        stages[spell.first] = replace(stages[spell.first], begins_low95=interval[0], begins_high95=interval[1])
-    if spell.ends is not None and (interval := _interval(ends.ends, spell.last, spell.ends)):
-        stages[spell.last] = replace(stages[spell.last], ends_low95=interval[0], ends_high95=interval[1])
+    for part in spell.parts:
+        if not part.instants:
+            continue
+        try:
+            ends = ends_of(explanation, candidate.name, part)
+        except InputError:  # it acts in whole recordings only
+            break
+        if part.begins is not None and (interval := _interval(ends.begins, part.first, part.begins)):
+            stages[part.first] = replace(stages[part.first], begins_low95=interval[0], begins_high95=interval[1])
+        if part.ends is not None and (interval := _interval(ends.ends, part.last, part.ends)):
+            stages[part.last] = replace(stages[part.last], ends_low95=interval[0], ends_high95=interval[1])
     return tuple(stages)
 
 
@@ -49,11 +51,13 @@ def _interval(instant: Instant, recording: int, estimate: float) -> tuple[float,
     return min(instant.low95, estimate), max(instant.high95, estimate)
 
 
-def may_change_again(spell: Spell, recordings: int) -> bool:
+def may_change_again(spell: When, recordings: int) -> bool:
     """Whether nothing is known of later recordings: what came and went, or changed from one recording to the next.
 
     What begins within a recording and is there to the end has happened to the specimen, and stays.
     """
+    if isinstance(spell, InEach):
+        return True
     begins = spell.begins is not None or spell.first > 0
     return begins and (spell.begins is None or spell.ends is not None or spell.last < recordings - 1)
 
@@ -70,16 +74,21 @@ def held_stages(explanation: Explanation, misfit: Misfit, states: FloatArray) ->
         if candidate.spell is None:
             continue
         own = may_change_again(candidate.spell, learned)
-        acts = candidate.spell.last == learned - 1 and candidate.spell.ends is None
+        acts = candidate.spell.stages([r.name for r in explanation.measured.recordings])[-1].ends == LASTS
         nulls = {x.name: x.value(float(u)) for x, u in zip(candidate.unknowns, candidate.null, strict=True)}
         gained = gain(misfit, candidate.name, nulls, states) if own else np.zeros(0)
         for r, recording in enumerate(misfit.measured.recordings):
             begins, ends = (0.0, LASTS) if acts else (0.0, 0.0)
             if own:
-                asked = asking(misfit.measured, r, gained, MISSING + candidate.price)
+                asked = asking(misfit.measured, r, gained, MISSING + _price_of_one(candidate))
                 begins, ends = exact(misfit, candidate.name, states, r, asked)
             found.append(HeldStage(candidate.name, recording.name, begins, ends, own))
     return (*found, *_of_law(explanation, misfit, states))
+
+
+def _price_of_one(candidate: Candidate) -> float:
+    """What the choice of one interval costs, where each recording has its own."""
+    return candidate.price / (len(candidate.spell.intervals) if isinstance(candidate.spell, InEach) else 1)
 
 
 def _of_law(explanation: Explanation, misfit: Misfit, states: FloatArray) -> Iterator[HeldStage]:
@@ -107,6 +116,12 @@ def when_text(stages: Sequence[EffectStage]) -> str:
     acting = [one for one in stages if one.ends > one.begins]
     if not acting:
         return ""
+    if _interrupted(stages):
+        return "in each recording for a while: " + " and ".join(
+            f"from {_instant(one.begins, one.begins_low95, one.begins_high95)} to "
+            f"{'the end' if one.ends == LASTS else _instant(one.ends, one.ends_low95, one.ends_high95)} "
+            f"of {one.recording}" for one in acting
+        )  # fmt: skip
     first, last = acting[0], acting[-1]
     begins = first.begins > 0.0 or first is not stages[0]
     ends = last.ends < LASTS or last is not stages[-1]
@@ -121,6 +136,16 @@ def when_text(stages: Sequence[EffectStage]) -> str:
     if not ends:
         return f"{opening} and stays" if first.begins == 0.0 else f"{opening} on, and stays"
     return f"{opening} {closing}" if begins else f"until {closing.removeprefix('to ')}, and is gone then"
+
+
+def _interrupted(stages: Sequence[EffectStage]) -> bool:
+    """Whether it acts in more than one spell of the sequence."""
+    acting = [k for k, one in enumerate(stages) if one.ends > one.begins]
+    goes_on = (
+        b == a + 1 and stages[a].ends == LASTS and stages[b].begins == 0.0
+        for a, b in pairwise(acting)
+    )  # fmt: skip
+    return not all(goes_on)
 
 
 def comes_and_goes(stages: Sequence[Mapping[str, Any]]) -> list[str]:

@@ -10,8 +10,9 @@ derivatives (Schur complement) leaves a least-squares problem in the shared para
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +28,11 @@ STEP = 0.05
 """Difference step of a coordinate."""
 STATE_STEP = 2e-3
 """Difference step of a state over its scatter among the windows."""
+
+
+Found = TypeVar("Found")
+Asking = Generator[Sequence[Point], FloatArray, Found]
+"""What asks for predictions (P, W, C, N) of points, time and again, and ends with what it finds."""
 
 
 @dataclass(frozen=True)
@@ -75,7 +81,10 @@ class Misfit:
 
         Meaningless but in windows ``only``.
         """
-        predicted = self.predictor.predict(points, only=only)
+        return self.whitened(self.predictor.predict(points, only=only))
+
+    def whitened(self, predicted: FloatArray) -> FloatArray:
+        """Residuals (P, W, M) of predictions (P, W, C, N)."""
         difference = predicted - self.measured.values
         found = self.whitening(np.where(np.isfinite(difference), difference, 1e3))
         shared = self.whitening.shared
@@ -132,6 +141,10 @@ class Misfit:
 
     def linearise(self, u: FloatArray, states: FloatArray, one_sided: bool = False) -> Linear:
         """Residuals and derivatives at a point; ``one_sided`` by unknowns for the steps of a fit."""
+        return answered(self.linearising(u, states, one_sided), self.predictor)
+
+    def linearising(self, u: FloatArray, states: FloatArray, one_sided: bool = False) -> Asking[Linear]:
+        """The same, which asks for its predictions."""
         here = self.point(u, states)
         ends, widths = [], []
         for i, unknown in enumerate(self.unknowns):
@@ -148,7 +161,8 @@ class Misfit:
             ends.append([self.point(u, down), self.point(u, up)])
             widths.append(2.0 * size)
         moved = [point for pair in ends for point in pair if point is not here]
-        r = dict(zip(map(id, [here, *moved]), self.residuals([here, *moved]), strict=True))
+        predicted = yield [here, *moved]
+        r = dict(zip(map(id, [here, *moved]), self.whitened(predicted), strict=True))
         differences = [(r[id(up)] - r[id(down)]) / width for (down, up), width in zip(ends, widths, strict=True)]
         columns = np.stack(differences, axis=-1)
         k = len(self.unknowns)
@@ -161,6 +175,17 @@ class Misfit:
         """Weight of each window (W,) in the least squares that has the loss's gradient."""
         n = self.measured.count
         return np.asarray(1.0 / (1.0 + np.sum(residual**2, axis=-1) / (NU * n)))
+
+
+def answered(asking: Asking[Found], predictor: Predictor) -> Found:
+    """What it finds, its predictions run as it asks for them."""
+    try:
+        points = next(asking)
+        while True:
+            points = asking.send(predictor.predict(points))
+    except StopIteration as end:
+        found: Found = end.value
+        return found
 
 
 def reduce(linear: Linear) -> Reduced:

@@ -8,7 +8,7 @@ state (`models.piecewise`), and what instruments do to it changes at that sample
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 
@@ -31,19 +31,24 @@ from models.observed import Observed
 from models.piecewise import Part, trajectories
 from models.shaking import Shaking
 
+Stages = Mapping[str, Sequence[Stage]]
+Ways = Sequence[tuple[int, frozenset[str]]]
+"""From which sample on which mechanisms do not act."""
+
 
 @dataclass(frozen=True)
 class Point:
     """One parameter setting (``mechanism.parameter`` for mechanisms) with the states (W, S) it starts from.
 
     ``coordinates``: names of values that are those of a fit (`Identification.coordinates`), not of the model; with a
-    ``rung`` all are those of the model under it.
+    ``rung`` all are those of the model under it. ``stages``: of mechanisms, None: those of the predictor.
     """
 
     values: Mapping[str, float]
     states: FloatArray
     coordinates: tuple[str, ...] = ()
     rung: Rung | None = None
+    stages: Stages | None = None
 
 
 @dataclass(frozen=True)
@@ -71,7 +76,7 @@ class Predictor:
 
     measured: Measured
     options: Mapping[str, str] = field(default_factory=dict)
-    stages: Mapping[str, Sequence[Stage]] = field(default_factory=dict)
+    stages: Stages = field(default_factory=dict)
     coordinates: tuple[str, ...] = ()
     rung: Rung | None = None
     carrying: Carrying = field(default_factory=Carrying, repr=False, compare=False)
@@ -92,23 +97,24 @@ class Predictor:
         out = np.zeros((len(points), *m.values.shape))
         instruments = [instruments_of(p.values) for p in points]
         complete = self._complete(points)
-        groups: dict[tuple[object, ...], list[int]] = {}
-        for k, switched in enumerate(instruments):
-            groups.setdefault(same_base(switched), []).append(k)
         moves: list[_Moves] = []
         for r, recording in enumerate(m.recordings):
             windows = np.flatnonzero((m.recording_of == r) & (True if only is None else only))
             if not windows.size:
                 continue
-            alike = [(members, self.sets(instruments[members[0]], recording)) for members in groups.values()]
+            alike = [
+                (members, self.sets(instruments[members[0]], recording, points[members[0]].stages))
+                for members in self._alike(points, instruments, recording)
+            ]
             if m.stretches is not None:
                 plain = (m.shakings if shakings is None else shakings)[r]
                 for members, sets in alike:
-                    self._through(r, members, windows, moved_in_stages(plain, sets), complete, instruments, out)
+                    shaken = moved_in_stages(plain, sets)
+                    self._through(r, points, members, windows, shaken, complete, instruments, out)
                 continue
             grounds = [moved_in_stages(m.shakings[r], sets, moved_in_windows) for _, sets in alike]
             moves.append(_Moves(r, windows, alike, grounds))
-        for one, carried in zip(moves, self._carried(moves, complete, instruments), strict=True):
+        for one, carried in zip(moves, self._carried(moves, points, complete, instruments), strict=True):
             for (own, acting), ground in zip(one.alike, one.grounds, strict=True):
                 shaking = ground if shakings is None else moved_in_stages(shakings[one.r], acting, moved_in_windows)
                 # probes of the base are disturbances of the model: accelerometers are on the base as it moves
@@ -129,7 +135,7 @@ class Predictor:
         own = self.measured.model.declared(self._values(complete, frozenset(), 1), names, self.options)
         for i, k in enumerate(given):
             values = {name: float(np.broadcast_to(x, (len(given),))[i]) for name, x in own.items()}
-            found[k] = Point({**points[k].values, **values}, points[k].states)
+            found[k] = replace(points[k], values={**points[k].values, **values}, coordinates=())
         return found
 
     def carried(self, point: Point) -> dict[str, FloatArray]:
@@ -140,10 +146,10 @@ class Predictor:
         for r, recording in enumerate(m.recordings):
             own = np.flatnonzero(m.recording_of == r)
             if own.size:
-                sets = self.sets(instruments, recording)
+                sets = self.sets(instruments, recording, point.stages)
                 moves.append(_Moves(r, own, [([0], sets)], [moved_in_stages(m.shakings[r], sets, moved_in_windows)]))
         found: dict[str, FloatArray] = {}
-        for one, carried in zip(moves, self._carried(moves, [values], [instruments]), strict=True):
+        for one, carried in zip(moves, self._carried(moves, [point], [values], [instruments]), strict=True):
             for name, x in carried.items():
                 found.setdefault(name, np.zeros((len(m.windows), *x.shape[2:])))[one.windows] = x[0]
         return found
@@ -166,9 +172,26 @@ class Predictor:
                     values[key] = values[key.rpartition("_")[0]]
         return found
 
+    def _alike(
+        self, points: Sequence[Point], instruments: Sequence[Switched], recording: Recording
+    ) -> Iterable[list[int]]:
+        """Which points can run together: their base moves alike, and the same mechanisms act one after another.
+
+        At instants of their own, but for instruments.
+        """
+        groups: dict[tuple[object, ...], list[int]] = {}
+        for k, (point, switched) in enumerate(zip(points, instruments, strict=True)):
+            ways = tuple(self._ways(recording, point.stages))
+            timed: object = tuple(off for _, off in ways)
+            if any(not off.isdisjoint(switched) for _, off in ways):
+                timed = ways
+            groups.setdefault((same_base(switched), timed), []).append(k)
+        return groups.values()
+
     def _carried(
-        self, moves: Sequence[_Moves], complete: Sequence[Mapping[str, float]], instruments: Sequence[Switched]
-    ) -> list[dict[str, FloatArray]]:
+        self, moves: Sequence[_Moves], points: Sequence[Point], complete: Sequence[Mapping[str, float]],
+        instruments: Sequence[Switched],
+    ) -> list[dict[str, FloatArray]]:  # fmt: skip
         """What the model carries to the starts of the windows (P, n, ...) of all P points, recording by recording."""
         m = self.measured
         if not m.identification.carrying:
@@ -177,8 +200,12 @@ class Predictor:
         for one in moves:
             recording, bases = m.recordings[one.r], one.bases
             settings = [
-                Setting(bases[p], self.parts(complete[p], recording), self.sets(instruments[p], recording))
-                for p in range(len(complete))
+                Setting(
+                    bases[p],
+                    self.parts(complete[p], recording, point.stages),
+                    self.sets(instruments[p], recording, point.stages),
+                )
+                for p, point in enumerate(points)
             ]
             asked.append(Asked(recording, m.first[one.windows], settings))
         return self.carrying.at(asked, m, self.options)
@@ -195,15 +222,16 @@ class Predictor:
         carried: Mapping[str, FloatArray],
         out: FloatArray,
     ) -> None:
-        m, time_step, ways = self.measured, recording.time_step, self._ways(recording)
+        m, time_step = self.measured, recording.time_step
+        ways = [self._ways(recording, points[p].stages) for p in members]
         shaking, ground = shakings
         compared = np.array([m.windows[w].samples for w in windows])
         ahead = max(seconds_ahead(instruments[p]) for p in members)
         wanted = compared + int(np.ceil(ahead / time_step)) + any(place.order for place in m.places.values())
         longest, samples = int(compared.max()), int(wanted.max())
         n, count = len(windows), len(members)
-        parts = [self._values([complete[p] for p in members], off, n) for _, off in ways]
-        instants = np.tile(np.array([first for first, _ in ways[1:]], np.int64), (n * count, 1))
+        parts = [self._values([complete[p] for p in members], off, n) for _, off in ways[0]]
+        instants = np.repeat(np.array([[first for first, _ in own[1:]] for own in ways], np.int64), n, axis=0)
         states = np.stack([points[p].states[windows] for p in members])
         initial = {s: states[:, :, k].ravel() for k, s in enumerate(m.free)}
         initial |= {s: initial[of] for s, of in m.alike.items() if s not in initial}
@@ -222,7 +250,8 @@ class Predictor:
         around = Surroundings(time_step, along[0], m.reference_peak, start)
         for alike in _alike([instruments[p] for p in members]):
             true = {c: found[c][alike] for c in m.channels}
-            sets = self.sets(instruments[members[alike[0]]], recording)
+            leader = members[alike[0]]
+            sets = self.sets(instruments[leader], recording, points[leader].stages)
             recorded = recorded_in_stages(true, sets, around, recorded_in_windows)
             rows = np.array([members[k] for k in alike])[:, None]
             for c, channel in enumerate(m.channels):
@@ -231,6 +260,7 @@ class Predictor:
     def _through(
         self,
         r: int,
+        points: Sequence[Point],
         members: Sequence[int],
         windows: NDArray[np.intp],
         shaking: Shaking,
@@ -240,32 +270,35 @@ class Predictor:
     ) -> None:
         """The windows as stretches of runs through a whole recording."""
         m, recording = self.measured, self.measured.recordings[r]
-        parts = [self.parts(complete[p], recording) for p in members]
-        sets = [self.sets(instruments[p], recording) for p in members]
+        parts = [self.parts(complete[p], recording, points[p].stages) for p in members]
+        sets = [self.sets(instruments[p], recording, points[p].stages) for p in members]
         ran = run_through(m, r, parts, sets, shaking, self.options)
         for w in windows:
             first, samples = m.windows[w].first, m.windows[w].samples
             out[members, w, :, :samples] = ran[:, :, first : first + samples]
 
-    def _ways(self, recording: Recording) -> list[tuple[int, frozenset[str]]]:
+    def _ways(self, recording: Recording, stages: Stages | None = None) -> Ways:
         """From which sample of a recording (of its base, where means are compared) on which stages do not act."""
-        if not self.stages:
+        stages = self.stages if stages is None else stages
+        if not stages:
             return [(0, frozenset())]
         m = self.measured
         steps = {one.name: shaking.time_step for one, shaking in zip(m.recordings, m.shakings, strict=True)}
         step = steps.get(recording.name, recording.time_step)
-        found = changes(self.stages.keys(), self.stages, recording.name)
-        return [(first_sample(time, step), frozenset(self.stages) - acting) for time, acting in found]
+        found = changes(stages.keys(), stages, recording.name)
+        return [(first_sample(time, step), frozenset(stages) - acting) for time, acting in found]
 
-    def sets(self, instruments: Switched, recording: Recording) -> list[tuple[int, Switched]]:
-        """From which sample of a recording on which of the instruments act."""
+    def sets(
+        self, instruments: Switched, recording: Recording, stages: Stages | None = None
+    ) -> list[tuple[int, Switched]]:
+        """From which sample of a recording on which of the instruments act; ``stages`` None: those of the predictor."""
         return [
             (first, {name: values for name, values in instruments.items() if name not in off})
-            for first, off in self._ways(recording)
+            for first, off in self._ways(recording, stages)
         ]
 
-    def parts(self, values: Mapping[str, float], recording: Recording) -> list[Part]:
-        """A point's values of the wall from sample to sample of a recording."""
+    def parts(self, values: Mapping[str, float], recording: Recording, stages: Stages | None = None) -> list[Part]:
+        """A point's values of the wall from sample to sample of a recording; ``stages`` as in `sets`."""
         plain = without_instruments(values)
         mechanisms = self.measured.model.mechanisms
 
@@ -274,7 +307,7 @@ class Predictor:
             nulls = {n: mechanisms[m].parameter(p).null for n, (m, _, p) in split.items() if m in off}
             return {**plain, **nulls}
 
-        return [Part(first, acting(off)) for first, off in self._ways(recording)]
+        return [Part(first, acting(off)) for first, off in self._ways(recording, stages)]
 
     def _values(
         self, points: Sequence[Mapping[str, float]], off: frozenset[str], windows: int

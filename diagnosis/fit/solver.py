@@ -9,6 +9,7 @@ windows share moves with the parameters; it is linear and costs no runs.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -16,7 +17,7 @@ import numpy as np
 from scipy.stats import qmc
 
 from diagnosis.data.measured import Measured
-from diagnosis.fit.misfit import NU, Linear, Misfit, Reduced, reduce
+from diagnosis.fit.misfit import NU, Asking, Linear, Misfit, Reduced, answered, reduce
 from diagnosis.fit.prediction import Point
 from diagnosis.fit.unknowns import clip, values_of
 from models.base import FloatArray
@@ -120,8 +121,8 @@ class _Place:
     loss: float
 
     @classmethod
-    def at(cls, misfit: Misfit, u: FloatArray, states: FloatArray) -> _Place:
-        linear = misfit.linearise(u, states, one_sided=True)
+    def at(cls, misfit: Misfit, u: FloatArray, states: FloatArray) -> Asking[_Place]:
+        linear = yield from misfit.linearising(u, states, one_sided=True)
         window = misfit.losses(linear.residual)
         return cls(misfit, u, states, linear, window, float(window.sum()) + misfit.prior(u))
 
@@ -171,18 +172,46 @@ class _Place:
 
 def fit(misfit: Misfit, u: FloatArray, states: FloatArray, iterations: int = ITERATIONS) -> Fitted:
     """The minimum of the loss next to (u, states)."""
+    return answered(_fitting(misfit, u, states, iterations), misfit.predictor)
+
+
+def fit_together(
+    misfits: Sequence[Misfit], u: FloatArray, states: FloatArray, iterations: int = ITERATIONS
+) -> list[Fitted]:
+    """The same of misfits that differ in the stages of their predictors alone: what they ask for runs side by side."""
+    asking = [_fitting(one, u, states, iterations) for one in misfits]
+    found: dict[int, Fitted] = {}
+    asked = {k: next(one) for k, one in enumerate(asking)}
+    while asked:
+        points = [replace(p, stages=misfits[k].predictor.stages) for k, own in asked.items() for p in own]
+        predicted, first = misfits[0].predictor.predict(points), 0
+        for k, own in list(asked.items()):
+            part = predicted[first : first + len(own)]
+            first += len(own)
+            try:
+                asked[k] = asking[k].send(part)
+            except StopIteration as end:
+                found[k] = end.value
+                del asked[k]
+    return [found[k] for k in range(len(misfits))]
+
+
+def _fitting(misfit: Misfit, u: FloatArray, states: FloatArray, iterations: int) -> Asking[Fitted]:
     u = clip(misfit.unknowns, np.asarray(u, float))
     if not iterations:
-        window = misfit.losses(misfit.residuals([misfit.point(u, states)]))[0]
+        predicted = yield [misfit.point(u, states)]
+        window = misfit.losses(misfit.whitened(predicted))[0]
         return Fitted(misfit, u, states, window, float(window.sum()) + misfit.prior(u))
-    place = _Place.at(misfit, u, states)
+    place = yield from _Place.at(misfit, u, states)
     damping, small, bold = 1.0, 0, True
     for _ in range(iterations):
         if place.gain < TOLERANCE:
             break
-        best, further = 0, _whole(place) if bold and place.gain < NEAR * place.loss else None
+        best, further = 0, None
+        if bold and place.gain < NEAR * place.loss:
+            further = yield from _whole(place)
         if further is None:
-            best, further = _search(place, damping)
+            best, further = yield from _search(place, damping)
         bold = best == 0 and further is not None
         if further is None:
             damping *= 10.0
@@ -198,15 +227,15 @@ def fit(misfit: Misfit, u: FloatArray, states: FloatArray, iterations: int = ITE
     return Fitted(place.misfit, place.u, place.states, place.window, place.loss)
 
 
-def _whole(place: _Place) -> _Place | None:
+def _whole(place: _Place) -> Asking[_Place | None]:
     """The undamped step, if it gains what it should."""
     change = place.change(0.0)
     misfit, states = place.misfit.at_level(place.level(change)), place.states + place.shift(change)
-    further = _Place.at(misfit, place.moved(change), states)
+    further = yield from _Place.at(misfit, place.moved(change), states)
     return further if place.loss - further.loss > GOOD * place.gain else None
 
 
-def _search(place: _Place, damping: float) -> tuple[int, _Place | None]:
+def _search(place: _Place, damping: float) -> Asking[tuple[int, _Place | None]]:
     """The best of some dampings, with the best step of the states in each window; None where nothing is gained."""
     misfit, states, residual = place.misfit, place.states, place.linear.residual
     shared = place.linear.by_unknown.shape[-1] > 0  # without, no damping changes anything
@@ -217,7 +246,8 @@ def _search(place: _Place, damping: float) -> tuple[int, _Place | None]:
         shift = place.shift(change)
         moved.append([states + share * shift for share in shares])
     points = [misfit.point(u, x) for u, each in zip(steps, moved, strict=True) for x in each]
-    residuals = misfit.residuals(points).reshape(len(steps), len(shares), *residual.shape)
+    predicted = yield points
+    residuals = misfit.whitened(predicted).reshape(len(steps), len(shares), *residual.shape)
     if misfit.level.size:
         own = place.u.size
         residuals += np.stack([place.linear.by_unknown[..., own:] @ change[own:] for change in changes])[:, None]
@@ -230,7 +260,8 @@ def _search(place: _Place, damping: float) -> tuple[int, _Place | None]:
     if totals[best] >= place.loss:
         return best, None
     chosen = np.stack(moved[best])[pick[best], np.arange(states.shape[0])]
-    return best, _Place.at(levels[best], steps[best], chosen)
+    further = yield from _Place.at(levels[best], steps[best], chosen)
+    return best, further
 
 
 def normal(misfit: Misfit, reduced: Reduced, weights: FloatArray, u: FloatArray) -> tuple[FloatArray, FloatArray]:

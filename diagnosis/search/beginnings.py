@@ -2,9 +2,8 @@
 
 Tests go in sequence and things happen: a joint cracks, a strap slips off, a sensor is knocked. Where nothing that
 always acts explains the recordings, every mechanism is screened in every run of successive windows
-(`diagnosis.search.runs`), and the strongest are refitted so: parameters with the spell held, then the run of windows
-in which the recordings ask for the effect (`diagnosis.search.asked`), in turn; last the instants within the windows
-(`diagnosis.search.instants`).
+(`diagnosis.search.runs`), and the strongest are refitted in their spells (`diagnosis.search.staged`). What comes and
+goes in every test has an interval of its own in each (`diagnosis.search.in_each`).
 
 Many runs are searched, so a spell has a price: how much more of the largest statistic chance brings (its 5 % level,
 from noise drawn under the estimated errors) with runs than without. It is taken off the gain, so that an effect in a
@@ -17,13 +16,13 @@ and none can be told by it. It is said, with its instants, and nothing is named.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.data.measured import Measured
-from diagnosis.fit.linearisation import linearise_about
+from diagnosis.fit.linearisation import Linearisation, linearise_about
 from diagnosis.fit.solver import fit
 from diagnosis.forces.constancy import BLOW, FOR_A_WHILE, Constancy
 from diagnosis.progress import Progress
@@ -33,23 +32,13 @@ from diagnosis.search.budget import RESERVED
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.details import least
 from diagnosis.search.found import ALONE, MISSING, Search, adjusted, explains_all, price, settles, survives
-from diagnosis.search.instants import WHOLE, ends_of
+from diagnosis.search.in_each import in_each
 from diagnosis.search.null import null_distribution
-from diagnosis.search.refit import (
-    QUICK,
-    Explanation,
-    again,
-    best_of,
-    extend,
-    further,
-    gain_by_window,
-    ways,
-    with_memory,
-    without,
-)
+from diagnosis.search.refit import QUICK, Explanation, best_of, extend, gain_by_window, with_memory, without
 from diagnosis.search.runs import InRuns, chance, in_runs, runs
 from diagnosis.search.screen import Score, score
-from diagnosis.search.spells import Spell, holds, in_spell, of_windows
+from diagnosis.search.spells import When, holds, in_spell, of_windows
+from diagnosis.search.staged import moved, refitted_in, thorough
 from diagnosis.search.weighing import as_white_noise, by_white_noise, weigh_again
 from models.base import FloatArray
 from models.errors import InputError
@@ -59,7 +48,6 @@ FAINT = 8.0
 SHARE, NEAR = 0.25, 0.85
 """Of the strongest statistic, what a mechanism must reach to be refitted; of the largest gain, to be refined."""
 MOST, MOST_HIDDEN, MOST_SINGLES, THOROUGH = 6, 3, 2, 3
-TURNS = 3
 FEWEST_WINDOWS = 4
 
 
@@ -95,40 +83,65 @@ def beside(found: Search, progress: Progress) -> Iterator[Search]:
 
 
 def _begun(found: Search, start: Explanation) -> Search | None:
-    """The search with one more effect in a spell beside those of ``start``, if it counts."""
+    """The search with one more effect that does not always act beside those of ``start``, if it counts."""
     through = found.measured.stretches is not None  # runs through whole recordings cannot be cut at an instant
     if through or len(found.measured.windows) < FEWEST_WINDOWS:
         return None
-    fits = [single for single in _in_spells(found, start) if _needed(found, start, single)]
+    of_base = found.best is None and start is found.base
+    scores = found.scores if of_base else seconds(found, start)
+    screened = _Screened.of(found, start, scores)
+    fits = _in_spells(found, start, screened)
+    whole = [one for one in found.singles if found.gain(one) >= MISSING] if start is found.base else []
+    fits += in_each(found, start, screened.both, [*fits, *whole], screened.cost)
+    fits = sorted((single for single in fits if _needed(found, start, single)), key=adjusted)
     weighed = _weighed(found, fits) if fits else None
     if weighed is None or weighed.best is None:
         return None
     for candidate in weighed.best.candidates:
-        if candidate.spell is not None and _brief(found.measured, candidate.spell):
+        if candidate.spell is not None and (when := _for_a_moment(found.measured, candidate.spell)):
             gain = weighed.gain(weighed.best) - (0.0 if found.best is None else found.gain(found.best))
-            where = found.measured.recordings[candidate.spell.first].name
-            when = f"from {candidate.spell.begins:.2f} s to {candidate.spell.ends:.2f} s of {where}"
             found.struck = Constancy(BLOW, FOR_A_WHILE, gain, when)
             return None
     return weighed
 
 
-def _brief(measured: Measured, spell: Spell) -> bool:
-    """Whether it begins, and ends before the shortest window that tells one motion from another is over."""
-    if measured.lengths is None or spell.begins is None or spell.ends is None or spell.first != spell.last:
-        return False
-    return spell.ends - spell.begins < measured.lengths.shortest
+def _for_a_moment(measured: Measured, spell: When) -> str:
+    """When it acts if it ends before the shortest window that tells one motion from another is over, else nothing."""
+    acting = [one for one in spell.stages([r.name for r in measured.recordings]) if one.ends > one.begins]
+    if measured.lengths is None or any(one.ends - one.begins >= measured.lengths.shortest for one in acting):
+        return ""
+    return " and ".join(f"from {one.begins:.2f} s to {one.ends:.2f} s of {one.recording}" for one in acting)
 
 
-def _in_spells(found: Search, start: Explanation) -> list[Explanation]:
+@dataclass(frozen=True)
+class _Screened:
+    """The screen of an explanation under its errors and against white noise, and the price of a spell.
+
+    Scatter of events holds much of a law of them that changes, and so white noise shows it.
+    """
+
+    both: tuple[tuple[Linearisation, Sequence[Score]], ...]
+    ends: NDArray[np.int64]
+    cost: float
+
+    @classmethod
+    def of(cls, found: Search, start: Explanation, scores: Sequence[Score]) -> _Screened:
+        screen = linearise_about(start.fitted)
+        white = linearise_about(as_white_noise(start.fitted, found.errors))
+        ends = runs(len(found.measured.windows))
+        cost = max(0.0, chance(screen, scores, ends).band - null_distribution(screen, scores).band)
+        return cls(((screen, scores), (white, score(white, [one.candidate for one in scores]))), ends, cost)
+
+    def in_runs(self) -> list[list[InRuns]]:
+        return [in_runs(screen, scores, self.ends) for screen, scores in self.both]
+
+
+def _in_spells(found: Search, start: Explanation, screened: _Screened) -> list[Explanation]:
     """The explanation with one more mechanism, in its spell, the best first; none that gains too little."""
-    screen = linearise_about(start.fitted)
-    of_base = found.best is None and start is found.base
-    scores = found.scores if of_base else seconds(found, start)
-    ends = runs(len(found.measured.windows))
-    cost = max(0.0, chance(screen, scores, ends).band - null_distribution(screen, scores).band)
-    fits = list(_quick(found, start, in_runs(screen, scores, ends), ends, cost))
-    hidden = list(_quick(found, start, _hidden_by_errors(found, start, scores, ends), ends, cost, MOST_HIDDEN))
+    ends, cost = screened.ends, screened.cost
+    plain, white = screened.in_runs()
+    fits = list(_quick(found, start, plain, ends, cost))
+    hidden = list(_quick(found, start, white, ends, cost, MOST_HIDDEN))
     fits += hidden
     if start is found.base:
         fits += [single for one in found.singles[:MOST_SINGLES] if (single := _in_part(one, cost)) is not None]
@@ -136,18 +149,19 @@ def _in_spells(found: Search, start: Explanation) -> list[Explanation]:
     if not fits:
         return []
     enough = max(MISSING, NEAR * (adjusted(start) - adjusted(fits[0])))
-    near = [single for single in fits if adjusted(start) - adjusted(single) >= enough][:THOROUGH]
+    near = [single for single in _different(fits) if adjusted(start) - adjusted(single) >= enough][:THOROUGH]
     # a sensor that was knocked passes for noise that drifts: which is likelier is told under errors of its own
     near += [e for e in hidden[:1] if e.names not in [one.names for one in near]]
-    return sorted((_thorough(single) for single in near), key=adjusted)
+    return sorted((thorough(single) for single in near), key=adjusted)
 
 
-def _hidden_by_errors(
-    found: Search, start: Explanation, scores: Sequence[Score], ends: NDArray[np.int64]
-) -> list[InRuns]:
-    """The same screen against white noise: scatter of events holds much of a law of them that changes."""
-    white = linearise_about(as_white_noise(start.fitted, found.errors))
-    return in_runs(white, score(white, [one.candidate for one in scores]), ends)
+def _different(fits: Sequence[Explanation]) -> list[Explanation]:
+    """Without those of the same mechanism in the same spell: both screens find them."""
+    found: dict[tuple[object, ...], Explanation] = {}
+    for one in fits:
+        last = one.candidates[-1]
+        found.setdefault((last.name, tuple(last.held.items()), last.spell), one)
+    return list(found.values())
 
 
 def _in_part(single: Explanation, cost: float) -> Explanation | None:
@@ -156,10 +170,10 @@ def _in_part(single: Explanation, cost: float) -> Explanation | None:
     spell = asked_for(single)
     staged = replace(single, candidates=(replace(candidate, price=cost),))
     try:
-        part = _in(staged, spell)
+        part = refitted_in(staged, spell)
     except InputError:  # it cannot change within a recording
         return None
-    return _moved(part) if adjusted(single) - adjusted(part) >= MISSING else None
+    return moved(part) if adjusted(single) - adjusted(part) >= MISSING else None
 
 
 def _needed(found: Search, start: Explanation, single: Explanation) -> bool:
@@ -177,7 +191,7 @@ def _needed(found: Search, start: Explanation, single: Explanation) -> bool:
     return survives(always, single) or _had_not_begun(always, single, candidate.spell)
 
 
-def _had_not_begun(always: Explanation, single: Explanation, spell: Spell | None) -> bool:
+def _had_not_begun(always: Explanation, single: Explanation, spell: When | None) -> bool:
     """Whether one window says that an effect does not always act, which others have: it had not begun there, or ended.
 
     The effect does not act in all of that window, which fits to the noise so, and badly with the effect acting always.
@@ -243,56 +257,7 @@ def _in_run(found: Search, start: Explanation, staged: Candidate, coordinates: S
     single = best_of([extend(start, staged, u, QUICK) for u in coordinates])
     if found.best is None:
         single = by_white_noise(single, found.errors)
-    return _moved(single)
-
-
-def _moved(single: Explanation) -> Explanation:
-    """The same mechanism in the run of windows that asks for it, refitted, until that stays."""
-    for _ in range(TURNS):
-        spell = asked_for(single)
-        if spell == single.candidates[-1].spell:
-            break
-        try:
-            other = _in(single, spell)
-        except InputError:
-            break
-        if _with_instants(other) >= _with_instants(single):
-            break
-        single = other
-    return single
-
-
-def _in(single: Explanation, spell: Spell) -> Explanation:
-    """The same model refitted with its last mechanism in another spell."""
-    *others, candidate = single.candidates
-    moved = replace(single.fitted, misfit=in_spell(single.fitted.misfit, candidate.name, spell))
-    single = Explanation((*others, replace(candidate, spell=spell)), moved)
-    return best_of([further(way, QUICK) for way in ways(single)])
-
-
-def _thorough(single: Explanation) -> Explanation:
-    """Refitted thoroughly, with the instants found within the windows."""
-    single = _moved(single)
-    for _ in range(TURNS):
-        candidate = single.candidates[-1]
-        if candidate.spell is None:
-            break
-        try:
-            spell = ends_of(single, candidate.name, candidate.spell).spell
-        except InputError:  # acts in whole recordings only
-            break
-        if spell == candidate.spell:
-            break
-        single = min(single, _in(single, spell), key=_with_instants)
-        if single.candidates[-1].spell != spell:
-            break
-    return again(single)
-
-
-def _with_instants(single: Explanation) -> float:
-    """Loss with what the instants of the last mechanism's spell cost: spells of whole recordings are simpler."""
-    spell = single.candidates[-1].spell
-    return single.loss + (WHOLE * spell.instants if spell is not None else 0.0)
+    return moved(single)
 
 
 def _of_whole_recordings(recording_of: NDArray[np.int64], ends: NDArray[np.int64]) -> NDArray[np.bool_]:
@@ -321,7 +286,7 @@ def _weighed(found: Search, fits: Sequence[Explanation]) -> Search | None:
         if adjusted(simpler) - adjusted(trial.best) < MISSING:
             trial.best = simpler
             break
-    trial.best = with_memory(_thorough(trial.best))
+    trial.best = with_memory(thorough(trial.best))
     return trial
 
 

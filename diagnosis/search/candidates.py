@@ -10,7 +10,7 @@ import numpy as np
 
 from diagnosis.data.measured import Measured
 from diagnosis.fit.unknowns import Unknown, library, of_parameter
-from diagnosis.search.spells import Spell
+from diagnosis.search.spells import When
 from grids.instruments.base import Surroundings
 from grids.specimen import Specimen
 from models.base import FloatArray, Mechanism, MechanismParameter
@@ -34,7 +34,7 @@ class Candidate:
     mechanism: Mechanism
     unknowns: tuple[Unknown, ...]
     held: dict[str, float]
-    spell: Spell | None = None
+    spell: When | None = None
     price: float = 0.0
 
     @property

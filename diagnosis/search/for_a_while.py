@@ -1,12 +1,11 @@
-"""What acts for a while in each recording: intervals of its own in every one, where a spell of the sequence has one.
+"""In which interval a recording asks for an effect, given what it does: no other recording tells that.
 
-A strap that tightens, a guide that engages: what it does comes and goes in every test, at instants that no other test
-tells. A recording says by itself in which run of its windows it asks for the effect, given what the effect does.
+So it is found in recordings learned from and in those held out alike.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -14,17 +13,10 @@ import numpy as np
 from diagnosis.data.measured import Measured
 from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.solver import fit
-from diagnosis.search.instants import NO_UNKNOWNS, ends_in
+from diagnosis.search.instants import NO_UNKNOWNS, ends_within
 from diagnosis.search.runs import largest_run
-from diagnosis.search.spells import Spell
-from grids.stages import Stage
+from diagnosis.search.spells import LASTS, NEVER, Interval, Spell, interval_of
 from models.base import FloatArray
-
-LASTS = float("inf")
-Interval = tuple[float, float]
-"""Begin and end (s); an end of infinity is the recording's own, twice 0 is never."""
-NEVER: Interval = (0.0, 0.0)
-ALWAYS: Interval = (0.0, LASTS)
 
 
 def gain(misfit: Misfit, mechanism: str, nulls: Mapping[str, float], states: FloatArray) -> FloatArray:
@@ -43,17 +35,7 @@ def asking(m: Measured, r: int, gained: FloatArray, least: float) -> Interval:
     low, high = largest_run(gained[own])
     if float(gained[own[low : high + 1]].sum()) < least:
         return NEVER
-    step = m.recordings[r].time_step
-    last = m.windows[own[high]]
-    begins = 0.0 if low == 0 else m.windows[own[low]].first * step
-    return begins, LASTS if high == own.size - 1 else (last.first + last.samples) * step
-
-
-def acting_in(misfit: Misfit, mechanism: str, intervals: Sequence[Interval]) -> Misfit:
-    """The misfit with a mechanism that acts in one interval of each recording."""
-    m = misfit.measured
-    own = tuple(Stage(r.name, *interval) for r, interval in zip(m.recordings, intervals, strict=True))
-    return replace(misfit, predictor=replace(misfit.predictor, stages={**misfit.predictor.stages, mechanism: own}))
+    return interval_of(m, int(own[low]), int(own[high]))
 
 
 def exact(misfit: Misfit, mechanism: str, states: FloatArray, r: int, interval: Interval) -> Interval:
@@ -62,7 +44,5 @@ def exact(misfit: Misfit, mechanism: str, states: FloatArray, r: int, interval: 
         return NEVER
     begins, ends = interval
     spell = Spell(r, begins if begins > 0.0 else None, r, ends if np.isfinite(ends) else None)
-    found = ends_in(misfit, states, mechanism, spell).spell
-    if found.first != r or found.last != r:
-        return interval
+    found = ends_within(misfit, states, mechanism, spell).spell
     return found.begins or 0.0, LASTS if found.ends is None else found.ends

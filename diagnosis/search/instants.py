@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from diagnosis.data.measured import Measured
 from diagnosis.fit.misfit import Misfit
-from diagnosis.fit.solver import fit
+from diagnosis.fit.solver import fit_together
 from diagnosis.search.refit import Explanation
 from diagnosis.search.spells import Spell, in_spell
 from models.base import FloatArray
@@ -63,29 +63,38 @@ def ends_of(explanation: Explanation, mechanism: str, spell: Spell) -> Ends:
 
 
 def ends_in(misfit: Misfit, states: FloatArray, mechanism: str, spell: Spell) -> Ends:
-    """The same under a misfit in which nothing is unknown."""
-    begins = _end(misfit, states, mechanism, spell, True)
-    spell = Spell(begins.recording, begins.time, spell.last, spell.ends)
-    return Ends(begins, _end(misfit, states, mechanism, spell, False))
+    """The same under a misfit in which nothing is unknown; what acts from the first start, or to the last end, does."""
+    begins, ends = Instant(spell.first, None), Instant(spell.last, None)
+    if (spell.first, spell.begins) != (0, None):
+        begins = _end(misfit, states, mechanism, spell, True)
+        spell = spell.beginning(begins.recording, begins.time)
+    if (spell.last, spell.ends) != (len(misfit.measured.recordings) - 1, None):
+        ends = _end(misfit, states, mechanism, spell, False)
+    return Ends(begins, ends)
 
 
-def _end(misfit: Misfit, states: FloatArray, mechanism: str, spell: Spell, begin: bool) -> Instant:
+def ends_within(misfit: Misfit, states: FloatArray, mechanism: str, spell: Spell) -> Ends:
+    """The same of a spell within one recording, which may begin in its first window and end in its last."""
+    begins = _end(misfit, states, mechanism, spell, True, within=True)
+    spell = spell.beginning(begins.recording, begins.time)
+    return Ends(begins, _end(misfit, states, mechanism, spell, False, within=True))
+
+
+def _end(
+    misfit: Misfit, states: FloatArray, mechanism: str, spell: Spell, begin: bool, within: bool = False
+) -> Instant:
     m = misfit.measured
-    if (
-        spell.begins is None and spell.first == 0
-        if begin
-        else spell.ends is None and spell.last == len(m.recordings) - 1
-    ):
-        return Instant(spell.first if begin else spell.last, None)
     at = _window_at(m, spell, begin)
     windows = np.arange(max(at - AROUND, 0), min(at + AROUND, len(m.windows) - 1) + 1)
+    if within:
+        windows = windows[m.recording_of[windows] == spell.first]
     part = _of_windows(misfit, windows)
     moved = [(spell.beginning if begin else spell.ending)(*instant) for instant in _instants(m, windows, begin)]
     moved = [one for one in moved if not one.empty]
 
     def losses(some: Sequence[Spell]) -> FloatArray:
-        acting = (in_spell(part, mechanism, one) for one in some)
-        return np.array([fit(one, NO_UNKNOWNS, states[windows], ITERATIONS).loss for one in acting])
+        acting = [in_spell(part, mechanism, one) for one in some]
+        return np.array([one.loss for one in fit_together(acting, NO_UNKNOWNS, states[windows], ITERATIONS)])
 
     coarse = [k for k, one in enumerate(moved) if k % COARSE == 0 or _whole(one, begin)]
     loss = losses([moved[k] for k in coarse])
@@ -149,8 +158,9 @@ def _instants(m: Measured, windows: NDArray[np.int64], begin: bool) -> Sequence[
         follows = w + 1 < len(m.windows) and m.windows[w + 1].recording == window.recording
         end = (m.windows[w + 1].first if follows else window.first + window.samples) * step
         found += [(window.recording, float(time)) for time in np.arange(start, end, FINE)]
-    if not begin and windows[-1] + 1 == len(m.windows):
-        found.append((m.windows[-1].recording, None))
+    last = int(windows[-1])
+    if not begin and (last + 1 == len(m.windows) or m.recording_of[last + 1] != m.recording_of[last]):
+        found.append((int(m.recording_of[last]), None))
     return found
 
 

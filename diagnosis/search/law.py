@@ -16,10 +16,11 @@ import numpy as np
 
 from diagnosis.errors.model import Errors, refitted
 from diagnosis.search.driven import with_oscillator
-from diagnosis.search.for_a_while import ALWAYS, Interval, acting_in, asking, exact, gain
+from diagnosis.search.for_a_while import asking, exact, gain
 from diagnosis.search.found import MISSING
 from diagnosis.search.left_out import WORSE, error_left_out
 from diagnosis.search.refit import Explanation
+from diagnosis.search.spells import ALWAYS, InEach, Interval, in_spell
 from diagnosis.search.tables import Law, estimate, form_of
 from diagnosis.search.weighing import as_white_noise
 
@@ -106,7 +107,8 @@ def _in_intervals(
     explanation: Explanation, mechanism: str, intervals: Sequence[Interval], errors: Errors | None = None
 ) -> Law | None:
     f = explanation.fitted
-    return estimate(replace(explanation, fitted=replace(f, misfit=acting_in(f.misfit, mechanism, intervals))), errors)
+    acting = in_spell(f.misfit, mechanism, InEach(tuple(intervals)))
+    return estimate(replace(explanation, fitted=replace(f, misfit=acting)), errors)
 
 
 def _left_out(explanation: Explanation) -> float:

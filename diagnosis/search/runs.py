@@ -56,6 +56,12 @@ def runs(windows: int) -> NDArray[np.int64]:
     return np.array(found, np.int64).reshape(-1, 2)
 
 
+def runs_of(recording_of: NDArray[np.int64], recording: int) -> NDArray[np.int64]:
+    """First and last window (R, 2) of every run within one recording; the whole of it is the last one."""
+    own = np.flatnonzero(recording_of == recording)
+    return np.asarray(own[0] + np.concatenate([runs(own.size), [[0, own.size - 1]]]), np.int64)
+
+
 def largest_run(values: FloatArray) -> tuple[int, int]:
     """First and last place of the run of at least `SHORTEST` places with the largest sum."""
     total = np.concatenate([[0.0], np.cumsum(values)])

@@ -7,14 +7,14 @@ import math
 import numpy as np
 import pytest
 
-from benchmarks.diagnosis import instruments, shakings, truth
+from benchmarks.diagnosis import beginnings, instruments, shakings, truth
 from benchmarks.diagnosis.cases import make
 from benchmarks.diagnosis.effects import CATALOGUE
 from benchmarks.diagnosis.files import write_case
 from benchmarks.diagnosis.open_laws import LAWS
 from benchmarks.diagnosis.size import NOMINAL
 from benchmarks.diagnosis.suite import EVALUATION_SEED, GROUPS, TOO_SMALL, CaseDesign, suite
-from benchmarks.diagnosis.unseen_laws import UNSEEN
+from benchmarks.diagnosis.unseen_laws import EVERY_LAW, UNSEEN
 from grids.instruments import INSTRUMENTS
 from grids.recordings import noise_of, read_recording
 from grids.specimen import read_specimen
@@ -157,3 +157,25 @@ def test_suite_is_balanced_and_deterministic() -> None:
     assert {w.names[0] for w in designs if w.kind == "open"} == set(LAWS)
     assert {w.names[0] for w in suite(EVALUATION_SEED) if w.kind == "open"} == set(UNSEEN)
     assert not set(LAWS) & set(UNSEEN)
+
+
+def test_a_mechanism_of_the_catalogue_at_work_for_a_while_is_no_law_outside() -> None:
+    known = {row.effect_class for row in CATALOGUE.values()}
+    within = {name for name, law in EVERY_LAW.items() if law.effect}
+    assert within == {"passing_stiffness", "late_damping", "passing_loss"}
+    for name in within:
+        law = EVERY_LAW[name]
+        assert law.kind == "single" and law.described(0.3)["class"] == law.effect and law.effect in known
+    assert EVERY_LAW["magnet"].kind == "open" and EVERY_LAW["magnet"].described(0.3)["class"] == "open"
+    case = make(CaseDesign(0, "open", ("late_damping",), 0.005, 1.0), 771)
+    assert case.key["kind"] == "single" and case.key["effects"][0]["class"] == "viscous_damping"
+    for name, note in case.key["recordings"].items():
+        begins, ends = note["active_interval"]
+        length = case.channels[name]["rotation_1"].size / case.sampling_hz
+        assert 0.0 < begins < 0.6 * length and ends == pytest.approx(length, abs=0.05)
+
+
+def test_what_comes_and_goes_in_every_test_has_an_interval_in_each() -> None:
+    motions = [Shaking(0.01, np.sin(0.01 * (2 + k) * np.arange(900))) for k in range(3)]
+    when = beginnings.draw("a guide rubs in every test", motions, np.random.default_rng(1))
+    assert all(len(spans) == 1 and spans[0][1] == pytest.approx(spans[0][0] + beginnings.WHILE) for spans in when)

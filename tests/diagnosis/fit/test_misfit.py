@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from diagnosis.fit.linearisation import linearise_about
-from diagnosis.fit.misfit import Misfit, reduce
+from diagnosis.fit.misfit import Misfit, answered, reduce
 from diagnosis.fit.prediction import Predictor
 from diagnosis.fit.setup import base_fit, measure
 from diagnosis.fit.solver import TOLERANCE, _Place, fit
@@ -54,7 +54,7 @@ def test_eliminating_the_states_is_the_full_least_squares(problem) -> None:
 def test_states_that_a_window_tells_take_their_best_step_and_others_stay_together(problem) -> None:
     """Where two states act alike, only what the window tells of them moves: their sum, not each of them."""
     _measured, fitted = problem
-    place = _Place.at(fitted.misfit, fitted.u + 0.3, fitted.states)
+    place = answered(_Place.at(fitted.misfit, fitted.u + 0.3, fitted.states), fitted.misfit.predictor)
     change = place.change(0.0)
     ahead = place.linear.residual + place.linear.by_unknown @ change
     wanted = [-np.linalg.lstsq(b, r, rcond=None)[0] for b, r in zip(place.linear.by_state, ahead, strict=True)]
@@ -132,8 +132,8 @@ def test_whitening_is_the_inverse_root_of_the_covariance(problem) -> None:
 def test_a_fit_with_nothing_ahead_ends_at_its_first_linearisation(problem, monkeypatch: pytest.MonkeyPatch) -> None:
     _measured, fitted = problem
     settled = fit(fitted.misfit, fitted.u, fitted.states)
-    linearise, points = Misfit.linearise, []
-    monkeypatch.setattr(Misfit, "linearise", lambda *given, **more: points.append(given) or linearise(*given, **more))
+    linearise, points = Misfit.linearising, []
+    monkeypatch.setattr(Misfit, "linearising", lambda *given, **more: points.append(given) or linearise(*given, **more))
     again = fit(settled.misfit, settled.u, settled.states)
     assert len(points) == 1
     assert again.loss == pytest.approx(settled.loss, abs=1e-9)

@@ -11,11 +11,11 @@ from diagnosis.data.measured import AsItWas
 from diagnosis.errors.model import calibrated
 from diagnosis.fit.setup import measure
 from diagnosis.search.asked import asked_for, losses
-from diagnosis.search.beginnings import _in
 from diagnosis.search.candidates import candidates
 from diagnosis.search.refit import Explanation, again, extend
 from diagnosis.search.runs import runs
 from diagnosis.search.spells import of_windows
+from diagnosis.search.staged import refitted_in
 from tests.diagnosis.made import SPECIMEN
 from tests.diagnosis.search.test_beginnings import made
 
@@ -44,7 +44,7 @@ def test_the_run_asked_for_is_the_true_one_from_a_wrong_one(in_a_wrong_spell: Ex
 
 def test_losses_of_runs_are_those_of_refits(in_a_wrong_spell: Explanation) -> None:
     """Of a fit in the true run, for runs that differ from it by a window."""
-    m, settled = in_a_wrong_spell.measured, again(_in(in_a_wrong_spell, asked_for(in_a_wrong_spell)))
+    m, settled = in_a_wrong_spell.measured, again(refitted_in(in_a_wrong_spell, asked_for(in_a_wrong_spell)))
     ends = runs(len(m.windows))
     predicted = losses(settled, ends)
     best = int(np.argmin(predicted))
@@ -52,7 +52,7 @@ def test_losses_of_runs_are_those_of_refits(in_a_wrong_spell: Explanation) -> No
     low, high = ends[best].tolist()
     for run in ([low + 1, high], [low - 1, high], [low, high - 1]):
         (k,) = np.flatnonzero((ends == run).all(axis=1))
-        actual = again(_in(settled, of_windows(m, *run))).loss
+        actual = again(refitted_in(settled, of_windows(m, *run))).loss
         assert predicted[k] - settled.loss == pytest.approx(actual - settled.loss, rel=0.3, abs=3.0)
 
 
@@ -65,4 +65,4 @@ def test_what_events_were_taken_for_may_stand_for_the_mechanism(in_a_wrong_spell
     ends = runs(len(m.windows))
     np.testing.assert_allclose(losses(about, ends), losses(in_a_wrong_spell, ends))
     spell = asked_for(in_a_wrong_spell)
-    assert _in(about, spell).loss == pytest.approx(_in(in_a_wrong_spell, spell).loss)
+    assert refitted_in(about, spell).loss == pytest.approx(refitted_in(in_a_wrong_spell, spell).loss)

@@ -178,9 +178,10 @@ def test_the_strongest_against_white_noise_is_taken_along_however_little_it_gain
     gains = {("tilt",): 1000.0, ("offset",): 100.0}
     screens = iter(([other], [knocked]))
     monkeypatch.setattr(beginnings, "_quick", lambda *_: iter(next(screens)))
-    monkeypatch.setattr(beginnings, "_thorough", lambda single: single)
+    monkeypatch.setattr(beginnings, "thorough", lambda single: single)
     monkeypatch.setattr(beginnings, "adjusted", lambda e: -gains.get(e.names, 0.0))
-    assert [e.names for e in beginnings._in_spells(found, found.base)] == [("tilt",), ("offset",)]
+    screened = beginnings._Screened.of(found, found.base, found.scores)
+    assert [e.names for e in beginnings._in_spells(found, found.base, screened)] == [("tilt",), ("offset",)]
 
 
 @pytest.mark.parametrize(("begins", "counts"), [(3.0, True), (1.0, True), (None, False)])

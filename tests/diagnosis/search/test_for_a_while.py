@@ -13,9 +13,10 @@ from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.prediction import Predictor
 from diagnosis.fit.solver import fit
 from diagnosis.fit.whitening import sensor_noise_only
-from diagnosis.search.for_a_while import LASTS, NEVER, acting_in, asking
+from diagnosis.search.for_a_while import asking
 from diagnosis.search.law import for_a_while, missing_law
 from diagnosis.search.refit import Explanation
+from diagnosis.search.spells import LASTS, NEVER, InEach, in_spell
 from diagnosis.search.tables import Law
 from grids.stages import Stage
 from models.mechanisms.table_force import MECHANISM
@@ -84,7 +85,7 @@ def test_the_run_that_asks_ends_with_its_recording() -> None:
     begins, ends = asking(m, 1, gained, 15.0)
     assert begins == m.windows[own[2]].first * m.recordings[1].time_step and ends == LASTS
     assert asking(m, 0, gained, 15.0) == NEVER
-    staged = acting_in(base(m).fitted.misfit, "table_force", [NEVER, (begins, ends)])
+    staged = in_spell(base(m).fitted.misfit, "table_force", InEach((NEVER, (begins, ends))))
     assert staged.predictor.stages["table_force"][1] == Stage("run_2", begins, LASTS)
 
 
