@@ -36,10 +36,11 @@ from diagnosis.search.in_each import in_each
 from diagnosis.search.null import null_distribution
 from diagnosis.search.refit import QUICK, Explanation, best_of, extend, gain_by_window, with_memory, without
 from diagnosis.search.runs import InRuns, chance, in_runs, runs
-from diagnosis.search.screen import Score, score
+from diagnosis.search.screen import Score
 from diagnosis.search.spells import When, holds, in_spell, of_windows
 from diagnosis.search.staged import moved, refitted_in, thorough
-from diagnosis.search.weighing import as_white_noise, by_white_noise, weigh_again
+from diagnosis.search.weighing import by_white_noise, weigh_again
+from diagnosis.search.white_screen import against_white_noise
 from models.base import FloatArray
 from models.errors import InputError
 
@@ -127,10 +128,10 @@ class _Screened:
     @classmethod
     def of(cls, found: Search, start: Explanation, scores: Sequence[Score]) -> _Screened:
         screen = linearise_about(start.fitted)
-        white = linearise_about(as_white_noise(start.fitted, found.errors))
+        white = against_white_noise(found, start, [one.candidate for one in scores])
         ends = runs(len(found.measured.windows))
         cost = max(0.0, chance(screen, scores, ends).band - null_distribution(screen, scores).band)
-        return cls(((screen, scores), (white, score(white, [one.candidate for one in scores]))), ends, cost)
+        return cls(((screen, scores), white), ends, cost)
 
     def in_runs(self) -> list[list[InRuns]]:
         return [in_runs(screen, scores, self.ends) for screen, scores in self.both]

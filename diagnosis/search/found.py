@@ -16,6 +16,8 @@ import numpy as np
 from diagnosis.data.measured import Measured
 from diagnosis.errors.adequacy import errs
 from diagnosis.errors.model import Errors
+from diagnosis.fit.linearisation import Linearisation
+from diagnosis.fit.solver import Fitted
 from diagnosis.forces.constancy import About, Constancy
 from diagnosis.search.budget import ENDED, Budget
 from diagnosis.search.candidates import Candidate
@@ -36,6 +38,17 @@ ADEQUATE = 1.08
 """Misfit per sample under which an explanation is adequate."""
 ALONE, SETTLED, BADLY = 4.0, 1.3, 3.0
 """When one window may decide: its gain in thresholds, its misfit per sample with the mechanism and without."""
+
+
+@dataclass(frozen=True)
+class WhiteScreen:
+    """The screen of some mechanisms about a fit, and under errors of which only those of the base motion count."""
+
+    of: Fitted
+    errors: Errors
+    candidates: frozenset[Candidate]
+    screen: Linearisation
+    scores: list[Score]
 
 
 @dataclass
@@ -72,6 +85,8 @@ class Search:
     """Of an explanation of several effects, with the evidence of its strongest law (`diagnosis.search.details`)."""
     about: About | None = None
     """What was tested last for constancy."""
+    white: WhiteScreen | None = None
+    """The last screen against white noise (`diagnosis.search.white_screen`)."""
 
     @property
     def measured(self) -> Measured:

@@ -64,8 +64,7 @@ def in_each(
     price = cost * len(m.recordings)
     bar = min(adjusted(one) for one in (start, *known)) - MISSING
     fits = list(_from_known(known, price))
-    for screen, scores in screens:
-        fits += _from_screen(found, start, in_own_runs(screen, scores, m), price)
+    fits += _from_screen(found, start, [in_own_runs(screen, scores, m) for screen, scores in screens], price)
     leader, *others = _of_one_name_each(fits) or [start]
     if leader is start:
         return []
@@ -126,14 +125,20 @@ def _everywhere(single: Explanation, price: float) -> Explanation:
 
 
 def _from_screen(
-    found: Search, start: Explanation, screened: Sequence[InOwnRuns], price: float
+    found: Search, start: Explanation, screened: Sequence[Sequence[InOwnRuns]], price: float
 ) -> Iterator[Explanation]:
-    """Quick refits of the strongest of the screen, those of which an effect that always acts explains less."""
-    always = max((one.score.statistic for one in screened), default=0.0)
-    for one in [one for one in screened if not one.spell.is_spell][:MOST]:
-        if one.statistic - price <= always:
-            return
-        staged: Candidate = replace(one.score.candidate, spell=one.spell, price=price)
+    """Quick refits of the strongest of all screens, those of which an effect that always acts explains less."""
+    worth: dict[Candidate, InOwnRuns] = {}
+    for screen in screened:
+        always = max((one.score.statistic for one in screen), default=0.0)
+        for one in screen:
+            known = worth.get(one.score.candidate)
+            if one.spell.is_spell or one.statistic - price <= always:
+                continue
+            if known is None or one.statistic > known.statistic:
+                worth[one.score.candidate] = one
+    for one in sorted(worth.values(), key=lambda entry: -entry.statistic)[:MOST]:
+        staged = replace(one.score.candidate, spell=one.spell, price=price)
         try:
             single = extend(start, staged, one.start, QUICK)
             yield moved(by_white_noise(single, found.errors) if found.best is None else single)

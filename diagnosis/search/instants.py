@@ -157,7 +157,7 @@ def _instants(m: Measured, windows: NDArray[np.int64], begin: bool) -> Sequence[
                 found.append((window.recording - 1, None))
         follows = w + 1 < len(m.windows) and m.windows[w + 1].recording == window.recording
         end = (m.windows[w + 1].first if follows else window.first + window.samples) * step
-        found += [(window.recording, float(time)) for time in np.arange(start, end, FINE)]
+        found += [(window.recording, round(time, 6)) for time in np.arange(start, end, FINE).tolist()]
     last = int(windows[-1])
     if not begin and (last + 1 == len(m.windows) or m.recording_of[last + 1] != m.recording_of[last]):
         found.append((int(m.recording_of[last]), None))

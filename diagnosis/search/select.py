@@ -11,7 +11,7 @@ from collections.abc import Collection, Iterator, Sequence
 import numpy as np
 
 from diagnosis.errors.model import estimate
-from diagnosis.fit.linearisation import Linearisation, linearise_about
+from diagnosis.fit.linearisation import linearise_about
 from diagnosis.progress import Progress
 from diagnosis.search.beside import POOL_SHARE, THOROUGH, extended, seconds, starts_of, worth_a_refit
 from diagnosis.search.budget import FURTHER, JOINTS, LAST
@@ -38,7 +38,8 @@ from diagnosis.search.refit import (
 from diagnosis.search.screen import Score, score
 from diagnosis.search.thresholds import from_measured, misfits, setting_in
 from diagnosis.search.variants import with_other_numbers
-from diagnosis.search.weighing import as_white_noise, by_white_noise, weigh_again
+from diagnosis.search.weighing import by_white_noise, weigh_again
+from diagnosis.search.white_screen import against_white_noise
 from grids.instruments import INSTRUMENTS
 
 FAINT = 8.0
@@ -121,8 +122,8 @@ def _singles(found: Search, progress: Progress) -> None:
     wanted = worth_a_refit(found.scores, fewest, SHARE_OF_FIRST)[:MOST]
     late: list[Candidate] = []
     if found.measured.stretches is None:
-        white = linearise_about(as_white_noise(found.base.fitted, found.errors))
-        wanted += _hidden_by_errors(found, white, {entry.candidate for entry in wanted}, fewest)
+        white, scores = against_white_noise(found, found.base, firsts(found.candidates))
+        wanted += _hidden_by_errors(scores, {entry.candidate for entry in wanted}, fewest)
         if misfits(white.fitted):
             late = setting_in(found.base, [entry.candidate for entry in found.scores])
             wanted = _in_turn(wanted, [entry for entry in found.scores if entry.candidate in late])
@@ -184,13 +185,13 @@ def led_by(found: Search, leader: Explanation) -> bool:
     return True
 
 
-def _hidden_by_errors(found: Search, white: Linearisation, tried: Collection[Candidate], fewest: int) -> list[Score]:
+def _hidden_by_errors(white: Sequence[Score], tried: Collection[Candidate], fewest: int) -> list[Score]:
     """The strongest of a screen against white noise that were not tried.
 
     Errors about the base model hold part of what is missing: scatter of events much of a wrong law of them. Such a
     mechanism has no score under these errors until it is in.
     """
-    strongest = worth_a_refit(score(white, firsts(found.candidates)), fewest, SHARE_OF_FIRST)[:fewest]
+    strongest = worth_a_refit(white, fewest, SHARE_OF_FIRST)[:fewest]
     return [entry for entry in strongest if entry.candidate not in tried]
 
 

@@ -6,8 +6,6 @@ from diagnosis.errors.model import calibrated
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.setup import measure
 from diagnosis.search.candidates import candidates
-from diagnosis.search.found import Search
-from diagnosis.search.refit import Explanation
 from diagnosis.search.screen import score
 from diagnosis.search.select import _hidden_by_errors
 from diagnosis.search.weighing import as_white_noise
@@ -23,9 +21,8 @@ def test_a_mechanism_that_the_errors_hold_is_found_by_a_screen_against_white_noi
     some = tuple(one for one in candidates(measured, SPECIMEN) if one.name in NAMES)
     scores = {one.candidate.name: one for one in score(linearise_about(fitted), some)}
     held, other = scores["restitution"], scores["velocity_restitution"]
-    found = Search(Explanation((), fitted), some, errors)
-    white = linearise_about(as_white_noise(fitted, errors))
-    (hidden,) = _hidden_by_errors(found, white, {other.candidate}, 1)
+    white = score(linearise_about(as_white_noise(fitted, errors)), some)
+    (hidden,) = _hidden_by_errors(white, {other.candidate}, 1)
     assert hidden.candidate.name == "restitution"
     assert hidden.statistic > 10.0 * held.statistic  # scatter of impacts under these errors
-    assert _hidden_by_errors(found, white, {hidden.candidate}, 1) == []
+    assert _hidden_by_errors(white, {hidden.candidate}, 1) == []
