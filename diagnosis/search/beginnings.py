@@ -93,7 +93,8 @@ def _begun(found: Search, start: Explanation) -> Search | None:
     screened = _Screened.of(found, start, scores)
     fits = _in_spells(found, start, screened)
     whole = [one for one in found.singles if found.gain(one) >= MISSING] if start is found.base else []
-    fits += in_each(found, start, screened.both, [*fits, *whole], screened.cost)
+    if found.affordable("effects that come and go in every recording"):
+        fits += in_each(found, start, screened.both, [*fits, *whole], screened.cost)
     fits = sorted((single for single in fits if _needed(found, start, single)), key=adjusted)
     weighed = _weighed(found, fits) if fits else None
     if weighed is None or weighed.best is None:
@@ -153,7 +154,8 @@ def _in_spells(found: Search, start: Explanation, screened: _Screened) -> list[E
     near = [single for single in _different(fits) if adjusted(start) - adjusted(single) >= enough][:THOROUGH]
     # a sensor that was knocked passes for noise that drifts: which is likelier is told under errors of its own
     near += [e for e in hidden[:1] if e.names not in [one.names for one in near]]
-    return sorted((thorough(single) for single in near), key=adjusted)
+    wanted = (single for single in near if found.affordable(f"{single.names[-1]} from or to an instant"))
+    return sorted((thorough(single) for single in wanted), key=adjusted)
 
 
 def _different(fits: Sequence[Explanation]) -> list[Explanation]:

@@ -16,7 +16,7 @@ FURTHER = 360_000_000
 """Lane-steps for effects beside the first, whatever was spent before: where two act, the first explains little."""
 LAST = 150_000_000
 """Lane-steps for others in the place of each of several effects at the end, whatever was spent before."""
-RESERVED = 110_000_000
+RESERVED = 700_000_000
 """Lane-steps for effects that begin or end, whatever was spent before: they come last and may explain everything."""
 LADDER = 110_000_000
 """Lane-steps after which no further base model is tried."""

@@ -11,7 +11,9 @@ import pytest
 
 from diagnosis.answer.result import EffectStage
 from diagnosis.answer.when import LASTS, may_change_again, stages_of, when_text
+from diagnosis.search import beginnings
 from diagnosis.search.asked import asked_for
+from diagnosis.search.budget import ENDED
 from diagnosis.search.found import MISSING, Search, adjusted
 from diagnosis.search.in_each import _plain, in_own_runs
 from diagnosis.search.refit import Explanation, extend
@@ -70,6 +72,15 @@ def test_what_acts_for_a_moment_in_every_test_is_a_blow() -> None:
     found, yielded = searched(recordings, shortest=5.0)
     assert yielded == [] and found.best is None and found.blow is not None
     assert found.blow.stronger.endswith(" of b") and " of a and from " in found.blow.stronger
+
+
+def test_what_the_budget_does_not_reach_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(beginnings, "RESERVED", 0.0)
+    recordings = [engaged(name, seed, "viscous_damping.rate", 0.6, 0.0) for name, seed in (("a", 1), ("b", 6))]
+    found, yielded = searched(recordings)
+    assert yielded == [] and found.best is None
+    assert found.not_tried["effects that come and go in every recording"] == ENDED
+    assert found.not_tried["viscous_damping from or to an instant"] == ENDED
 
 
 def test_the_recordings_ask_for_the_true_intervals_from_wrong_ones(dashpot: tuple[Search, list[Search]]) -> None:
