@@ -17,8 +17,8 @@ from diagnosis.data.measured import Measured
 from diagnosis.fit.linearisation import Linearisation
 from diagnosis.search.asked import asked_for
 from diagnosis.search.candidates import Candidate
-from diagnosis.search.found import MISSING, Search, adjusted
-from diagnosis.search.refit import QUICK, Explanation, again, extend
+from diagnosis.search.found import MISSING, Search, adjusted, settles
+from diagnosis.search.refit import QUICK, Explanation, again, extend, gain_by_window
 from diagnosis.search.runs import FEWEST, runs_of
 from diagnosis.search.screen import Score
 from diagnosis.search.spells import ALWAYS, NEVER, InEach, interval_of
@@ -69,8 +69,37 @@ def in_each(
     if leader is start:
         return []
     best = thorough(leader)
+    if not _in_each(best) or adjusted(best) >= bar:
+        return []
+    best = _without_idle(best, cost)
     others = [again(in_its_spell) for one in others[:MOST] if (in_its_spell := _as(one, best)) is not None]
     return sorted((one for one in (best, *others) if _in_each(one) and adjusted(one) < bar), key=adjusted)
+
+
+def _without_idle(single: Explanation, cost: float) -> Explanation:
+    """Without the instants of recordings that do not clearly ask for them: where it might as well act always or never.
+
+    Where only one recording asks, it is a spell of the sequence.
+    """
+    for r in range(len(single.measured.recordings)):
+        *others, candidate = single.candidates
+        assert isinstance(candidate.spell, InEach)
+        intervals = candidate.spell.intervals
+        if intervals[r] in (ALWAYS, NEVER):
+            continue
+        cheaper = replace(single, candidates=(*others, replace(candidate, price=candidate.price - cost)))
+        whole = [InEach((*intervals[:r], one, *intervals[r + 1 :])) for one in (ALWAYS, NEVER)]
+        simpler = [again(refitted_in(cheaper, spell)) for spell in whole]
+        if not all(_asks(single, one) for one in simpler):
+            single = min(simpler, key=adjusted)
+    return single
+
+
+def _asks(single: Explanation, simpler: Explanation) -> bool:
+    """Whether more than one window speaks for the instants, or one that fits to the noise with them, badly without."""
+    largest = float(gain_by_window(simpler, single).max())
+    gain = adjusted(simpler) - adjusted(single)
+    return gain - largest >= MISSING or (gain >= MISSING and settles(simpler, single))
 
 
 def _as(single: Explanation, leader: Explanation) -> Explanation | None:

@@ -5,17 +5,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import product
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from diagnosis.answer.result import EffectStage
 from diagnosis.answer.when import LASTS, may_change_again, stages_of, when_text
-from diagnosis.search import beginnings
+from diagnosis.search import beginnings, in_each
 from diagnosis.search.asked import asked_for
 from diagnosis.search.budget import ENDED
 from diagnosis.search.found import MISSING, Search, adjusted
-from diagnosis.search.in_each import _plain, in_own_runs
+from diagnosis.search.in_each import _asks, _plain, _without_idle, in_own_runs
 from diagnosis.search.refit import Explanation, extend
 from diagnosis.search.runs import runs_of
 from diagnosis.search.spells import ALWAYS, NEVER, InEach, Spell, holds, interval_of
@@ -72,6 +74,52 @@ def test_what_acts_for_a_moment_in_every_test_is_a_blow() -> None:
     found, yielded = searched(recordings, shortest=5.0)
     assert yielded == [] and found.best is None and found.blow is not None
     assert found.blow.stronger.endswith(" of b") and " of a and from " in found.blow.stronger
+
+
+def test_recordings_that_ask_for_their_instants_keep_them(dashpot: tuple[Search, list[Search]]) -> None:
+    best = dashpot[1][-1].best
+    assert best is not None
+    kept = _without_idle(best, best.candidates[0].price / 2)
+    assert kept.candidates[0].spell == best.candidates[0].spell and adjusted(kept) <= adjusted(best) + 1e-6
+
+
+@pytest.mark.parametrize(
+    ("gains", "fits_in_it", "asks"),
+    [
+        ([60.0, 25.0, 1.0], False, True),
+        ([60.0, 5.0, 1.0], False, False),
+        ([60.0, 5.0, 1.0], True, True),
+        ([9.0, 3.0, 1.0], True, False),
+    ],
+)
+def test_one_window_asks_only_where_it_fits_with_the_instants_and_badly_without(
+    gains: list[float], fits_in_it: bool, asks: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    single: Any = SimpleNamespace(loss=0.0)
+    simpler: Any = SimpleNamespace(loss=sum(gains))
+    monkeypatch.setattr(in_each, "gain_by_window", lambda *_: np.array(gains))
+    monkeypatch.setattr(in_each, "adjusted", lambda e: e.loss)
+    monkeypatch.setattr(in_each, "settles", lambda *_: fits_in_it)
+    assert _asks(single, simpler) is asks
+
+
+def test_instants_that_hardly_count_are_taken_off(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is left is a spell then, which is sought apart."""
+    staged: Any = replace(screened()[0].candidate, spell=InEach(((2.0, 4.0), (0.0, 8.0))), price=12.0)
+    measured: Any = SimpleNamespace(recordings=[0, 1])
+    single = Explanation((staged,), SimpleNamespace(measured=measured, loss=0.0))  # type: ignore[arg-type]
+    losses = {((2.0, 4.0), ALWAYS): 5.0, ((2.0, 4.0), NEVER): 40.0}
+
+    def refitted(one: Explanation, spell: InEach) -> Explanation:
+        fitted: Any = SimpleNamespace(measured=measured, loss=losses.get(spell.intervals, 300.0))
+        return replace(one, candidates=(replace(one.candidates[0], spell=spell),), fitted=fitted)
+
+    monkeypatch.setattr(in_each, "refitted_in", refitted)
+    monkeypatch.setattr(in_each, "again", lambda one: one)
+    monkeypatch.setattr(in_each, "_asks", lambda one, other: other.loss - one.loss > 15.0)
+    left = _without_idle(single, 6.0).candidates[0]
+    assert isinstance(left.spell, InEach) and left.spell.intervals == ((2.0, 4.0), ALWAYS)
+    assert left.spell.is_spell and left.price == 6.0
 
 
 def test_what_the_budget_does_not_reach_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
