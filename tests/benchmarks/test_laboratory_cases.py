@@ -181,7 +181,7 @@ def test_what_begins_acts_in_its_intervals_alone() -> None:
 def test_every_kind_of_beginning_is_asked_for_alike() -> None:
     designs = beginnings.suite(5)
     counts = Counter(d.beginning for d in designs if d.beginning)
-    assert len(counts) == 10 and set(counts.values()) == {beginnings.EACH} and counts.total() >= 40
+    assert len(counts) == 12 and set(counts.values()) == {beginnings.EACH} and counts.total() >= 40
     assert sum(d.kind == "null" for d in designs) == beginnings.NULLS
     for name in beginnings.BEGINNINGS:
         assert set(beginnings.BEGINNINGS[name].ends) <= set(CATALOGUE[beginnings.BEGINNINGS[name].effect].ends)
