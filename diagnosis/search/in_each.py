@@ -2,7 +2,8 @@
 
 Screened as in runs of the whole sequence (`diagnosis.search.runs`), with one run of windows in every recording, or
 none: with one amplitude for all, the run of each recording in which the statistic of all together is largest, the
-others held, in turn. As every recording has a run to choose, each costs what the choice of one spell does.
+others held, in turn, from all windows on. As every recording has a run to choose, each costs what the choice of one
+spell does.
 """
 
 from __future__ import annotations
@@ -38,15 +39,6 @@ class InOwnRuns:
     statistic: float
     amplitude: float
     spell: InEach
-
-    @property
-    def start(self) -> FloatArray:
-        """Coordinates (d,) worth a refit."""
-        if self.score.slope:
-            start = self.score.candidate.null
-            start[0] += self.amplitude
-            return start
-        return self.score.starts[0] if self.score.starts or self.score.trial is None else self.score.trial
 
 
 def in_each(
@@ -169,7 +161,7 @@ def _from_screen(
     for one in sorted(worth.values(), key=lambda entry: -entry.statistic)[:MOST]:
         staged = replace(one.score.candidate, spell=one.spell, price=price)
         try:
-            single = extend(start, staged, one.start, QUICK)
+            single = extend(start, staged, one.score.starts_from(one.amplitude)[0], QUICK)
             yield moved(by_white_noise(single, found.errors) if found.best is None else single)
         except InputError:  # it cannot change within a recording
             continue
@@ -187,9 +179,7 @@ def in_own_runs(screen: Linearisation, scores: Sequence[Score], measured: Measur
     found = []
     for one in scores:
         column = _Column.of(screen, one)
-        everywhere = np.ones(recording_of.size, bool)
-        starts = [everywhere, *(column.by_itself(choices, sign) for sign in (1, -1))]
-        statistic, acting = max((column.climbed(choices, start) for start in starts), key=lambda entry: entry[0])
+        statistic, acting = column.climbed(choices, np.ones(recording_of.size, bool))
         amplitude = float(column.statistics(acting[None])[1][0])
         found.append(InOwnRuns(one, statistic, amplitude, _spell(measured, acting)))
     return sorted(found, key=lambda entry: -entry.statistic)
@@ -240,14 +230,6 @@ class _Column:
         amplitude = -amount / np.where(usable, free, np.inf)
         right = usable & ((self.side * amplitude >= 0.0) if self.side else True)
         return np.where(right, amplitude**2 * free, 0.0), amplitude
-
-    def by_itself(self, choices: Mapping[int, NDArray[np.bool_]], sign: int) -> NDArray[np.bool_]:
-        """Each recording's best run without regard to the others (W,), the amplitude of this sign."""
-        acting = np.zeros(self.information.size, bool)
-        for rows in choices.values():
-            statistic, amplitude = self.statistics(rows)
-            acting |= rows[int(np.argmax(np.where(sign * amplitude > 0.0, statistic, -1.0)))]
-        return acting
 
     def climbed(
         self, choices: Mapping[int, NDArray[np.bool_]], acting: NDArray[np.bool_]

@@ -40,14 +40,7 @@ class InRuns:
 
     def starts(self, run: int) -> list[FloatArray]:
         """Coordinates (d,) worth a refit in one run."""
-        found = list(self.score.starts[:1])
-        if not found and self.score.trial is not None:
-            found.append(self.score.trial)
-        if self.score.slope:
-            start = self.score.candidate.null
-            start[0] += self.amplitude[run]
-            found.insert(0, start)
-        return found
+        return self.score.starts_from(float(self.amplitude[run]))
 
 
 def runs(windows: int) -> NDArray[np.int64]:

@@ -46,6 +46,17 @@ class Score:
     work: float = 0.0
     trial: FloatArray | None = None
 
+    def starts_from(self, amplitude: float) -> list[FloatArray]:
+        """Coordinates (d,) worth a refit in a part of the recordings, from its ``amplitude`` there along the column."""
+        found = list(self.starts[:1])
+        if not found and self.trial is not None:
+            found.append(self.trial)
+        if self.slope:
+            start = self.candidate.null
+            start[0] += amplitude
+            found.insert(0, start)
+        return found
+
 
 def score(
     screen: Linearisation, candidates: Sequence[Candidate], not_tried: dict[str, str] | None = None
