@@ -236,7 +236,8 @@ class Rung:
     """Another base model that recordings may ask for in the place of this one: the next rung of a ladder.
 
     ``name``: as an effect of an answer, and its class. ``model`` with ``options``: the other model. ``parameters``:
-    what this model has no number for, the one that tells most first, each searched in its ``ranges`` for the specimen.
+    what this model has no number for, the one that tells most first, each searched in its ``ranges`` for the specimen,
+    and from the ``likely`` values of some of them.
     ``carried_over(specimen's parameters, these)``: the parameters of the other model. ``without``: parameters of this
     model that mean nothing to the other. ``recorded``, ``not_recorded``: channels that decide whether this rung is the
     one to try. ``alike``: states of the other model that begin a window as another one does where their channel is not
@@ -251,6 +252,7 @@ class Rung:
     parameters: tuple[MechanismParameter, ...]
     ranges: Callable[[Numbers], Mapping[str, tuple[float, float]]]
     carried_over: Callable[[Numbers, Numbers], dict[str, float]]
+    likely: Callable[[Numbers], Mapping[str, float]] = lambda values: {}
     options: Mapping[str, str] = field(default_factory=dict)
     without: tuple[str, ...] = ()
     recorded: tuple[str, ...] = ()

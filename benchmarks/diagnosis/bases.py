@@ -34,7 +34,7 @@ COMPRESSION = (2e-4, 1.5e-3)
 ROTATIONS = ("rotation_1", "rotation_2")
 TOLERANCE = {
     "width": 0.005, "height": 0.005, "mass": 0.01, "top_mass": 0.005, "wall_length": 0.005, "wall_height": 0.005,
-    "wall_mass": 0.01, "top_length": 0.005, "top_height": 0.005,
+    "wall_mass": 0.01, "top_length": 0.005, "top_height": 0.005, "top_mass_height": 0.005, "top_mass_inertia": 0.01,
 }  # fmt: skip
 
 

@@ -36,6 +36,8 @@ class AsItWas:
     offset: FloatArray
 
 
+UNSEEN = 4.0
+"""Scatter of a state whose channel is not recorded over that of the state it begins as."""
 FIRST = 4.0
 """Over the least errors that are assumed: what residuals are weighed with at first."""
 
@@ -298,10 +300,11 @@ def for_model(measured: Measured, model: Model, alike: Mapping[str, str], bonded
     states = {state.name: state for state in declared.free}
     used = [states[alike.get(name, name)] for name in found.free]
     start = np.stack([start_of(measured.recordings, measured.windows, state) for state in used], axis=1)
+    unseen = np.array([UNSEEN if name in alike else 1.0 for name in found.free])
     return replace(
         found,
         states=start,
-        state_size=np.maximum(np.std(start, axis=0), 1e-12),
+        state_size=np.maximum(unseen * np.std(start, axis=0), 1e-12),
         memory=memories(measured.recordings, measured.windows, declared, lengths) if lengths else {},
     )
 

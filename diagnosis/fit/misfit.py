@@ -100,6 +100,11 @@ class Misfit:
         """The same with events taken to be as the law has them."""
         return replace(self, predictor=replace(self.predictor, measured=self.measured.undisturbed))
 
+    def of_windows(self, windows: NDArray[np.intp]) -> Misfit:
+        """The loss of some of the windows alone; one may be among them more than once."""
+        predictor = replace(self.predictor, measured=self.measured.of_windows(windows))
+        return replace(self, predictor=predictor, whitening=self.whitening.of_windows(windows))
+
     def at_level(self, level: FloatArray) -> Misfit:
         return replace(self, whitening=replace(self.whitening, level=level)) if level.size else self
 

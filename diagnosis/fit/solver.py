@@ -29,6 +29,8 @@ TOLERANCE = 0.02
 """Gain in 2 log likelihood, expected or reached in two iterations, under which the fit ends."""
 BADLY, SCATTERED = 1.5, 256
 """Squared misfit per sample of a stuck window (over that of most windows), and the states tried for it."""
+PROMISING, AT_STUCK = 2, 6
+"""So many a state of the best of them, and the measured one, are fitted this many iterations on, parameters held."""
 SCATTERINGS = 3
 NEAR, GOOD = 0.1, 0.75
 """Where all ahead is such a share of the loss the whole step alone is tried, and taken if it gains as much of it."""
@@ -87,8 +89,8 @@ def fit_thoroughly(misfit: Misfit, u: FloatArray, states: FloatArray) -> Fitted:
 def scatter(found: Fitted, seed: int) -> FloatArray | None:
     """States (W, S) with better ones for windows that misfit badly; None if there are none.
 
-    Around where they are and around those measured: a fit may have left these for a motion with other events, under
-    parameters or errors that it no longer has, and lie many deviations away.
+    The best of fits from scattered states, around where they are and around those measured: a fit may have left these
+    for a motion with other events, under parameters or errors that it no longer has, and lie many deviations away.
     """
     misfit, m = found.misfit, found.measured
     if not found.states.shape[1]:
@@ -101,12 +103,22 @@ def scatter(found: Fitted, seed: int) -> FloatArray | None:
     width = m.state_size * np.where(np.arange(SCATTERED) % 2 == 0, 0.05, 0.25)[:, None]
     around = np.where((np.arange(SCATTERED) // 2 % 2 == 0)[:, None, None], found.states, m.states)
     trials = around + (draws * width)[:, None, :]
-    losses = misfit.losses(misfit.residuals([misfit.point(found.u, x) for x in trials], only=bad))
-    pick = np.argmin(losses, axis=0)
-    better = bad & (losses.min(axis=0) < found.window_losses - 1.0)
+
+    def losses(states: FloatArray) -> FloatArray:
+        return misfit.losses(misfit.residuals([misfit.point(found.u, x) for x in states], only=bad))
+
+    stuck, count = np.flatnonzero(bad), PROMISING * m.states.shape[1]
+    starts = np.repeat(m.states[None], count + 1, axis=0)
+    starts[1:, stuck] = trials[np.argsort(losses(trials)[:, stuck], axis=0)[:count], stuck]
+    tried = found.frozen.of_windows(np.tile(stuck, len(starts)))
+    ends = fit(tried, np.zeros(0), starts[:, stuck].reshape(-1, starts.shape[2]), AT_STUCK).states
+    starts[:, stuck] = ends.reshape(len(starts), stuck.size, -1)
+    ended = losses(starts)
+    pick = np.argmin(ended, axis=0)
+    better = bad & (ended.min(axis=0) < found.window_losses - 1.0)
     if not better.any():
         return None
-    return np.where(better[:, None], trials[pick, np.arange(pick.size)], found.states)
+    return np.where(better[:, None], starts[pick, np.arange(pick.size)], found.states)
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ Econometrica 68, 575-603, 2000).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -88,7 +88,7 @@ def _end(
     windows = np.arange(max(at - AROUND, 0), min(at + AROUND, len(m.windows) - 1) + 1)
     if within:
         windows = windows[m.recording_of[windows] == spell.first]
-    part = _of_windows(misfit, windows)
+    part = misfit.of_windows(windows)
     moved = [(spell.beginning if begin else spell.ending)(*instant) for instant in _instants(m, windows, begin)]
     moved = [one for one in moved if not one.empty]
 
@@ -162,9 +162,3 @@ def _instants(m: Measured, windows: NDArray[np.int64], begin: bool) -> Sequence[
     if not begin and (last + 1 == len(m.windows) or m.recording_of[last + 1] != m.recording_of[last]):
         found.append((int(m.recording_of[last]), None))
     return found
-
-
-def _of_windows(misfit: Misfit, windows: NDArray[np.int64]) -> Misfit:
-    """The misfit over some windows alone."""
-    whitening = misfit.whitening.of_windows(windows)
-    return replace(misfit, predictor=replace(misfit.predictor, measured=whitening.measured), whitening=whitening)

@@ -20,11 +20,12 @@ from diagnosis.data.measured import Measured, for_model, identification_of
 from diagnosis.errors.adequacy import inadequacy
 from diagnosis.errors.comparison import by_window, deviance
 from diagnosis.errors.model import Errors, disturbance_about, refitted
+from diagnosis.fit.growing import fit_growing
 from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.prediction import Predictor
 from diagnosis.fit.setup import with_noise_of_the_base
-from diagnosis.fit.solver import fit, fit_thoroughly
-from diagnosis.fit.starts import Origin, best_start
+from diagnosis.fit.solver import Fitted, fit, fit_thoroughly
+from diagnosis.fit.starts import Origin, nominal, searched
 from diagnosis.fit.unknowns import clip, fixed_values, in_range, of_specimen
 from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.progress import Progress
@@ -45,7 +46,6 @@ LEFT = 1.5
 """Misfit per sample, over the sensors' noise, from which on other base models are tried."""
 DECISIVE = 2.0
 """Gain over that of the best single mechanism with which another base model that errs nowhere ends the search."""
-HOPELESS = "after a short search it explains less of the recordings than the base model"
 WORSE = "it explains less of the recordings than what was found with the base model"
 PER_STATE = 2.0
 """What every state that a window starts from beyond those of the base model costs."""
@@ -190,21 +190,30 @@ def _fitted(
 ) -> Explanation:
     """The other model on the same windows, as an explanation with one effect: the rung.
 
-    Its search goes on from the base model and the rungs ``below``, too. Raises InputError where it does worse than the
-    base model, or in the end than what was ``found``, all against white noise of the sensors.
+    Its search goes on from the base model and the rungs ``below``, too, and from what is likely. Raises InputError
+    where it does worse than what was ``found``, all against white noise of the sensors.
     """
     base_model = below[0]
     plain = _misfit(rung, specimen, base_model.measured, recordings)
-    start = best_start(plain, seed, [_origin(plain, one) for one in below])
-    if start.loss > base_model.loss:
-        raise InputError(HOPELESS)
-    fitted = fit_thoroughly(plain, start.u, start.states)
+    origins = [nominal(plain), *(_origin(plain, one) for one in below)]
+    likely = {f"{rung.name}.{name}": value for name, value in rung.likely(_nominal(specimen)).items()}
+    places = [origins]
+    if likely:
+        places.append([_with(plain, origin, likely) for origin in origins])
+    fitted = min((_searched(plain, place, seed) for place in places), key=lambda one: one.loss)
     if fitted.loss > found.loss:
         raise InputError(WORSE)
     own = tuple(x for x in plain.unknowns if x.name.startswith(f"{rung.name}."))
     states = len(plain.measured.free) - len(base_model.measured.free)
     price = PER_STATE * (states * len(plain.measured.windows) + 1)
     return Explanation((Candidate(rung.mechanism, own, {}, price=price),), with_noise_of_the_base(fitted))
+
+
+def _searched(plain: Misfit, origins: Sequence[Origin], seed: int) -> Fitted:
+    if plain.measured.identification.chaotic:
+        return fit_growing(plain, origins, seed)
+    start = searched(plain, origins, seed)
+    return fit_thoroughly(plain, start.u, start.states)
 
 
 def _misfit(rung: Rung, specimen: Specimen, measured: Measured, recordings: Sequence[Recording]) -> Misfit:
@@ -218,6 +227,14 @@ def _misfit(rung: Rung, specimen: Specimen, measured: Measured, recordings: Sequ
     base = tuple(x for x in of_specimen(specimen, measured.model) if x.name not in rung.without)
     predictor = Predictor(seen, _options(rung, specimen.options), specimen.stages, rung=rung)
     return Misfit(predictor, sensor_noise_only(predictor), (*base, *own), fixed_values(specimen))
+
+
+def _with(misfit: Misfit, origin: Origin, values: Mapping[str, float]) -> Origin:
+    """The same start with some ``values`` known."""
+    own = [(x.coordinate(values[x.name]), True) if x.name in values else None for x in misfit.unknowns]
+    given = [one or (u, known) for one, u, known in zip(own, origin.u, origin.known, strict=True)]
+    u, known = (np.array(each) for each in zip(*given, strict=True))
+    return replace(origin, u=clip(misfit.unknowns, u), known=known)
 
 
 def _origin(misfit: Misfit, below: Explanation) -> Origin:

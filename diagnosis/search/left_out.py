@@ -10,10 +10,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from diagnosis.data.measured import Measured
-from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.solver import ITERATIONS, fit
 from diagnosis.search.refit import Explanation
 
@@ -53,17 +51,11 @@ def error_left_out(explanation: Explanation, recording: int) -> float:
     f, m = explanation.fitted, explanation.measured
     own = np.flatnonzero(m.recording_of == recording)
     others = np.flatnonzero(m.recording_of != recording)
-    learned = fit(_of_windows(f.misfit, others), f.u, f.states[others])
-    alone = _of_windows(f.misfit.at_level(learned.misfit.level), own)
+    learned = fit(f.misfit.of_windows(others), f.u, f.states[others])
+    alone = f.misfit.at_level(learned.misfit.level).of_windows(own)
     alone = replace(alone, unknowns=(), fixed={**f.misfit.fixed, **learned.values}, smooth=None)
     shown = fit(alone, np.zeros(0), f.states[own], ITERATIONS if f.states.shape[1] else 0)
     error = alone.predictor.predict([shown.point])[0] - m.values[own]
     rms = [np.sqrt(np.mean(m.recordings[recording].channels[c] ** 2)) for c in m.channels]
     relative = np.where(np.isfinite(error), error, np.inf) / np.maximum(rms, 1e-300)[:, None]
     return float(np.sqrt(np.mean(np.minimum(relative**2, 1.0)[m.mask[own]])))
-
-
-def _of_windows(misfit: Misfit, windows: NDArray[np.intp]) -> Misfit:
-    """The loss of some of the windows alone."""
-    predictor = replace(misfit.predictor, measured=misfit.measured.of_windows(windows))
-    return replace(misfit, predictor=predictor, whitening=misfit.whitening.of_windows(windows))

@@ -64,8 +64,16 @@ def on_layers(block: Numbers, own: Numbers) -> dict[str, float]:
 
 def joints(block: Numbers) -> dict[str, tuple[float, float]]:
     """Where a joint may be."""
-    above = min(block.get("top_mass_height", 0.0), block.get("top_mass", 0.0)) > 0.0
-    return {JOINT.name: (LOWEST, 1.0 if above else HIGHEST)}
+    return {JOINT.name: (LOWEST, 1.0 if _something_on_top(block) else HIGHEST)}
+
+
+def under_the_top(block: Numbers) -> dict[str, float]:
+    """Where a joint is the likeliest: under what stands on the block."""
+    return {JOINT.name: 1.0} if _something_on_top(block) else {}
+
+
+def _something_on_top(block: Numbers) -> bool:
+    return min(block.get("top_mass_height", 0.0), block.get("top_mass", 0.0)) > 0.0
 
 
 def whole_load(block: Numbers) -> tuple[float, float]:
@@ -101,6 +109,7 @@ LADDER = (
         sentence="a second body moves on the first, from a joint at {joint_over_height:.0%} of the height on",
         parameters=(JOINT,),
         ranges=joints,
+        likely=under_the_top,
         carried_over=stacked,
         without=LAWS_OF_RESTITUTION,
         alike={"rotation_2": "rotation_1", "rotation_rate_2": "rotation_rate_1"},
@@ -120,6 +129,7 @@ LADDER = (
     compliant(
         parameters=(*BASE, *TOP, JOINT),
         ranges=both_layers,
+        likely=under_the_top,
         carried_over=on_layers,
         without=("restitution", *LAWS_OF_RESTITUTION),
         recorded=("rotation_2",),

@@ -11,7 +11,7 @@ import pytest
 import models
 from diagnosis.answer.ladder import confirmed, other_model
 from diagnosis.errors.model import Errors, calibrated
-from diagnosis.fit.setup import measure
+from diagnosis.fit.setup import base_fit, measure
 from diagnosis.fit.solver import Fitted, fit_thoroughly
 from diagnosis.fit.starts import best_start
 from diagnosis.forces.columns import forces
@@ -57,12 +57,12 @@ def recorded(model: str, rotations: int) -> Recording:
 
 
 @cache
-def base_fit(model: str, rotations: int) -> tuple[Fitted, Errors]:
+def calibrated_fit(model: str, rotations: int) -> tuple[Fitted, Errors]:
     return calibrated(PIER, measure(PIER, [recorded(model, rotations)]))
 
 
 def test_rubber_under_a_pier_is_named_with_its_stiffness_and_the_answer_is_a_specimen() -> None:
-    fitted, errors = base_fit("interface", 1)
+    fitted, errors = calibrated_fit("interface", 1)
     found = Search(Explanation((), fitted), (), errors)
     pier = PIER.parameters
     rung = next(r for r in fitted.measured.identification.ladder if r.bonded)
@@ -89,13 +89,13 @@ def test_rubber_under_a_pier_is_named_with_its_stiffness_and_the_answer_is_a_spe
 
 def test_a_block_that_is_one_stays_one_whatever_is_tried(monkeypatch: pytest.MonkeyPatch) -> None:
     """Both rotations of one body are alike: a joint in it, which may open, and rubber explain no more."""
-    fitted, errors = base_fit("housner", 2)
+    fitted, errors = calibrated_fit("housner", 2)
     assert fitted.measured.channels == ("rotation_1", "rotation_2")
     found = Search(Explanation((), fitted), (), errors)
     monkeypatch.setattr(ladder, "LEFT", 0.0)
     tried = ladder.rungs(found, PIER, [], 0, silent)
     assert {rung.name for rung, _ in tried} | set(found.not_tried) == {"second_body", "compliant_base"}
-    assert all(why in (ladder.WORSE, ladder.HOPELESS) for why in found.not_tried.values())
+    assert all(why == ladder.WORSE for why in found.not_tried.values())
     two = ladder._misfit(fitted.measured.identification.ladder[0], PIER, fitted.measured, fitted.measured.recordings)
     base = ladder._plain(found.base)
     start = best_start(two, 0, [ladder._origin(two, base)])
@@ -107,7 +107,7 @@ def test_a_block_that_is_one_stays_one_whatever_is_tried(monkeypatch: pytest.Mon
 
 
 def test_a_rung_goes_on_from_what_the_one_below_has_found() -> None:
-    fitted, _ = base_fit("housner", 2)
+    fitted, _ = calibrated_fit("housner", 2)
     one, two = (r for r in fitted.measured.identification.ladder if ladder._meant_for(r, fitted.measured.recordings))
     base = ladder._plain(Explanation((), fitted))
     below = ladder._fitted(one, PIER, [base], base, fitted.measured.recordings, 0)
@@ -123,7 +123,7 @@ def test_a_rung_goes_on_from_what_the_one_below_has_found() -> None:
 
 
 def test_nothing_is_tried_where_the_base_model_explains_the_recordings() -> None:
-    fitted, errors = base_fit("housner", 2)
+    fitted, errors = calibrated_fit("housner", 2)
     found = Search(Explanation((), fitted), (), errors)
     assert ladder.rungs(found, PIER, [], 0, silent) == [] and not found.not_tried
 
@@ -135,3 +135,40 @@ def test_rungs_that_cannot_be_tried_say_why() -> None:
         assert not ladder._refusal(rung, PIER)
         fits = ladder._meant_for(rung, [recorded("housner", 1)]), ladder._meant_for(rung, [recorded("housner", 2)])
         assert fits in [(True, True), (True, False), (False, True)]
+
+
+ON_TOP = {
+    "wall_length": 0.354, "wall_height": 1.41, "wall_mass": 458.0, "top_mass": 200.0, "top_length": 0.236,
+    "top_height": 0.93,
+}  # fmt: skip
+AS_BLOCK = Specimen(
+    "wall", "housner",
+    {"width": 0.354, "height": 1.41, "mass": 455.0, "top_mass": 200.0, "top_mass_height": 0.465,
+     "top_mass_inertia": 200.0 * (0.236**2 + 0.93**2) / 12.0},
+    {"width": 0.005, "height": 0.005, "mass": 0.01},
+)  # fmt: skip
+
+
+@cache
+def rocking_on_top(seed: int, both: bool) -> Recording:
+    strong = motion(seed, duration=7.0, pga=4.5).horizontal
+    base = Shaking(TIME_STEP, np.concatenate([np.zeros(round(REST / TIME_STEP)), strong]))
+    ran = models.get("stacked").simulate(ON_TOP, base, duration=base.duration)
+    rng = np.random.default_rng(seed)
+    channels = {"base_acceleration_x": base.horizontal}
+    for name in ("rotation_1", "rotation_2")[: 1 + both]:
+        rotation = np.asarray(ran.channels[name])
+        channels[name] = rotation + 0.01 * np.max(np.abs(rotation)) * rng.normal(size=rotation.size)
+    return Recording(f"run_{seed}", TIME_STEP, base.time, channels)
+
+
+@pytest.mark.parametrize("both", [True, False])
+def test_what_rocks_on_the_block_is_found_where_it_stands(both: bool) -> None:
+    """Its valley is narrow: windows of full length end at motions with other events, and the joint elsewhere."""
+    recordings = [rocking_on_top(seed, both) for seed in (1, 2)]
+    base = ladder._plain(Explanation((), base_fit(AS_BLOCK, measure(AS_BLOCK, recordings))))
+    rung = base.measured.identification.ladder[0]
+    found = ladder._fitted(rung, AS_BLOCK, [base], base, recordings, 0).fitted
+    samples = float(found.measured.count.sum())
+    assert found.loss - samples < 0.1 * (base.loss - samples)
+    assert found.values["second_body.joint_over_height"] == pytest.approx(1.0, abs=0.01)
