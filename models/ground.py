@@ -82,7 +82,7 @@ def pitched_pieces(
     horizontal, psi = scale * shaking.horizontal, np.zeros((2, shaking.horizontal.size))
     vertical = np.zeros_like(horizontal) if shaking.vertical is None else shaking.vertical
     if per_acceleration != 0.0:
-        psi = per_acceleration * np.stack(pitch(horizontal, shaking.time_step, low_pass))
+        psi = per_acceleration * scale * np.stack(pitch(shaking, low_pass))
     samples = np.stack([offset + horizontal, gravity + factor * scale * vertical, *psi])
     for low, high in straight(samples):
         start, end = low * shaking.time_step, high * shaking.time_step

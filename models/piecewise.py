@@ -45,20 +45,24 @@ def in_force(parts: Sequence[Part], first: int) -> list[Part]:
     return [Part(max(0, one.first - first), one.values) for one in parts[begun:]]
 
 
-def check(model: Model[Any], parts: Sequence[Values]) -> None:
-    """Raises InputError where a run with one of these sets of values cannot be cut."""
+def cannot_be_cut(model: Model[Any], parts: Sequence[Values]) -> str:
+    """Why a run with these sets of values, one after the other, cannot be cut; empty where it can, or has one alone."""
+    if len(parts) < 2:
+        return ""
     allowed = model.resumes_with
     if allowed is None:
-        raise InputError(
+        return (
             f"a run of model '{model.name}' cannot be cut at an instant: its states do not hold all that it "
             "remembers; leave the stages out."
         )
     used = {name.partition(".")[0] for values in parts for name in values if "." in name}
-    if kept := sorted(used - set(allowed)):
-        raise InputError(
-            f"a run with {kept[0]} cannot be cut at an instant: {kept[0]} remembers more than the motion; leave the "
-            f"stages out, or {kept[0]}."
-        )
+    kept = sorted(used - set(allowed))
+    if not kept:
+        return ""
+    return (
+        f"a run with {kept[0]} cannot be cut at an instant: {kept[0]} remembers more than the motion; leave the "
+        f"stages out, or {kept[0]}."
+    )
 
 
 def simulate(
@@ -77,8 +81,8 @@ def simulate(
     step = shaking.time_step
     last = round((shaking.duration + tail if duration is None else duration) / step)
     parts = [one for one in parts if one.first < last or one.first == 0]
-    if len(parts) > 1:
-        check(model, [one.values for one in parts])
+    if why := cannot_be_cut(model, [one.values for one in parts]):
+        raise InputError(why)
     ends = [*(one.first for one in parts[1:]), last]
     state: Mapping[str, Any] = {name: np.array([value], float) for name, value in (initial or {}).items()}
     found: list[History] = []
@@ -103,7 +107,10 @@ def begun_at(shaking: Shaking, first: int) -> Shaking:
 
     shaking = shaking.lines  # before it is cut
     vertical = None if shaking.vertical is None else part(shaking.vertical)
-    return replace(shaking, horizontal=part(shaking.horizontal), vertical=vertical)
+    earlier = None
+    if first + 1 < shaking.horizontal.size:  # beyond the end filters give nothing
+        earlier = np.append([] if shaking.earlier is None else shaking.earlier, shaking.horizontal[:first])
+    return replace(shaking, horizontal=part(shaking.horizontal), vertical=vertical, earlier=earlier)
 
 
 def _lies(part: History) -> bool:
@@ -189,7 +196,8 @@ def trajectories(
     n, end = first.size, first + samples - 1
     edges = [first, *(np.clip(changes[:, j], first, end) for j in range(len(parts) - 1)), end]
     if np.any(np.count_nonzero(np.diff(edges, axis=0) > 0, axis=0) > 1):
-        check(model, parts)
+        if why := cannot_be_cut(model, parts):
+            raise InputError(why)
     state = {name: by_lane(v, n).copy() for name, v in initial.items()}
     pieces: list[_Piece] = []
     for values, start, stop in zip(parts, edges[:-1], edges[1:], strict=True):

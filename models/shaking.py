@@ -26,7 +26,8 @@ class Shaking:
     at times 0, time_step, 2 time_step ... Before the first and after the last sample the base is
     at rest (zero acceleration). ``vertical_acts`` false: the base model leaves the vertical component
     out, and only the mechanism `vertical_acceleration` looks at it. ``band_limited``: the samples are of a smooth
-    motion without content above half the sampling frequency, as a recording is.
+    motion without content above half the sampling frequency, as a recording is. ``earlier`` (m,): horizontal samples
+    before time 0 of a motion that was cut, for filters over the whole record; nothing else reads them.
     """
 
     time_step: float
@@ -34,6 +35,7 @@ class Shaking:
     vertical: NDArray[np.float64] | None = None
     vertical_acts: bool = True
     band_limited: bool = False
+    earlier: NDArray[np.float64] | None = None
 
     def __post_init__(self) -> None:
         for name in ("horizontal", "vertical"):
@@ -96,8 +98,8 @@ class Shaking:
 
     def scaled(self, factor: float) -> Shaking:
         """The same motion with both components times ``factor``."""
-        vertical = None if self.vertical is None else factor * self.vertical
-        return replace(self, horizontal=factor * self.horizontal, vertical=vertical)
+        vertical, earlier = (None if x is None else factor * x for x in (self.vertical, self.earlier))
+        return replace(self, horizontal=factor * self.horizontal, vertical=vertical, earlier=earlier)
 
     @property
     def pga(self) -> float:

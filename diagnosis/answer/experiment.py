@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.answer.whole_runs import sensed_run
+from diagnosis.answer.whole_runs import no_run, sensed_run
 from diagnosis.data.measured import Measured, arrange
 from diagnosis.errors.model import Errors
 from diagnosis.fit.intervals import covariances
@@ -91,7 +91,9 @@ def _made(
     explanation: Explanation, recording: Recording, scale: float, channels: Sequence[str],
     planned: Mapping[str, Place] | None = None,
 ) -> Recording | None:  # fmt: skip
-    """What the explanation predicts for a base motion, with noise as recorded or assumed."""
+    """What the explanation predicts for a base motion, with noise as recorded or assumed; None: nothing to compare."""
+    if no_run(explanation, recording):
+        return None
     measured = explanation.measured
     base = {k: v * scale for k, v in recording.channels.items() if k.startswith("base_acceleration")}
     motion = replace(recording, channels={**recording.channels, **base})

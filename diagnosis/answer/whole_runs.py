@@ -17,13 +17,16 @@ from grids.instruments.staged import moved_in_stages, recorded_in_stages
 from grids.recordings.base import FloatArray, Recording
 from grids.specimen import Specimen
 from models.kinematics import Place, ground_along
-from models.piecewise import simulate
+from models.piecewise import cannot_be_cut, simulate
 
 
 def with_runs_from_rest(
     specimen: Specimen, shown: Sequence[Shown], before: Explanation, after: Explanation
 ) -> tuple[Trace, ...]:
-    """The traces of all recordings with the runs from the specimen's initial state beside them."""
+    """The traces of all recordings with the runs from the specimen's initial state beside them.
+
+    Without them where a run cannot be cut at an instant at which something begins to act.
+    """
     found: list[Trace] = []
     for k, each in enumerate(shown):
         if each.measured.stretches is not None:  # they are runs from rest
@@ -31,14 +34,26 @@ def with_runs_from_rest(
             continue
         runs: dict[str, list[dict[str, FloatArray]]] = {}
         for recording in each.measured.recordings:
+            ways = ((before, ()), (after, each.held_stages))
+            if any(no_run(e, recording, held) for e, held in ways):
+                continue
             runs[recording.name] = [
                 sensed_run(e, each.measured, recording, each.measured.channels, specimen.initial, held)
-                for e, held in ((before, ()), (after, each.held_stages))
+                for e, held in ways
             ]
         for trace in traces_of(each, held_out=k == 1):
-            pair = [run[trace.channel] for run in runs[trace.recording]]
-            found.append(replace(trace, from_rest_before=pair[0], from_rest_after=pair[1]))
+            if trace.recording in runs:
+                pair = [run[trace.channel] for run in runs[trace.recording]]
+                trace = replace(trace, from_rest_before=pair[0], from_rest_after=pair[1])
+            found.append(trace)
     return tuple(found)
+
+
+def no_run(explanation: Explanation, recording: Recording, held: Sequence[HeldStage] = ()) -> str:
+    """Why there is no run of a recording from rest: it cannot be cut where something begins to act; empty: there is."""
+    fitted = explanation.fitted
+    parts = with_held(fitted.misfit.predictor, held).parts(fitted.point.values, recording)
+    return cannot_be_cut(explanation.measured.model, [one.values for one in parts])
 
 
 def sensed_run(

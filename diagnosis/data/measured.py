@@ -143,6 +143,11 @@ class Measured:
         return identification_of(self.model)
 
     @property
+    def parts_quickly(self) -> bool:
+        """Whether neighbouring trajectories part within a window: chaotic motion of more than one body."""
+        return self.identification.chaotic and len(self.identification.leads) > 1
+
+    @property
     def free(self) -> tuple[str, ...]:
         """Names of the states (S,) that every window has its own of; the model carries the others to its start."""
         following = self.alike if self.bonded else ()

@@ -10,6 +10,7 @@ import numpy as np
 from diagnosis.data.measured import Measured
 from diagnosis.errors.components import DECAYS, LOW_PASS, SLOW_DRIFTS, SMOOTH, Component
 from diagnosis.errors.drifts import columns, knots_of
+from diagnosis.errors.followed import followed
 from diagnosis.errors.kicks import Kicks, kicks
 from diagnosis.errors.likelihood import Piece, Prior, climbed, maximise, robust_deviance
 from diagnosis.errors.lines import lines
@@ -19,9 +20,9 @@ from diagnosis.errors.scattered import Events, gauss_newton, known_changes, line
 from diagnosis.errors.sensors import of_sensors
 from diagnosis.errors.stills import stills
 from diagnosis.fit.misfit import Misfit
-from diagnosis.fit.setup import base_fit, with_noise_of_the_base
+from diagnosis.fit.setup import base_fit
 from diagnosis.fit.solver import Fitted, fit_thoroughly
-from diagnosis.fit.whitening import Whitening, base_columns, responses, sensor_noise_only
+from diagnosis.fit.whitening import Whitening, base_columns, responses
 from grids.specimen import Specimen
 from models.base import FloatArray
 
@@ -106,25 +107,6 @@ def calibrated(specimen: Specimen, measured: Measured, seed: int = 0) -> tuple[F
     """The calibrated base and the errors of the recordings about it."""
     first = followed(base_fit(specimen, measured, seed))
     return refitted(first, disturbance_about(first))
-
-
-def followed(fitted: Fitted) -> Fitted:
-    """The base fit with windows that end where small changes no longer leave small ones, and without those too short.
-
-    Where a body comes close to rest a slightly larger rate means one event more: what happens then tells nothing.
-    """
-    m, predictor = fitted.measured, fitted.misfit.predictor
-    last = kicks(predictor, fitted.point).followed
-    if m.lengths is None or all(n >= window.samples for n, window in zip(last, m.windows, strict=True)):
-        return fitted
-    steps = np.array([m.recordings[window.recording].time_step for window in m.windows])
-    keep = np.flatnonzero(last * steps >= m.lengths.shortest)
-    if not keep.size:
-        return fitted
-    windows = tuple(replace(m.windows[w], samples=min(m.windows[w].samples, int(last[w]))) for w in keep)
-    predictor = replace(predictor, measured=m.of_windows(keep).cut_again(windows))
-    plain = replace(fitted.misfit, predictor=predictor, whitening=sensor_noise_only(predictor))
-    return with_noise_of_the_base(fit_thoroughly(plain, fitted.u, fitted.states[keep]))
 
 
 def refitted(fitted: Fitted, base: FloatArray, start: Errors | None = None, rounds: int = 2) -> tuple[Fitted, Errors]:

@@ -20,8 +20,16 @@ FEWEST = 20
 """Samples of a window that is shortened."""
 
 
-def fit_growing(plain: Misfit, origins: Sequence[Origin], seed: int = 0) -> Fitted:
+def fit_from(plain: Misfit, origins: Sequence[Origin], seed: int = 0) -> Fitted:
     """The minimum against the sensors' white noise, searched from ``origins`` over what is not known there."""
+    if plain.measured.parts_quickly:
+        return fit_growing(plain, origins, seed)
+    start = searched(plain, origins, seed)
+    return fit_thoroughly(plain, start.u, start.states)
+
+
+def fit_growing(plain: Misfit, origins: Sequence[Origin], seed: int = 0) -> Fitted:
+    """The same with windows that grow."""
     start = searched(_shortened(plain, SHARES[0]), origins, seed)
     for share in SHARES:
         start = fit_thoroughly(_shortened(plain, share), start.u, start.states)

@@ -21,7 +21,7 @@ from diagnosis.fit.unknowns import instruments_of, without_instruments
 from grids.instruments.staged import moved_in_stages
 from models.base import Event, FloatArray
 from models.identification import Count
-from models.piecewise import in_force, simulate
+from models.piecewise import cannot_be_cut, in_force, simulate
 
 
 def counted(predictor: Predictor, point: Point) -> Measured:
@@ -72,6 +72,11 @@ def _events(
         cut = replace(shaking, horizontal=shaking.horizontal[part], vertical=vertical)
         initial = {name: float(x) for name, x in zip(m.free, state, strict=True)}
         acting = in_force(predictor.parts(point.values, recording), piece.first)
+        acting = [one for one in acting if one.first < piece.samples]
+        if cannot_be_cut(
+            m.model, [one.values for one in acting]
+        ):  # the events of a piece that holds an instant, as it acts at its start
+            acting = acting[:1]
         ran = simulate(m.model, acting, cut, initial=initial, duration=cut.duration, options=predictor.options)
         found.append(ran.events)
     return found

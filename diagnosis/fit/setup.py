@@ -9,11 +9,12 @@ import models
 from diagnosis.data.measured import Measured, arrange, identification_of
 from diagnosis.data.pose import with_rotations
 from diagnosis.data.stretches import arrange_stretches
+from diagnosis.fit.growing import fit_from
 from diagnosis.fit.memory import counted
 from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.prediction import Predictor
 from diagnosis.fit.solver import Fitted, fit_thoroughly
-from diagnosis.fit.starts import best_start
+from diagnosis.fit.starts import nominal
 from diagnosis.fit.unknowns import fixed_values, of_specimen, without_instruments
 from diagnosis.fit.whitening import responses, sensor_noise_only, with_base_noise
 from grids.instruments.integrated_displacement import MECHANISM as INTEGRATED
@@ -81,8 +82,7 @@ def base_fit(specimen: Specimen, measured: Measured, seed: int = 0) -> Fitted:
     coordinates = tuple(name for name in measured.identification.coordinates if name in ranged)
     predictor = Predictor(measured, specimen.options, specimen.stages, coordinates)
     plain = Misfit(predictor, sensor_noise_only(predictor), unknowns, fixed_values(specimen))
-    start = best_start(plain, seed)
-    return with_noise_of_the_base(fit_thoroughly(plain, start.u, start.states))
+    return with_noise_of_the_base(fit_from(plain, [nominal(plain)], seed))
 
 
 def with_noise_of_the_base(first: Fitted) -> Fitted:

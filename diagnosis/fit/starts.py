@@ -26,16 +26,11 @@ class Origin:
     known: np.ndarray
 
 
-def best_start(misfit: Misfit, seed: int = 0, origins: Sequence[Origin] = ()) -> Fitted:
-    """The best start, a few iterations on where there were several.
-
-    Unknowns with a range are those of a Sobol set, the others nominal; from ``origins`` what is not known there.
-    """
-    return searched(misfit, (nominal(misfit), *origins), seed)
-
-
 def searched(misfit: Misfit, origins: Sequence[Origin], seed: int = 0) -> Fitted:
-    """The best of starts from ``origins`` over what is not known there, a few iterations on if there are several."""
+    """The best of starts from ``origins``, a few iterations on if there are several.
+
+    What is not known there is that of a Sobol set over its range.
+    """
     starts = [start for origin in origins for start in _over_ranges(misfit, origin, seed, len(origins))]
     if len(starts) == 1:
         ((u, states),) = starts

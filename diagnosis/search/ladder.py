@@ -20,12 +20,12 @@ from diagnosis.data.measured import Measured, for_model, identification_of
 from diagnosis.errors.adequacy import inadequacy
 from diagnosis.errors.comparison import by_window, deviance
 from diagnosis.errors.model import Errors, disturbance_about, refitted
-from diagnosis.fit.growing import fit_growing
+from diagnosis.fit.growing import fit_from
 from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.prediction import Predictor
 from diagnosis.fit.setup import with_noise_of_the_base
-from diagnosis.fit.solver import Fitted, fit, fit_thoroughly
-from diagnosis.fit.starts import Origin, nominal, searched
+from diagnosis.fit.solver import fit
+from diagnosis.fit.starts import Origin, nominal
 from diagnosis.fit.unknowns import clip, fixed_values, in_range, of_specimen
 from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.progress import Progress
@@ -200,20 +200,13 @@ def _fitted(
     places = [origins]
     if likely:
         places.append([_with(plain, origin, likely) for origin in origins])
-    fitted = min((_searched(plain, place, seed) for place in places), key=lambda one: one.loss)
+    fitted = min((fit_from(plain, place, seed) for place in places), key=lambda one: one.loss)
     if fitted.loss > found.loss:
         raise InputError(WORSE)
     own = tuple(x for x in plain.unknowns if x.name.startswith(f"{rung.name}."))
     states = len(plain.measured.free) - len(base_model.measured.free)
     price = PER_STATE * (states * len(plain.measured.windows) + 1)
     return Explanation((Candidate(rung.mechanism, own, {}, price=price),), with_noise_of_the_base(fitted))
-
-
-def _searched(plain: Misfit, origins: Sequence[Origin], seed: int) -> Fitted:
-    if plain.measured.identification.chaotic:
-        return fit_growing(plain, origins, seed)
-    start = searched(plain, origins, seed)
-    return fit_thoroughly(plain, start.u, start.states)
 
 
 def _misfit(rung: Rung, specimen: Specimen, measured: Measured, recordings: Sequence[Recording]) -> Misfit:

@@ -163,6 +163,6 @@ STATES = ("rotation_1", "rotation_rate_1")
 RESUMES_WITH = (
     "vertical_acceleration", "pivot_inset", "rounded_corner", "crushing", "tilt", "eccentricity", "flexible_joint",
     "added_stiffness", "restitution", "velocity_restitution", "viscous_damping", "coulomb_damping",
-    "quadratic_damping", "degradation", "table_force",
+    "quadratic_damping", "table_pitch", "degradation", "table_force",
 )  # fmt: skip
-"""Not: sliding, bounce and wall_flexibility (motions of their own), table_pitch (a filter over the whole record)."""
+"""Not: sliding, bounce and wall_flexibility (motions of their own)."""

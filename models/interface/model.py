@@ -46,9 +46,9 @@ class Interface(Model[LayeredWall]):
     not_placed = ("wall_flexibility",)
     vertical_by_default = True
     resumes_with: tuple[str, ...] | None = (
-        "vertical_acceleration", "pivot_inset", "hardening", "locking", "tilt", "eccentricity", "contact_length",
-        "added_stiffness", "one_sided_stiffness", "viscous_damping", "coulomb_damping", "interface_shear", "sliding",
-        "wall_flexibility", "table_force",
+        "vertical_acceleration", "pivot_inset", "hardening", "locking", "tilt", "eccentricity", "table_pitch",
+        "contact_length", "added_stiffness", "one_sided_stiffness", "viscous_damping", "coulomb_damping",
+        "interface_shear", "sliding", "wall_flexibility", "table_force",
     )  # fmt: skip
 
     def assemble(self, values: Values, options: Mapping[str, str], *, vertical: bool, size: int) -> LayeredWall:

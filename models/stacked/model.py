@@ -40,7 +40,10 @@ class Stacked(Model[Stack]):
     states = declaration.STATES
     identification = IDENTIFICATION
     bodies = 2
-    resumes_with = ("pivot_inset", "tilt", "eccentricity", "restitution", "viscous_damping", "coulomb_damping")
+    resumes_with = (
+        "vertical_acceleration", "pivot_inset", "tilt", "eccentricity", "table_pitch", "restitution",
+        "viscous_damping", "coulomb_damping",
+    )  # fmt: skip
 
     def assemble(self, values: Values, options: Mapping[str, str], *, vertical: bool, size: int) -> Stack:
         return assemble(values, vertical, size)

@@ -30,6 +30,7 @@ IN_A_TABLE = {
     **BLOCK, "table_force.reach_rotation": 0.2, "table_force.reach_rate": 1.0, "table_force.reach_base": 3.0,
     "table_force.rotation_above_3": -0.2, "table_force.damping_below_2": -0.3, "table_force.impact_above_5": -0.05,
 }  # fmt: skip
+PITCHES = {"table_pitch.pitch_per_acceleration": 1e-3, "table_pitch.low_pass_hz": 3.0}
 RUBS = {**WALL, "coulomb_damping.over_m_g_b": 0.05}
 ALIKE = {"housner": 1e-9, "stacked": 1e-8, "interface": 1e-4}
 """Share of the peak: the steps of elastic walls begin anew at a cut."""
@@ -38,7 +39,8 @@ ALIKE = {"housner": 1e-9, "stacked": 1e-8, "interface": 1e-4}
 @pytest.mark.parametrize("integrator", ["lanes", "reference"])
 @pytest.mark.parametrize(
     ("name", "values"),
-    [*OF_MODEL.items(), ("housner", WEARS), ("housner", CRUSHES), ("housner", IN_A_TABLE), ("stacked", RUBS)],
+    [*OF_MODEL.items(), ("housner", WEARS), ("housner", CRUSHES), ("housner", IN_A_TABLE), ("stacked", RUBS),
+     *((name, {**values, **PITCHES}) for name, values in OF_MODEL.items())],
     ids=str,
 )  # fmt: skip
 def test_a_cut_run_is_the_whole_run(name: str, values: dict[str, float], integrator: str) -> None:

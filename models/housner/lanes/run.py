@@ -144,7 +144,7 @@ def run(block: Block, request: Request, refinement: int = 1) -> Run:
 def _record(request: Request, per_sample: int, corner: float) -> Record:
     """The shaking as the kernel reads it, with the pitch of a table that follows it up to ``corner`` Hz."""
     shaking = request.shaking
-    psi = pitch(shaking.horizontal, shaking.time_step, corner) if corner > 0.0 else (None, None)
+    psi = pitch(shaking, corner) if corner > 0.0 else (None, None)
     return recorded(shaking, per_sample, request.tail, psi)
 
 

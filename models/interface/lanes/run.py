@@ -113,7 +113,7 @@ def pitching(wall: LayeredWall, shaking: Shaking, low_pass: float) -> Sequence[F
     """Channels of the record beyond a and a_z: psi and psi'' below ``low_pass`` (Hz; 0: none) for a pitch of 1."""
     if wall.effects is None or "table_pitch" not in wall.effects.parts:
         return ()
-    return pitch(shaking.horizontal, shaking.time_step, low_pass) if low_pass > 0.0 else (None, None)
+    return pitch(shaking, low_pass) if low_pass > 0.0 else (None, None)
 
 
 def _advanced(wall: LayeredWall, request: Request, refinement: int, low_pass: float, tables: Tables) -> int:

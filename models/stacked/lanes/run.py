@@ -105,7 +105,7 @@ def run(stack: Stack, request: Request, refinement: int = 1) -> Run:
     general = (pitched > 0.0) | (stack.coulomb > 0.0)
     for (per_sample, corner, more), lanes in groups(substeps(stack, shaking.time_step) * refinement, pitched, general):
         part, asked = stack.take(lanes), request.take(lanes)
-        psi = pitch(shaking.horizontal, shaking.time_step, corner) if corner > 0.0 else (None, None)
+        psi = pitch(shaking, corner) if corner > 0.0 else (None, None)
         record = recorded(shaking, per_sample, request.tail, psi)
         first, last = asked.steps(per_sample, record.end)
         tables = empty(asked, r.N_RESULT, 4)

@@ -8,8 +8,9 @@ from functools import cache
 import numpy as np
 
 from diagnosis.data.measured import AsItWas
+from diagnosis.errors.followed import followed
 from diagnosis.errors.kicks import kicks
-from diagnosis.errors.model import Errors, calibrated, followed, refitted
+from diagnosis.errors.model import Errors, calibrated, refitted
 from diagnosis.errors.scattered import Events, known_changes, linear_about
 from diagnosis.fit.intervals import covariances
 from diagnosis.fit.setup import base_fit, measure

@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 import models
-from diagnosis.answer.whole_runs import sensed_run
+from diagnosis.answer.heldout import Shown
+from diagnosis.answer.whole_runs import no_run, sensed_run, with_runs_from_rest
 from diagnosis.errors.kicks import kicks
+from diagnosis.fit.memory import counted
 from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.setup import base_fit, measure
 from diagnosis.search.refit import Explanation
@@ -105,3 +107,32 @@ def test_a_change_of_an_impact_is_run_to_the_end_of_its_window_where_the_next_on
     before, plain = measured.first < begins, kicks(Predictor(measured), Point({**TRUE}, states[measured.first]))
     np.testing.assert_allclose(found.columns[before], plain.columns[before], atol=1e-12)
     assert np.any(plain.columns[before]) and np.any(found.columns[~before])
+
+
+def test_beside_what_a_run_cannot_be_cut_with_events_are_counted_and_runs_from_rest_left_out() -> None:
+    """A block that slides goes on with more than its rotation; until now a diagnosis that found both ended there."""
+    plain = measure(SPECIMEN, [made(100_000)[0]])
+    first = int(plain.first[len(plain.first) // 2])  # between windows
+    recording, states = made(first)
+    measured = measure(SPECIMEN, [recording])
+    stages = {"restitution": (Stage("shake_2", (first - 0.5) * TIME_STEP),)}
+    slides = {**TRUE, **CHANGE, "sliding.friction": 2.0}
+    fitted = base_fit(SPECIMEN, measured)
+    predictor = Predictor(measured, stages=stages)
+    staged = replace(
+        fitted, u=np.zeros(0), misfit=replace(fitted.misfit, predictor=predictor, unknowns=(), fixed=slides)
+    )
+    explanation, before = Explanation((), staged), Explanation((), fitted)
+    assert "cannot be cut" in no_run(explanation, recording) and not no_run(before, recording)
+    with pytest.raises(InputError, match="sliding remembers more"):
+        sensed_run(explanation, measured, recording, measured.channels)
+    counted_as = counted(predictor, Point(slides, states[measured.first])).memory["impacts"]
+    assert np.array_equal(
+        counted_as, counted(predictor, Point({**TRUE, **CHANGE}, states[measured.first])).memory["impacts"]
+    )
+    values = np.zeros(measured.values.shape)
+    shown = Shown(measured, values, values, staged.point, staged.point)
+    traces = with_runs_from_rest(SPECIMEN, [shown], before, explanation)
+    assert [t.channel for t in traces] == list(measured.channels)
+    assert all(t.from_rest_before is None and t.from_rest_after is None for t in traces)
+    assert all(t.from_rest_after is not None for t in with_runs_from_rest(SPECIMEN, [shown], before, before))

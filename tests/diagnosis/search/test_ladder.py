@@ -11,9 +11,10 @@ import pytest
 import models
 from diagnosis.answer.ladder import confirmed, other_model
 from diagnosis.errors.model import Errors, calibrated
+from diagnosis.fit.growing import fit_from
 from diagnosis.fit.setup import base_fit, measure
-from diagnosis.fit.solver import Fitted, fit_thoroughly
-from diagnosis.fit.starts import best_start
+from diagnosis.fit.solver import Fitted
+from diagnosis.fit.starts import nominal
 from diagnosis.forces.columns import forces
 from diagnosis.forces.constancy import About
 from diagnosis.progress import silent
@@ -98,10 +99,9 @@ def test_a_block_that_is_one_stays_one_whatever_is_tried(monkeypatch: pytest.Mon
     assert all(why == ladder.WORSE for why in found.not_tried.values())
     two = ladder._misfit(fitted.measured.identification.ladder[0], PIER, fitted.measured, fitted.measured.recordings)
     base = ladder._plain(found.base)
-    start = best_start(two, 0, [ladder._origin(two, base)])
     states = (len(two.measured.free) - len(fitted.measured.free)) * len(fitted.measured.windows)
     # a joint that stays closed gains less than the states that it starts the windows from cost
-    assert base.loss - fit_thoroughly(two, start.u, start.states).loss < ladder.PER_STATE * states
+    assert base.loss - fit_from(two, [nominal(two), ladder._origin(two, base)]).loss < ladder.PER_STATE * states
     assert ladder.climb(found, tried, decisive=False) is None
     assert all(one.over(ladder._as_found(found))[0] < 0.0 for _, one in tried)
 
