@@ -18,7 +18,7 @@ LAST = 150_000_000
 """Lane-steps for others in the place of each of several effects at the end, whatever was spent before."""
 RESERVED = 700_000_000
 """Lane-steps for effects that begin or end, whatever was spent before: they come last and may explain everything."""
-LADDER = 110_000_000
+LADDER = 500_000_000
 """Lane-steps after which no further base model is tried."""
 ENDED = "the search's budget of work ended before it"
 
