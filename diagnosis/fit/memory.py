@@ -73,10 +73,8 @@ def _events(
         initial = {name: float(x) for name, x in zip(m.free, state, strict=True)}
         acting = in_force(predictor.parts(point.values, recording), piece.first)
         acting = [one for one in acting if one.first < piece.samples]
-        if cannot_be_cut(
-            m.model, [one.values for one in acting]
-        ):  # the events of a piece that holds an instant, as it acts at its start
-            acting = acting[:1]
+        if cannot_be_cut(m.model, [one.values for one in acting]):
+            acting = acting[:1]  # what acts at the start of the piece, all along it
         ran = simulate(m.model, acting, cut, initial=initial, duration=cut.duration, options=predictor.options)
         found.append(ran.events)
     return found
