@@ -30,7 +30,7 @@ TOLERANCE = 0.02
 BADLY, SCATTERED = 1.5, 256
 """Squared misfit per sample of a stuck window (over that of most windows), and the states tried for it."""
 PROMISING, AT_STUCK = 2, 6
-"""How many of the best of them, over the number of states, are fitted, and the measured one; iterations of these fits."""
+"""How many of the best are fitted, over the number of states, beside the measured one; iterations of these fits."""
 SCATTERINGS = 3
 NEAR, GOOD = 0.1, 0.75
 """Where all ahead is such a share of the loss the whole step alone is tried, and taken if it gains as much of it."""
