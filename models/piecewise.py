@@ -39,10 +39,11 @@ class Part:
     values: Values
 
 
-def in_force(parts: Sequence[Part], first: int) -> list[Part]:
-    """The parts of a run that begins at sample ``first``, their samples counted from there."""
+def in_force(parts: Sequence[Part], first: int, samples: int) -> list[Part]:
+    """The parts of a run of so many ``samples`` that begins at sample ``first``, their samples counted from there."""
     begun = max(k for k, one in enumerate(parts) if one.first <= first)
-    return [Part(max(0, one.first - first), one.values) for one in parts[begun:]]
+    found = [Part(max(0, one.first - first), one.values) for one in parts[begun:]]
+    return [one for one in found if one.first < samples or one.first == 0]
 
 
 def cannot_be_cut(model: Model[Any], parts: Sequence[Values]) -> str:
@@ -80,7 +81,7 @@ def simulate(
     """As `Model.simulate`, with the values of each part from its first sample on (the first part's is 0)."""
     step = shaking.time_step
     last = round((shaking.duration + tail if duration is None else duration) / step)
-    parts = [one for one in parts if one.first < last or one.first == 0]
+    parts = in_force(parts, 0, last)
     if why := cannot_be_cut(model, [one.values for one in parts]):
         raise InputError(why)
     ends = [*(one.first for one in parts[1:]), last]

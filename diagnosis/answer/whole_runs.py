@@ -17,7 +17,7 @@ from grids.instruments.staged import moved_in_stages, recorded_in_stages
 from grids.recordings.base import FloatArray, Recording
 from grids.specimen import Specimen
 from models.kinematics import Place, ground_along
-from models.piecewise import cannot_be_cut, simulate
+from models.piecewise import cannot_be_cut, in_force, simulate
 
 
 def with_runs_from_rest(
@@ -53,6 +53,7 @@ def no_run(explanation: Explanation, recording: Recording, held: Sequence[HeldSt
     """Why there is no run of a recording from rest: it cannot be cut where something begins to act; empty: there is."""
     fitted = explanation.fitted
     parts = with_held(fitted.misfit.predictor, held).parts(fitted.point.values, recording)
+    parts = in_force(parts, 0, recording.time.size)
     return cannot_be_cut(explanation.measured.model, [one.values for one in parts])
 
 

@@ -12,18 +12,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.errors.kicks import kicks
+from diagnosis.fit.growing import cut_again
 from diagnosis.fit.misfit import reduce
 from diagnosis.fit.prediction import Point
 from diagnosis.fit.setup import with_noise_of_the_base
 from diagnosis.fit.solver import Fitted, fit_thoroughly, normal
 from diagnosis.fit.unknowns import clip
-from diagnosis.fit.whitening import sensor_noise_only
 
 
 def followed(fitted: Fitted) -> Fitted:
     """The base fit with windows that end there, and without those too short."""
-    m, predictor = fitted.measured, fitted.misfit.predictor
-    last = kicks(predictor, fitted.point).followed
+    m = fitted.measured
+    last = kicks(fitted.misfit.predictor, fitted.point).followed
     if m.parts_quickly:
         last = np.minimum(last, in_proportion(fitted))
     if m.lengths is None or all(n >= window.samples for n, window in zip(last, m.windows, strict=True)):
@@ -32,9 +32,8 @@ def followed(fitted: Fitted) -> Fitted:
     keep = np.flatnonzero(last * steps >= m.lengths.shortest)
     if not keep.size:
         return fitted
-    windows = tuple(replace(m.windows[w], samples=min(m.windows[w].samples, int(last[w]))) for w in keep)
-    predictor = replace(predictor, measured=m.of_windows(keep).cut_again(windows))
-    plain = replace(fitted.misfit, predictor=predictor, whitening=sensor_noise_only(predictor))
+    windows = [replace(m.windows[w], samples=min(m.windows[w].samples, int(last[w]))) for w in keep]
+    plain = cut_again(fitted.misfit.of_windows(keep), windows)
     return with_noise_of_the_base(fit_thoroughly(plain, fitted.u, fitted.states[keep]))
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from diagnosis.data.windows import Window
 from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.solver import Fitted, fit_thoroughly
 from diagnosis.fit.starts import Origin, searched
@@ -21,24 +22,25 @@ FEWEST = 20
 
 
 def fit_from(plain: Misfit, origins: Sequence[Origin], seed: int = 0) -> Fitted:
-    """The minimum against the sensors' white noise, searched from ``origins`` over what is not known there."""
-    if plain.measured.parts_quickly:
-        return fit_growing(plain, origins, seed)
-    start = searched(plain, origins, seed)
-    return fit_thoroughly(plain, start.u, start.states)
+    """The minimum against the sensors' white noise, searched from ``origins`` over what is not known there.
+
+    With windows that grow where neighbouring trajectories part within one.
+    """
+    shares = SHARES if plain.measured.parts_quickly else ()
+    stages = [*(_shortened(plain, share) for share in shares), plain]
+    found = searched(stages[0], origins, seed)
+    for stage in stages:
+        found = fit_thoroughly(stage, found.u, found.states)
+    return found
 
 
-def fit_growing(plain: Misfit, origins: Sequence[Origin], seed: int = 0) -> Fitted:
-    """The same with windows that grow."""
-    start = searched(_shortened(plain, SHARES[0]), origins, seed)
-    for share in SHARES:
-        start = fit_thoroughly(_shortened(plain, share), start.u, start.states)
-    return fit_thoroughly(plain, start.u, start.states)
+def cut_again(misfit: Misfit, windows: Sequence[Window]) -> Misfit:
+    """The misfit with other lengths of its windows, against white noise of the sensors."""
+    predictor = replace(misfit.predictor, measured=misfit.measured.cut_again(tuple(windows)))
+    return replace(misfit, predictor=predictor, whitening=sensor_noise_only(predictor))
 
 
 def _shortened(plain: Misfit, share: float) -> Misfit:
-    m = plain.measured
-    lengths = [min(w.samples, max(int(share * w.samples), FEWEST)) for w in m.windows]
-    windows = tuple(replace(w, samples=length) for w, length in zip(m.windows, lengths, strict=True))
-    predictor = replace(plain.predictor, measured=m.cut_again(windows))
-    return replace(plain, predictor=predictor, whitening=sensor_noise_only(predictor))
+    windows = plain.measured.windows
+    lengths = [min(w.samples, max(int(share * w.samples), FEWEST)) for w in windows]
+    return cut_again(plain, [replace(w, samples=n) for w, n in zip(windows, lengths, strict=True)])

@@ -71,8 +71,7 @@ def _events(
         vertical = None if shaking.vertical is None else shaking.vertical[part]
         cut = replace(shaking, horizontal=shaking.horizontal[part], vertical=vertical)
         initial = {name: float(x) for name, x in zip(m.free, state, strict=True)}
-        acting = in_force(predictor.parts(point.values, recording), piece.first)
-        acting = [one for one in acting if one.first < piece.samples]
+        acting = in_force(predictor.parts(point.values, recording), piece.first, piece.samples)
         if cannot_be_cut(m.model, [one.values for one in acting]):
             acting = acting[:1]  # what acts at the start of the piece, all along it
         ran = simulate(m.model, acting, cut, initial=initial, duration=cut.duration, options=predictor.options)

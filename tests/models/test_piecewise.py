@@ -7,7 +7,8 @@ import pytest
 
 import models
 from models.errors import InputError
-from models.piecewise import Part, simulate, trajectories
+from models.piecewise import Part, begun_at, simulate, trajectories
+from models.pitch import pitch
 from models.runs import DONE
 from models.shaking import Shaking
 
@@ -72,6 +73,15 @@ def test_what_changes_acts_from_its_sample_on() -> None:
     np.testing.assert_array_equal(never, plain)
 
 
+def test_a_filter_over_the_whole_record_sees_what_came_before_a_cut() -> None:
+    (psi, second), first = pitch(SHAKING, 3.0), 321
+    cut = begun_at(SHAKING, first)
+    for whole, part in zip((psi, second), pitch(cut, 3.0), strict=True):
+        np.testing.assert_array_equal(part, whole[first:])
+    again = begun_at(cut, 100).scaled(2.0)
+    np.testing.assert_allclose(pitch(again, 3.0)[0], 2.0 * psi[first + 100 :], atol=1e-12)
+
+
 def test_an_overturned_block_stays_down_over_the_parts() -> None:
     strong = Shaking(STEP, 3.0 * SHAKING.horizontal)
     model = models.get("housner")
@@ -83,9 +93,9 @@ def test_an_overturned_block_stays_down_over_the_parts() -> None:
     assert cut.outputs["uplift_duration"] == pytest.approx(whole.outputs["uplift_duration"])
 
 
-@pytest.mark.parametrize("name", OF_MODEL)
-def test_windows_before_after_and_over_the_instant(name: str) -> None:
-    model, values = models.get(name), OF_MODEL[name]
+@pytest.mark.parametrize(("name", "values"), [*OF_MODEL.items(), *PITCHED], ids=str)
+def test_windows_before_after_and_over_the_instant(name: str, values: dict[str, float]) -> None:
+    model = models.get(name)
     other = {**values, "pivot_inset.inset_over_half_width": 0.05}
     values = {**values, "pivot_inset.inset_over_half_width": 0.0}
     whole = simulate(model, [Part(0, values), Part(120, other)], SHAKING)

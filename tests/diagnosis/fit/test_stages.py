@@ -126,10 +126,12 @@ def test_beside_what_a_run_cannot_be_cut_with_events_are_counted_and_runs_from_r
     assert "cannot be cut" in no_run(explanation, recording) and not no_run(before, recording)
     with pytest.raises(InputError, match="sliding remembers more"):
         sensed_run(explanation, measured, recording, measured.channels)
-    counted_as = counted(predictor, Point(slides, states[measured.first])).memory["impacts"]
-    assert np.array_equal(
-        counted_as, counted(predictor, Point({**TRUE, **CHANGE}, states[measured.first])).memory["impacts"]
-    )
+    points = [Point(values, states[measured.first]) for values in (slides, {**TRUE, **CHANGE})]
+    with_sliding, without = (counted(predictor, point).memory["impacts"] for point in points)
+    assert np.array_equal(with_sliding, without) and without.max() > 5
+    beyond = replace(predictor, stages={"restitution": (Stage("shake_2", recording.time[-1] + 1.0),)})
+    late = replace(staged, misfit=replace(staged.misfit, predictor=beyond))
+    assert not no_run(Explanation((), late), recording)  # nothing changes while it lasts
     values = np.zeros(measured.values.shape)
     shown = Shown(measured, values, values, staged.point, staged.point)
     traces = with_runs_from_rest(SPECIMEN, [shown], before, explanation)
