@@ -29,6 +29,8 @@ TOLERANCE = 0.02
 """Gain in 2 log likelihood, expected or reached in two iterations, under which the fit ends."""
 BADLY, SCATTERED = 1.5, 256
 """Squared misfit per sample of a stuck window (over that of most windows), and the states tried for it."""
+NARROW, WIDEST = 0.05, 0.25
+"""Widths of the scatter, over that of the states among the windows."""
 PROMISING, AT_STUCK = 2, 6
 """How many of the best are fitted, over the number of states, beside the measured one; iterations of these fits."""
 SCATTERINGS = 3
@@ -100,7 +102,7 @@ def scatter(found: Fitted, seed: int) -> FloatArray | None:
     if not bad.any():
         return None
     draws = qmc.MultivariateNormalQMC(np.zeros(found.states.shape[1]), seed=seed).random(SCATTERED)
-    width = m.state_size * np.where(np.arange(SCATTERED) % 2 == 0, 0.05, 0.25)[:, None]
+    width = m.state_size * np.where(np.arange(SCATTERED) % 2 == 0, NARROW, WIDEST)[:, None]
     around = np.where((np.arange(SCATTERED) // 2 % 2 == 0)[:, None, None], found.states, m.states)
     trials = around + (draws * width)[:, None, :]
 

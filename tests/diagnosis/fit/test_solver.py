@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+from functools import cache
+
+import numpy as np
 import pytest
 
 from diagnosis.fit.setup import base_fit, measure
-from diagnosis.fit.solver import fit, fit_thoroughly
+from diagnosis.fit.solver import AT_STUCK, Fitted, fit, fit_thoroughly, scatter
+from grids.specimen import Specimen
 from tests.diagnosis.made import SPECIMEN, recording
+from tests.diagnosis.search.test_ladder import ON_TOP, rocking_on_top
+
+STACK = Specimen("stack", "stacked", ON_TOP, {"wall_length": 0.005, "wall_height": 0.005})
 
 
 @pytest.mark.parametrize(("seed", "away"), [(1, 8.0), (4, -4.0)])
@@ -17,3 +24,36 @@ def test_windows_stuck_far_from_the_measured_states_come_back(seed: int, away: f
     states[:, 1] += away * best.measured.state_size[1]
     assert fit(best.misfit, best.u, states).loss > best.loss + 1000.0
     assert fit_thoroughly(best.misfit, best.u, states).loss < best.loss + 0.5
+
+
+@cache
+def of_a_stack() -> Fitted:
+    return base_fit(STACK, measure(STACK, [rocking_on_top(seed, True) for seed in (1, 2)]))
+
+
+def away(axis: int, size: float) -> np.ndarray:
+    """States with one of them moved by so many times its scatter among the windows."""
+    found = of_a_stack().states.copy()
+    found[:, axis] += size * of_a_stack().measured.state_size[axis]
+    return found
+
+
+def test_windows_of_two_bodies_come_back_from_most_states() -> None:
+    """Each of the four moved up or down: 480 above the minimum where stuck ones are not fitted, 10 where they are."""
+    best = of_a_stack()
+    starts = [away(axis, size) for axis in range(4) for size in (-4.0, 4.0)]
+    above = [fit_thoroughly(best.misfit, best.u, states).loss - best.loss for states in starts]
+    assert min(fit(best.misfit, best.u, states).loss for states in starts) > best.loss + 1e4
+    assert np.median(above) < 100.0
+
+
+def test_a_stuck_window_ends_no_worse_than_from_where_it_was_measured() -> None:
+    best = of_a_stack()
+    m = best.measured
+    found = fit(best.misfit, best.u, away(1, -8.0), 0)
+    states = scatter(found, 0)
+    assert states is not None
+    from_measured = fit(found.frozen, np.zeros(0), m.states, AT_STUCK)
+    better = fit(best.misfit, best.u, states, 0).window_losses
+    stuck = better != found.window_losses
+    assert stuck.sum() > 2 and np.all(better[stuck] < from_measured.window_losses[stuck] + 1.0)

@@ -13,7 +13,7 @@ from diagnosis.answer.ladder import confirmed, other_model
 from diagnosis.errors.model import Errors, calibrated
 from diagnosis.fit.growing import fit_from
 from diagnosis.fit.setup import base_fit, measure
-from diagnosis.fit.solver import Fitted
+from diagnosis.fit.solver import WIDEST, Fitted
 from diagnosis.fit.starts import nominal
 from diagnosis.forces.columns import forces
 from diagnosis.forces.constancy import About
@@ -172,3 +172,14 @@ def test_what_rocks_on_the_block_is_found_where_it_stands(both: bool) -> None:
     samples = float(found.measured.count.sum())
     assert found.loss - samples < 0.1 * (base.loss - samples)
     assert found.values["second_body.joint_over_height"] == pytest.approx(1.0, abs=0.01)
+
+
+def test_states_that_no_channel_shows_are_scattered_as_far_as_they_are() -> None:
+    """The upper body's, which begin as the lower one's: it rocks several times as far."""
+    recordings, shown = ([rocking_on_top(seed, both) for seed in (1, 2)] for both in (False, True))
+    measured = measure(AS_BLOCK, recordings)
+    rung = measured.identification.ladder[0]
+    m = ladder._misfit(rung, AS_BLOCK, measured, recordings).measured
+    k = m.free.index("rotation_2")
+    true = np.array([shown[w.recording].channels["rotation_2"][w.first] for w in m.windows])
+    assert np.mean(np.abs(true - m.states[:, k]) < 2.0 * WIDEST * m.state_size[k]) > 0.7
