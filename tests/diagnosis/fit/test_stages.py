@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import models
+from diagnosis.answer import experiment
 from diagnosis.answer.heldout import Shown
 from diagnosis.answer.whole_runs import no_run, sensed_run, with_runs_from_rest
 from diagnosis.errors.kicks import kicks
@@ -124,6 +125,8 @@ def test_beside_what_a_run_cannot_be_cut_with_events_are_counted_and_runs_from_r
     )
     explanation, before = Explanation((), staged), Explanation((), fitted)
     assert "cannot be cut" in no_run(explanation, recording) and not no_run(before, recording)
+    assert experiment._made(explanation, recording, 1.0, measured.channels) is None
+    assert experiment._made(before, recording, 1.0, measured.channels) is not None
     with pytest.raises(InputError, match="sliding remembers more"):
         sensed_run(explanation, measured, recording, measured.channels)
     points = [Point(values, states[measured.first]) for values in (slides, {**TRUE, **CHANGE})]
