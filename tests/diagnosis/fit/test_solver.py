@@ -7,9 +7,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-from diagnosis.fit import solver
 from diagnosis.fit.setup import base_fit, measure
-from diagnosis.fit.solver import AT_STUCK, Fitted, fit, fit_thoroughly, scatter
+from diagnosis.fit.solver import Fitted, fit, fit_thoroughly
 from grids.specimen import Specimen
 from tests.diagnosis.made import SPECIMEN, recording
 from tests.diagnosis.search.test_ladder import ON_TOP, rocking_on_top
@@ -46,17 +45,3 @@ def test_windows_of_two_bodies_come_back_from_most_states() -> None:
     above = [fit_thoroughly(best.misfit, best.u, states).loss - best.loss for states in starts]
     assert min(fit(best.misfit, best.u, states).loss for states in starts) > best.loss + 1e4
     assert np.median(above) < 100.0
-
-
-def test_a_stuck_window_ends_no_worse_than_from_where_it_was_measured(monkeypatch: pytest.MonkeyPatch) -> None:
-    """However few the scattered states are."""
-    monkeypatch.setattr(solver, "SCATTERED", 8)
-    best = of_a_stack()
-    m = best.measured
-    found = fit(best.misfit, best.u, away(1, -8.0), 0)
-    states = scatter(found, 0)
-    assert states is not None
-    from_measured = fit(found.frozen, np.zeros(0), m.states, AT_STUCK)
-    better = fit(best.misfit, best.u, states, 0).window_losses
-    stuck = better != found.window_losses
-    assert stuck.sum() > 2 and np.all(better[stuck] < from_measured.window_losses[stuck] + 1.0)

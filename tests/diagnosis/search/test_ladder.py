@@ -13,7 +13,7 @@ from diagnosis.answer.ladder import confirmed, other_model
 from diagnosis.errors.model import Errors, calibrated
 from diagnosis.fit.growing import fit_from
 from diagnosis.fit.setup import base_fit, measure
-from diagnosis.fit.solver import WIDEST, Fitted
+from diagnosis.fit.solver import AT_STUCK, WIDEST, Fitted, fit, scatter
 from diagnosis.fit.starts import nominal
 from diagnosis.forces.columns import forces
 from diagnosis.forces.constancy import About
@@ -183,3 +183,22 @@ def test_states_that_no_channel_shows_are_scattered_as_far_as_they_are() -> None
     k = m.free.index("rotation_2")
     true = np.array([shown[w.recording].channels["rotation_2"][w.first] for w in m.windows])
     assert np.mean(np.abs(true - m.states[:, k]) < 2.0 * WIDEST * m.state_size[k]) > 0.7
+
+
+def test_a_stuck_window_ends_no_worse_than_from_where_it_was_measured() -> None:
+    """Scattered as widely as states are that no channel shows, few start where the bodies move as one."""
+    recordings = [rocking_on_top(seed, False) for seed in (1, 2)]
+    measured = measure(AS_BLOCK, recordings)
+    plain = ladder._misfit(measured.identification.ladder[0], AS_BLOCK, measured, recordings)
+    start = ladder._with(plain, nominal(plain), {"second_body.joint_over_height": 1.0})
+    best = fit(plain, start.u, plain.measured.states, 0).frozen
+    from_measured = fit(best, np.zeros(0), plain.measured.states, AT_STUCK)
+    for first in range(2):  # every other window is moved away
+        apart = from_measured.states.copy()
+        apart[first::2] += 4.0 * plain.measured.state_size
+        found = fit(best, np.zeros(0), apart, 0)
+        states = scatter(found, 0)
+        assert states is not None
+        scattered = fit(best, np.zeros(0), states, 0).window_losses
+        stuck = scattered != found.window_losses
+        assert stuck.sum() > 2 and np.all(scattered[stuck] < from_measured.window_losses[stuck] + 1.0)
