@@ -9,7 +9,7 @@ import models
 from diagnosis.data.measured import Measured, arrange, identification_of
 from diagnosis.data.pose import with_rotations
 from diagnosis.data.stretches import arrange_stretches
-from diagnosis.fit.growing import fit_from
+from diagnosis.fit.growing import fit_followed
 from diagnosis.fit.memory import counted
 from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.prediction import Predictor
@@ -82,7 +82,7 @@ def base_fit(specimen: Specimen, measured: Measured, seed: int = 0) -> Fitted:
     coordinates = tuple(name for name in measured.identification.coordinates if name in ranged)
     predictor = Predictor(measured, specimen.options, specimen.stages, coordinates)
     plain = Misfit(predictor, sensor_noise_only(predictor), unknowns, fixed_values(specimen))
-    return with_noise_of_the_base(fit_from(plain, [nominal(plain)], seed))
+    return with_noise_of_the_base(fit_followed(plain, [nominal(plain)], seed))
 
 
 def with_noise_of_the_base(first: Fitted) -> Fitted:

@@ -1,4 +1,7 @@
-"""What a diagnosis needs to know of two stacked blocks: both rotations lead and are measured."""
+"""What a diagnosis needs to know of two stacked blocks: both rotations lead and are measured.
+
+Windows last about as long as neighbouring trajectories stay together: an impact or two of either joint.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +27,7 @@ IDENTIFICATION = Identification(
         State("rotation_rate_2", "rotation_2", rate=True),
     ),
     windows=WindowLengths(
-        shortest=1.0, aim=2.0, longest=2.8, quiet=1.2, smoothing=0.17, unit=lambda d: 1.0 / d["frequency_parameter"]
+        shortest=0.4, aim=0.8, longest=1.1, quiet=1.2, smoothing=0.17, unit=lambda d: 1.0 / d["frequency_parameter"]
     ),
     chaotic=True,
     forces=FORCES,

@@ -2,18 +2,30 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 
-from diagnosis.fit.setup import base_fit, measure
+from diagnosis.data.measured import arrange
+from diagnosis.fit.growing import fit_from
+from diagnosis.fit.misfit import Misfit
+from diagnosis.fit.prediction import Predictor
+from diagnosis.fit.setup import base_fit, measure, with_noise_of_the_base
 from diagnosis.fit.solver import Fitted, fit, fit_thoroughly
+from diagnosis.fit.starts import nominal
+from diagnosis.fit.unknowns import fixed_values, of_specimen
+from diagnosis.fit.whitening import sensor_noise_only
 from grids.specimen import Specimen
+from models.stacked.identification import IDENTIFICATION
+from models.stacked.model import MODEL
 from tests.diagnosis.made import SPECIMEN, recording
 from tests.diagnosis.search.test_ladder import ON_TOP, rocking_on_top
 
 STACK = Specimen("stack", "stacked", ON_TOP, {"wall_length": 0.005, "wall_height": 0.005})
+assert IDENTIFICATION.windows is not None
+WINDOWS = IDENTIFICATION.windows
 
 
 @pytest.mark.parametrize(("seed", "away"), [(1, 8.0), (4, -4.0)])
@@ -28,7 +40,12 @@ def test_windows_stuck_far_from_the_measured_states_come_back(seed: int, away: f
 
 @cache
 def of_a_stack() -> Fitted:
-    return base_fit(STACK, measure(STACK, [rocking_on_top(seed, True) for seed in (1, 2)]))
+    """In windows so long that neighbouring trajectories part in them."""
+    lengths = replace(WINDOWS, shortest=1.0, aim=2.0, longest=2.8).in_seconds(MODEL.derive(ON_TOP))
+    measured = arrange(MODEL, [rocking_on_top(seed, True) for seed in (1, 2)], False, lengths)
+    predictor = Predictor(measured, STACK.options)
+    plain = Misfit(predictor, sensor_noise_only(predictor), of_specimen(STACK, measured.model), fixed_values(STACK))
+    return with_noise_of_the_base(fit_from(plain, [nominal(plain)]))
 
 
 def away(axis: int, size: float) -> np.ndarray:
