@@ -18,10 +18,13 @@ from diagnosis.answer.when import as_stages, held_stages
 from diagnosis.data.measured import Measured, seen_as
 from diagnosis.data.noise import RELATIVE_FLOOR
 from diagnosis.errors.model import Errors
+from diagnosis.fit.growing import fit_followed
 from diagnosis.fit.memory import counted
 from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.prediction import Point, Predictor
-from diagnosis.fit.solver import fit, fit_thoroughly
+from diagnosis.fit.solver import Fitted, fit, fit_thoroughly
+from diagnosis.fit.starts import nominal
+from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.search.refit import Explanation
 from models.base import FloatArray
 
@@ -43,6 +46,15 @@ class Shown:
     point_after: Point
     held_stages: tuple[HeldStage, ...] = ()
     """When effects that do not always act do so in these recordings, if they were not learned from."""
+
+
+def followed(held: Measured, base: Fitted) -> Measured:
+    """Recordings held out, in windows that grow as those of the base fit did (`diagnosis.fit.growing`)."""
+    if not held.parts_quickly:
+        return held
+    predictor = replace(base.misfit.predictor, measured=held)
+    plain = Misfit(predictor, sensor_noise_only(predictor), (), base.point.values)
+    return fit_followed(plain, [nominal(plain)]).measured
 
 
 def frozen(

@@ -27,8 +27,8 @@ FEWEST = 20
 """Samples of a window that is shortened."""
 SHORTEST, FIRST = 0.2, 0.4
 """Shares of its length that a window must reach, and that it begins with."""
-FACTOR, LEAST = 1.5, 1.03
-"""What windows grow by in a round, at most each and at least all together."""
+LEAST = 1.03
+"""What all windows together grow by at least in a round."""
 ROUNDS = 8
 DEVIATIONS = 2.0
 """By which what is fitted is changed; what is out of proportion may weigh as much as the change itself."""
@@ -59,8 +59,7 @@ def fit_followed(plain: Misfit, origins: Sequence[Origin], seed: int = 0) -> Fit
     found = searched(stage, origins, seed)
     for turn in range(ROUNDS):
         found = fit_thoroughly(stage, found.u, found.states)
-        now = np.array([window.samples for window in stage.measured.windows])
-        further = _cut(plain, in_proportion(found, _cut(plain, FACTOR * now)))
+        further = _cut(plain, in_proportion(found, plain))
         if turn and further.measured.mask.sum() < LEAST * stage.measured.mask.sum():
             break
         stage = further

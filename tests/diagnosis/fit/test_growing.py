@@ -7,10 +7,15 @@ from functools import cache
 import numpy as np
 import pytest
 
+from diagnosis.answer.heldout import followed
+from diagnosis.data.measured import Measured
 from diagnosis.fit.growing import DEVIATIONS, FIRST, SHORTEST, cut_again, in_proportion
 from diagnosis.fit.intervals import covariances
+from diagnosis.fit.misfit import Misfit
+from diagnosis.fit.prediction import Predictor
 from diagnosis.fit.setup import base_fit, measure
 from diagnosis.fit.solver import Fitted, fit_thoroughly
+from diagnosis.fit.whitening import sensor_noise_only
 from grids.specimen import Specimen
 from tests.diagnosis.search.test_ladder import ON_TOP, rocking_on_top
 
@@ -65,3 +70,19 @@ def test_a_stack_is_as_its_specimen_says_within_its_intervals(seeds: tuple[int, 
     true = [unknown.coordinate(ON_TOP[unknown.name]) for unknown in found.misfit.unknowns]
     assert np.max(np.abs(found.u - true) / deviation) < 2.5
     assert found.loss < 1.2 * found.measured.count.sum()
+
+
+def test_recordings_held_out_are_compared_in_windows_of_the_same_kind() -> None:
+    """As long as what the states change is in proportion: beyond that a prediction is worth nothing."""
+    base = stack(5, 6)
+    whole = measure(STACK, [rocking_on_top(8, True)])
+    held = followed(whole, base)
+    assert 0.3 * whole.mask.sum() < held.mask.sum() < 0.95 * whole.mask.sum()
+    assert {(w.recording, w.first) for w in held.windows} <= {(w.recording, w.first) for w in whole.windows}
+
+    def fitted(measured: Measured) -> Fitted:
+        predictor = Predictor(measured)
+        plain = Misfit(predictor, sensor_noise_only(predictor), (), base.point.values)
+        return fit_thoroughly(plain, np.zeros(0), measured.states)
+
+    assert bends(fitted(whole)).max() > 1.5 * DEVIATIONS > bends(fitted(held)).max()
