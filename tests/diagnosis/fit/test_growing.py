@@ -7,6 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from diagnosis.answer.diagnose import diagnose
 from diagnosis.answer.heldout import followed
 from diagnosis.data.measured import Measured
 from diagnosis.fit.growing import DEVIATIONS, FIRST, SHORTEST, cut_again, in_proportion
@@ -17,6 +18,7 @@ from diagnosis.fit.setup import base_fit, measure
 from diagnosis.fit.solver import Fitted, fit_thoroughly
 from diagnosis.fit.whitening import sensor_noise_only
 from grids.specimen import Specimen
+from tests.diagnosis.made import TIME_STEP
 from tests.diagnosis.search.test_ladder import ON_TOP, rocking_on_top
 
 LENGTHS = ("wall_length", "wall_height", "top_length", "top_height")
@@ -86,3 +88,13 @@ def test_recordings_held_out_are_compared_in_windows_of_the_same_kind() -> None:
         return fit_thoroughly(plain, np.zeros(0), measured.states)
 
     assert bends(fitted(whole)).max() > 1.5 * DEVIATIONS > bends(fitted(held)).max()
+
+
+def test_a_whole_diagnosis_compares_what_can_be_followed() -> None:
+    """Nothing is missing in the stack; what is shown of the recording held out is in the windows that grew."""
+    found = diagnose(STACK, stack(5, 6).measured.recordings, [rocking_on_top(8, True)])
+    assert found.verdict == "nothing_missing"
+    held = followed(measure(STACK, [rocking_on_top(8, True)]), stack(5, 6))
+    shown = next(w for w in found.windows if w.held_out)
+    assert len(shown.start) == len(held.windows)
+    assert np.sum(shown.end - shown.start) == pytest.approx(sum(w.samples for w in held.windows) * TIME_STEP)
