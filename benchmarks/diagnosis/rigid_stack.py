@@ -8,7 +8,8 @@ forces that pin a corner of each joint and the couples that hold a closed one; a
 A joint that touches opens about the corner about which it then turns away from the other one, and stays closed where
 this holds of neither. The rotations are integrated by classical Runge-Kutta steps on the grid given, which locate an
 impact by bisection. A joint leaves it with ``factor_on_housner`` of the rate that the impulses leave, which gains no
-energy. Rest: an impact slower than `CALM` p alpha that the forces let stay.
+energy. Rest: an impact slower than `CALM` p alpha that the forces let stay. Where impacts do not end in a step all that
+follows is nan, as where a body falls.
 """
 
 from __future__ import annotations
@@ -41,6 +42,8 @@ GRAVITY = 9.80665
 CALM = 2e-3
 SLIDES = 2e-4
 """rad s-1 over which dry friction changes its sign."""
+MOST_IMPACTS = 100
+"""In one step: a joint that hits as often hits without end."""
 BASE, TOP = 0, 1
 NONE = 2
 """In the place of a joint: none is driven."""
@@ -336,8 +339,8 @@ def _integrate(couple, ratio, motion, step, body, laws, geometry, numbers, calm,
     found = np.zeros((4, count))
     theta, rate, sides, impacts = np.zeros(2), np.zeros(2), np.zeros(2, np.int64), 0
     for k in range(count - 1):
-        slope, gone = (motion[k + 1] - motion[k]) / step, 0.0
-        for _ in range(100):
+        slope, gone, hits = (motion[k + 1] - motion[k]) / step, 0.0, 0
+        while hits < MOST_IMPACTS:
             t, left, ground = k * step + gone, step - gone, motion[k] + gone * slope
             if sides[BASE] == 0 or sides[TOP] == 0:
                 sides = _settled(couple, theta, rate, sides, t, ground, body, laws, geometry, numbers)
@@ -372,10 +375,11 @@ def _integrate(couple, ratio, motion, step, body, laws, geometry, numbers, calm,
                 numbers,
             )  # fmt: skip
             theta, rate = _together(theta, rate, sides)
+            hits += 1
             if step - gone <= 1e-15:
                 break
         found[:2, k + 1], found[2:, k + 1] = theta, rate
-        if not abs(theta[0]) < 1.5 or not abs(theta[1]) < 1.5:
+        if hits == MOST_IMPACTS or not abs(theta[0]) < 1.5 or not abs(theta[1]) < 1.5:
             found[:, k + 1 :] = np.nan
             break
     return found
