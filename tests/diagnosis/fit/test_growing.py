@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,9 +20,11 @@ from diagnosis.fit.setup import base_fit, measure
 from diagnosis.fit.solver import Fitted, fit_thoroughly
 from diagnosis.fit.whitening import sensor_noise_only
 from grids.specimen import Specimen
+from models.base import FloatArray
 from tests.diagnosis.made import TIME_STEP
 from tests.diagnosis.search.test_ladder import ON_TOP, rocking_on_top
 
+FALLS = 7
 LENGTHS = ("wall_length", "wall_height", "top_length", "top_height")
 STACK = Specimen("stack", "stacked", ON_TOP, dict.fromkeys(LENGTHS, 0.005))
 
@@ -56,11 +60,21 @@ def test_what_a_window_holds_is_in_proportion() -> None:
     assert np.median(bends(found)) < 0.5 * DEVIATIONS
 
 
-def test_where_nothing_bends_a_window_is_as_long_as_it_may_be() -> None:
+class Falling(Predictor):
+    """Predictions of which the first but one cannot go on from sample `FALLS` of the first window."""
+
+    def predict(self, *args: Any, **more: Any) -> FloatArray:
+        found = super().predict(*args, **more).copy()
+        found[1, 0, 0, FALLS:] = np.nan
+        return found
+
+
+def test_a_window_that_is_in_proportion_stays_and_one_in_which_a_body_may_fall_ends_there() -> None:
     found = stack(5, 6)
-    ends = in_proportion(found, found.misfit)
     lengths = np.array([w.samples for w in found.measured.windows])
-    assert np.all(ends <= lengths) and np.mean(ends == lengths) > 0.5
+    assert np.mean(in_proportion(found, found.misfit) == lengths) > 0.9
+    falling = Falling(found.measured, found.misfit.predictor.options)
+    assert in_proportion(found, replace(found.misfit, predictor=falling))[0] == FALLS < lengths[0]
 
 
 @pytest.mark.parametrize("seeds", [(1, 2), (3, 4), (5, 6), (7, 8)])

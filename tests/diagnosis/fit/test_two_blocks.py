@@ -60,7 +60,7 @@ def test_windows_begin_where_either_block_moves_most_and_last_by_the_wall() -> N
     p = float(models.get("stacked").derive(WALL.parameters)["frequency_parameter"].item())
     assert measured.lengths is not None
     assert measured.lengths.aim * p == pytest.approx(0.8)
-    assert max(w.samples for w in measured.windows) * TIME_STEP <= 2.8 / p + TIME_STEP
+    assert max(w.samples for w in measured.windows) * TIME_STEP <= 1.1 / p + TIME_STEP
 
 
 def test_a_mechanism_may_act_at_one_joint_and_both_are_the_plain_one() -> None:
