@@ -15,6 +15,7 @@ from diagnosis.data.noise import base_noise, response_noise
 from diagnosis.data.windows import ABOVE_NOISE, Window, cut, over_noise
 from grids.recordings.base import SHARE, FloatArray, Recording
 from grids.recordings.levels import stem
+from grids.recordings.zero import Zeros, zeros
 from models import MODELS, get
 from models.errors import InputError
 from models.identification import NARROWEST, Identification, Stretches, WindowLengths
@@ -152,6 +153,11 @@ class Measured:
         """Names of the states (S,) that every window has its own of; the model carries the others to its start."""
         following = self.alike if self.bonded else ()
         return tuple(state.name for state in self.identification.free if state.name not in following)
+
+    @cached_property
+    def zeros(self) -> Zeros:
+        """What the records of the base tell of their accelerometers' zeros."""
+        return zeros(self.recordings)
 
     @cached_property
     def recording_of(self) -> NDArray[np.int64]:

@@ -2,8 +2,9 @@
 
     loss = sum_w nu n_w log(1 + chi2_w/(nu n_w)) + sum_i ((x_i - mean_i)/sd_i)^2 + |z|^2,   nu = 10
 
-chi2_w is the squared whitened residual of window w, n_w its number of samples, the second sum runs over the priors, z
-is the level of the errors that windows share (`diagnosis.fit.whitening`). One wrong event must not decide: a window far
+chi2_w is the squared whitened residual of window w, n_w its number of samples, the second sum runs over the priors,
+among which is what the records of the base tell of their zeros (`grids.recordings.zero`), z is the level of the errors
+that windows share (`diagnosis.fit.whitening`). One wrong event must not decide: a window far
 off counts with its logarithm. The states of a window appear in its own residuals only; projecting these off the states'
 derivatives (Schur complement) leaves a least-squares problem in the shared parameters alone.
 """
@@ -21,6 +22,7 @@ from diagnosis.data.measured import Measured
 from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.unknowns import Unknown, values_of
 from diagnosis.fit.whitening import Whitening
+from grids.instruments.accelerometer_offset import MECHANISM as ZERO
 from models.base import FloatArray
 
 NU = 10.0
@@ -28,7 +30,7 @@ STEP = 0.05
 """Difference step of a coordinate."""
 STATE_STEP = 2e-3
 """Difference step of a state over its scatter among the windows."""
-
+ZERO_READING = f"{ZERO.name}.{ZERO.parameters[0].name}"
 
 Found = TypeVar("Found")
 Asking = Generator[Sequence[Point], FloatArray, Found]
@@ -136,10 +138,19 @@ class Misfit:
                 slope = np.zeros(len(self.unknowns))
                 slope[i] = unknown.scale / sd
                 slopes.append(slope)
-        found = np.array(rows), np.array(slopes).reshape(len(rows), len(self.unknowns))
-        if self.smooth is None:
-            return found
-        return np.concatenate([found[0], self.smooth @ u]), np.concatenate([found[1], self.smooth])
+        found = [(np.array(rows), np.array(slopes).reshape(len(rows), len(self.unknowns))), self._zero_rows(u)]
+        if self.smooth is not None:
+            found.append((self.smooth @ u, self.smooth))
+        residuals, derivatives = zip(*found, strict=True)
+        return np.concatenate(residuals), np.concatenate(derivatives)
+
+    def _zero_rows(self, u: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """The same of the records of the base, one a recording: what their accelerometer reads at rest."""
+        acting = self.predictor.shares(ZERO.name)
+        values = {**self.fixed, **values_of(self.unknowns, u)}
+        residual, slope = self.measured.zeros.rows(values.get(ZERO_READING, 0.0) * acting)
+        scales = [x.scale if x.name == ZERO_READING else 0.0 for x in self.unknowns]
+        return residual, np.outer(slope * acting, scales)
 
     def loss(self, u: FloatArray, states: FloatArray) -> float:
         return float(self.losses(self.residuals([self.point(u, states)])).sum()) + self.prior(u)

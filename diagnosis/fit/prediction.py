@@ -288,6 +288,16 @@ class Predictor:
         found = changes(stages.keys(), stages, recording.name)
         return [(first_sample(time, step), frozenset(stages) - acting) for time, acting in found]
 
+    def shares(self, mechanism: str) -> FloatArray:
+        """Of the samples of each recording (R,) those on which a mechanism acts if it is switched on."""
+        m, found = self.measured, []
+        for recording, shaking in zip(m.recordings, m.shakings, strict=True):
+            ways, end = self._ways(recording), shaking.horizontal.size
+            ends = [*(min(first, end) for first, _ in ways[1:]), end]
+            on = [last - first for (first, off), last in zip(ways, ends, strict=True) if mechanism not in off]
+            found.append(sum(on) / end)
+        return np.array(found)
+
     def sets(
         self, instruments: Switched, recording: Recording, stages: Stages | None = None
     ) -> list[tuple[int, Switched]]:

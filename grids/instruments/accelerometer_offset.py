@@ -21,5 +21,5 @@ MECHANISM = Mechanism(
     sentence="the accelerometer of the base reads {offset:+.3f} m/s2 too much (below zero: too little)",
     acts={"base": move},
     static_test="read the accelerometer of the base at rest",
-    source="readings at rest settle it",
+    source="readings at rest settle it, and the mean over a motion that comes back to rest",
 )

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from grids.recordings import flat_tops
 from grids.recordings.base import REQUIRED, FloatArray, Recording
+from grids.recordings.zero import zeros
 
 GRAVITY = 9.80665
 SMOOTHING = 0.06
@@ -39,6 +40,8 @@ LARGEST_LEAD = 0.3
 LEAD_GAIN = 6.0
 """Gain in log likelihood over a rotation in step, counting one sample a smoothing width."""
 LARGEST_PGA = 3.0 * GRAVITY
+OFF_ZERO = 5.0
+"""Deviations of a base's mean acceleration from zero beyond which it did not come back to rest."""
 
 
 @dataclass(frozen=True)
@@ -70,6 +73,12 @@ def _of_base(recording: Recording) -> Iterator[str]:
         yield (
             f"{REQUIRED} peaks at {peak / GRAVITY:.3g} g, more than a shake table gives: "
             "is it in cm s-2, or in m s-2 declared as g?"
+        )
+    zero = zeros([recording])
+    if abs(float(zero.mean[0])) > OFF_ZERO * float(zero.deviation[0]):
+        yield (
+            f"{REQUIRED} has a mean of {float(zero.mean[0]):+.2g} m s-2, a base that comes back to rest none: "
+            "is the accelerometer's zero wrong, or the record cut?"
         )
     vertical = recording.channels.get("base_acceleration_z")
     if vertical is not None and abs(abs(float(np.median(vertical))) - GRAVITY) < 0.1 * GRAVITY:

@@ -7,6 +7,7 @@ The lanes make them unless a test asks for the plain reference: both agree to so
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -56,12 +57,18 @@ def motion(seed: int, duration: float = 9.0, pga: float = 3.0) -> Shaking:
     return Shaking(TIME_STEP, signal * pga / np.max(np.abs(signal)))
 
 
+def as_read(base: Shaking, effect: Mapping[str, Mapping[str, float]]) -> Shaking:
+    """A base that comes back to rest as an accelerometer with a wrong zero reads it."""
+    zero = effect.get("accelerometer_offset", {}).get("offset", 0.0)
+    return replace(base, horizontal=base.horizontal + zero)
+
+
 @lru_cache(maxsize=32)
 def _made(
     name: str, seed: int, effect: tuple[tuple[str, tuple[tuple[str, float], ...]], ...], noise: float, integrator: str
 ) -> Recording:
     mechanisms = {k: dict(v) for k, v in effect}
-    measured = motion(seed)
+    measured = as_read(motion(seed), mechanisms)
     model = models.get("housner")
     of_wall = {f"{m}.{k}": v for m, values in mechanisms.items() for k, v in values.items() if m in model.mechanisms}
     ran = model.simulate(

@@ -18,7 +18,7 @@ from grids.instruments.base import Level, Surroundings
 from grids.recordings.base import Recording
 from grids.specimen import Specimen
 from models.shaking import Shaking
-from tests.diagnosis.made import motion
+from tests.diagnosis.made import as_read, motion
 
 NOISE = 0.01
 """Of each rotation's peak."""
@@ -49,7 +49,7 @@ def simulated(
 
     The base moves vertically where the effect is that this was left out.
     """
-    base = motion(seed, pga=pga)
+    base = as_read(motion(seed, pga=pga), effect)
     if "vertical_acceleration" in effect:
         base = Shaking(base.time_step, base.horizontal, motion(seed + 50, pga=4.0).horizontal, vertical_acts=False)
     own = {f"{m}.{k}": v for m, values in effect.items() if m not in INSTRUMENTS for k, v in values.items()}
