@@ -171,6 +171,8 @@ def _recorded(
     """Channels as written to the file, and the standard deviation of the noise in each."""
     fine = shakings.on_fine_grid(shaking)
     ran, seen = truth.rotations(fine), {**sensors, **errors.sensors}
+    if np.max(np.abs(ran["rotation_1"])) > float(truth.of.model.derive(truth.values)["alpha"][0]):
+        raise Unsuitable  # with the effect it falls
     base = instruments.base(fine.horizontal, fine.time_step, seen)
     share, largest = float(rng.uniform(0.002, 0.005)), float(np.max(np.abs(base)))
     sampled = instruments.logged(base, fine.time_step, sampling, shaking.duration)

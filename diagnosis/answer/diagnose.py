@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from diagnosis.answer.constancy import Judged, judged
 from diagnosis.answer.experiment import next_experiment
 from diagnosis.answer.extrapolated import extrapolated
 from diagnosis.answer.heldout import Shown, compare, fit_figures, followed, horizons, traces_of, windows_of, worsens
@@ -24,20 +25,17 @@ from diagnosis.answer.statement import statement
 from diagnosis.answer.when import stages_of
 from diagnosis.answer.whole_runs import with_runs_from_rest
 from diagnosis.data.measured import Measured
-from diagnosis.errors.model import Errors, calibrated, estimate
+from diagnosis.errors.model import calibrated
 from diagnosis.errors.summary import summary
 from diagnosis.fit.channels import added_by_channels
 from diagnosis.fit.intervals import Estimate, settled
 from diagnosis.fit.one_thread import one_thread
 from diagnosis.fit.setup import as_recorded, measure
-from diagnosis.forces.constancy import About, Constancy, Tested, flags
-from diagnosis.forces.varying import varying
 from diagnosis.progress import Progress, Stages, silent
 from diagnosis.search import bootstrap as bootstrapping
 from diagnosis.search.beginnings import alone, beside
 from diagnosis.search.budget import Budget
 from diagnosis.search.candidates import absent, candidates
-from diagnosis.search.details import least
 from diagnosis.search.found import Search, misfit_per_sample, rivals
 from diagnosis.search.ladder import Climbed, climb, rungs
 from diagnosis.search.law import missing_law
@@ -95,7 +93,7 @@ def diagnose(
         finished = False
         if found.best is None:
             take_best_single(found)
-    answer = _assemble(specimen, found, climbed, held, bootstrap, progress, seed, finished)
+    answer = _assemble(specimen, found, climbed, measured, held, bootstrap, progress, seed, finished)
     answer = replace(answer, seen=tuple(str(one) for one in seen), instruments=known_instruments(specimen))
     return replace(answer, statement=statement(answer, measured.model))
 
@@ -104,6 +102,7 @@ def _assemble(
     specimen: Specimen,
     found: Search,
     climbed: Climbed | None,
+    whole: Measured,
     to_show: Measured | None,
     draws: int,
     progress: Progress,
@@ -119,38 +118,18 @@ def _assemble(
         shown = [replace(shown[0], after=shown[0].before, point_after=shown[0].point_before)]
     chosen = found.chosen
 
-    def of_chosen() -> About:
-        progress("testing constancy", 0.85)
-        return found.tested(chosen)
-
-    tested: list[Tested] = []
-    detail: Constancy | None = None
-    allowed = stages.needed(lambda: least(found, chosen))
-    flagged: tuple[Constancy, ...] = ()
-    if measured.identification.forces:
-        about = stages.needed(of_chosen)
-        tested = about.tested
-        flagged = () if unexplained else about.flags(allowed)
-        detail = next(iter(about.flags(found.more)), None)
-    if found.outside is not None:
-        flagged = (found.outside, *(f for f in flagged if f.parameter != found.outside.parameter))
-    if found.blow is not None:
-        flagged = (found.blow, *flagged)
-    if measured.identification.forces and not flagged and not unexplained:
-        changing: list[Tested] = stages.optional(
-            "whether it changes", lambda: varying(about.forces, _about_the_fit(found), allowed), list
-        )
-        flagged = flags(about.forces, changing, allowed)
+    constancy = judged(found, unexplained, climbed is not None, whole, stages, progress)
+    flagged = constancy.flagged
     near = rivals(found)
     progress("stating the errors", 0.87)
     errors = stages.needed(lambda: summary(found.errors, measured))
-    judged = chosen
+    shown_with = chosen
 
     def of_held(explanation: Explanation, recordings: Measured, share: float) -> Shown:
         progress("before and after", share)
         return compare(found.base, explanation, recordings, found.errors)
 
-    first_held = stages.needed(lambda: of_held(judged, to_show, 0.88)) if to_show else None
+    first_held = stages.needed(lambda: of_held(shown_with, to_show, 0.88)) if to_show else None
     against = contradicted(found, first_held) if first_held and climbed is None else None
     beyond: tuple[Beyond, ...] = ()
     if found.best is not None and climbed is None and not flagged:
@@ -192,7 +171,7 @@ def _assemble(
         shown = [stages.needed(lambda: compare(found.base, final, measured, found.errors))]
 
     held = first_held
-    if to_show and final is not judged:
+    if to_show and final is not shown_with:
         held = stages.needed(lambda: of_held(final, to_show, 0.95))
     if held:
         shown.append(held)
@@ -231,7 +210,7 @@ def _assemble(
         visited=acting[1],
         shows=shows(shown[0], explained, seed) if missing else (),
         constancy=flagged,
-        detail=None if flagged or unexplained else detail,
+        detail=constancy.detail,
         train=train,
         holdout=held_fit,
         base=base,
@@ -257,18 +236,13 @@ def _assemble(
         posterior=drawn,
         not_tried=not_tried(found),
         reference_peak=true_peak(chosen),
-        provenance=_provenance(specimen, found, tested, allowed, seed),
+        provenance=_provenance(specimen, found, constancy, seed),
         finished=finished,
         undecided=undecided(found, p_value) if verdict == "nothing_missing" else None,
         unexplained=unexplained,
         suspicions={r.name: r.suspicions for s in shown for r in s.measured.recordings if r.suspicions},
     )
     return replace(answer, skipped=tuple(stages.skipped) if finished else ())
-
-
-def _about_the_fit(found: Search) -> Errors:
-    """The errors estimated anew about what was found: it may have gone on since they were."""
-    return estimate(found.chosen.fitted, found.errors.base, found.errors)
 
 
 def known_instruments(specimen: Specimen) -> dict[str, Mapping[str, float]]:
@@ -338,11 +312,10 @@ def _horizons(shown: Sequence[Shown], before: Explanation, after: Explanation) -
     return {k: v for s in shown for k, v in horizons(s, *predictors).items()}
 
 
-def _provenance(
-    specimen: Specimen, found: Search, tested: Sequence[Tested], allowed: float, seed: int
-) -> Mapping[str, Any]:
+def _provenance(specimen: Specimen, found: Search, constancy: Judged, seed: int) -> Mapping[str, Any]:
     measured = found.measured
     gains, recordings = gain_by_window(found.base, found.chosen), list(enumerate(measured.recordings))
+    tested = constancy.tested
     return {
         "specimen": specimen.title,
         "model": specimen.model,
@@ -356,7 +329,7 @@ def _provenance(
         },
         "misfit_per_sample": misfit_per_sample(found.chosen),
         "gain_by_recording": {r.name: float(gains[measured.recording_of == k].sum()) for k, r in recordings},
-        "constancy_threshold": allowed,
+        "constancy_threshold": constancy.allowed,
         "largest_constancy": tested[0].statistic if tested else 0.0,
         "largest_constancy_of": f"{tested[0].kind} / {tested[0].depends_on}" if tested else "",
         "seed": seed,

@@ -47,23 +47,27 @@ def fit_from(plain: Misfit, origins: Sequence[Origin], seed: int = 0) -> Fitted:
     return found
 
 
-def fit_followed(plain: Misfit, origins: Sequence[Origin], seed: int = 0) -> Fitted:
+def fit_followed(
+    plain: Misfit, origins: Sequence[Origin], seed: int = 0, known: NDArray[np.intp] | None = None
+) -> Fitted:
     """The same, with windows that grow only as long as what is fitted acts in proportion in them.
 
-    Without those in which it does not even over `SHORTEST` of their length.
+    Without those in which it does not even over `SHORTEST` of their length. ``known``: samples (W,) that they have been
+    followed over, and are.
     """
     if not plain.measured.parts_quickly:
         return fit_from(plain, origins, seed)
     whole = np.array([window.samples for window in plain.measured.windows])
-    stage = _cut(plain, FIRST * whole)
+    known = np.zeros(whole.size, np.intp) if known is None else known
+    stage = _cut(plain, np.maximum(FIRST * whole, known))
     found = searched(stage, origins, seed)
     for turn in range(ROUNDS):
         found = fit_thoroughly(stage, found.u, found.states)
-        further = _cut(plain, in_proportion(found, plain))
+        further = _cut(plain, np.maximum(in_proportion(found, plain), known))
         if turn and further.measured.mask.sum() < LEAST * stage.measured.mask.sum():
             break
         stage = further
-    ends = in_proportion(found, found.misfit)
+    ends = np.maximum(in_proportion(found, found.misfit), known)
     keep = np.flatnonzero(ends >= np.minimum(np.maximum(SHORTEST * whole, FEWEST), whole))
     keep = keep if keep.size else np.arange(whole.size)
     ended = _cut(plain.of_windows(keep), ends[keep])
