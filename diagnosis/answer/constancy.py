@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from diagnosis.answer.grown import grown
-from diagnosis.data.measured import Measured
 from diagnosis.errors.model import Errors, estimate
 from diagnosis.forces.constancy import About, Constancy, Tested, flags
 from diagnosis.forces.varying import varying
@@ -25,23 +23,16 @@ class Judged:
     allowed: float
 
 
-def judged(
-    found: Search, unexplained: bool, other_model: bool, whole: Measured, stages: Stages, progress: Progress
-) -> Judged:
-    """The tests of what was found; ``unexplained``: nothing was, ``other_model``: it stands on another base model.
+def judged(found: Search, unexplained: bool, stages: Stages, progress: Progress) -> Judged:
+    """The tests of what was found; ``unexplained``: nothing was.
 
-    In its own windows, from window to window, and where trajectories part in windows of ``whole`` that grow with it:
-    each asked where those before found nothing.
+    In its own windows, from window to window, and in windows that have grown with it: each where those before found
+    nothing.
     """
 
     def of_chosen() -> About:
         progress("testing constancy", 0.85)
         return found.tested(found.chosen)
-
-    def of_grown() -> About:
-        progress("testing constancy in windows that grow with what was found", 0.86)
-        again = grown(found, whole)
-        return again.tested(again.chosen)
 
     declares = bool(found.measured.identification.forces)
     allowed = stages.needed(lambda: least(found, found.chosen))
@@ -62,10 +53,9 @@ def judged(
             "whether it changes", lambda: varying(about.forces, _about_the_fit(found), allowed), list
         )
         flagged = flags(about.forces, changing, allowed)
-    grows = whole.parts_quickly and found.best is not None and not other_model
-    if declares and grows and not flagged and not unexplained:
-        further: About | None = stages.optional("windows that grow with what was found", of_grown, lambda: None)
-        if further and (flagged := further.flags(allowed)):
+    if found.longer is not None and not flagged and not unexplained:
+        further = found.longer.tested(found.longer.chosen)
+        if flagged := further.flags(allowed):
             tested = further.tested
     return Judged(tested, flagged, None if flagged or unexplained else detail, allowed)
 

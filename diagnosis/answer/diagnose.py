@@ -37,6 +37,7 @@ from diagnosis.search.beginnings import alone, beside
 from diagnosis.search.budget import Budget
 from diagnosis.search.candidates import absent, candidates
 from diagnosis.search.found import Search, misfit_per_sample, rivals
+from diagnosis.search.grown import beside_in_grown_windows, grown
 from diagnosis.search.ladder import Climbed, climb, rungs
 from diagnosis.search.law import missing_law
 from diagnosis.search.refit import Explanation, gain_by_window
@@ -89,11 +90,14 @@ def diagnose(
             climbed = confirmed(climb(found, tried, decisive=False), held)
         if climbed is not None:
             found = climbed.after
+        else:
+            for stage in beside_in_grown_windows(found, measured, progress):
+                found = stage
     except KeyboardInterrupt:
         finished = False
         if found.best is None:
             take_best_single(found)
-    answer = _assemble(specimen, found, climbed, measured, held, bootstrap, progress, seed, finished)
+    answer = _assemble(specimen, found, climbed, held, bootstrap, progress, seed, finished)
     answer = replace(answer, seen=tuple(str(one) for one in seen), instruments=known_instruments(specimen))
     return replace(answer, statement=statement(answer, measured.model))
 
@@ -102,7 +106,6 @@ def _assemble(
     specimen: Specimen,
     found: Search,
     climbed: Climbed | None,
-    whole: Measured,
     to_show: Measured | None,
     draws: int,
     progress: Progress,
@@ -118,11 +121,14 @@ def _assemble(
         shown = [replace(shown[0], after=shown[0].before, point_after=shown[0].point_before)]
     chosen = found.chosen
 
-    constancy = judged(found, unexplained, climbed is not None, whole, stages, progress)
+    judging = found
+    if climbed is not None and chosen.measured.parts_quickly:  # it was compared in windows that it need not follow
+        judging = stages.needed(lambda: grown(found, chosen.measured.undisturbed, keep=False))
+    constancy = judged(judging, unexplained, stages, progress)
     flagged = constancy.flagged
     near = rivals(found)
     progress("stating the errors", 0.87)
-    errors = stages.needed(lambda: summary(found.errors, measured))
+    errors = stages.needed(lambda: summary(judging.errors, measured))
     shown_with = chosen
 
     def of_held(explanation: Explanation, recordings: Measured, share: float) -> Shown:

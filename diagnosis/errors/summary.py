@@ -79,7 +79,7 @@ class ErrorModel:
 def summary(errors: Errors, measured: Measured) -> ErrorModel:
     """The errors in the units of the recordings."""
     declared = measured.identification.scatter
-    still = errors.pieces[len(measured.windows) :]
+    still = errors.pieces[len(errors.whitening.measured.windows) :]
     seconds = sum(p.time.size * float(np.min(np.diff(p.time))) for p in still) / max(len(measured.channels), 1)
     longest = max(float(r.time[-1]) for r in measured.recordings)
     return ErrorModel(

@@ -81,6 +81,8 @@ class Search:
     """A force that acts for a moment, too short to say which, seen when the search had not ended (`blow`)."""
     begun: Search | None = None
     """This search with one effect that begins or ends, that leaves something unexplained."""
+    longer: Search | None = None
+    """What was found, in windows that have grown with it (`diagnosis.search.grown`)."""
     strongest_law: tuple[Explanation, float] | None = None
     """Of an explanation of several effects, with the evidence of its strongest law (`diagnosis.search.details`)."""
     about: About | None = None

@@ -7,11 +7,11 @@ import pytest
 
 from benchmarks.diagnosis import rigid_stack
 from benchmarks.diagnosis.open_laws import LAWS
-from diagnosis.answer.grown import grown
 from diagnosis.errors.model import calibrated
 from diagnosis.fit.setup import measure
 from diagnosis.search.candidates import candidates
 from diagnosis.search.found import Search
+from diagnosis.search.grown import grown
 from diagnosis.search.refit import Explanation
 from grids.recordings.base import Recording
 from tests.diagnosis.fit.test_two_blocks import NOISE, TRUE, WALL
