@@ -11,7 +11,16 @@ import numpy as np
 from diagnosis.answer.constancy import Judged, judged
 from diagnosis.answer.experiment import next_experiment
 from diagnosis.answer.extrapolated import extrapolated
-from diagnosis.answer.heldout import Shown, compare, fit_figures, followed, horizons, traces_of, windows_of, worsens
+from diagnosis.answer.heldout import (
+    Shown,
+    as_far_as_followed,
+    compare,
+    fit_figures,
+    horizons,
+    traces_of,
+    windows_of,
+    worsens,
+)
 from diagnosis.answer.judgement import contradicted, explains, p_of_effects, p_of_missing, undecided, verdict_of
 from diagnosis.answer.ladder import confirmed, other_model
 from diagnosis.answer.located import located
@@ -73,7 +82,7 @@ def diagnose(
     measured = measure(specimen, training)
     held = measure(specimen, holdout, measured.reference_peak) if holdout else None  # refused before the search
     fitted, errors = calibrated(specimen, measured, seed)
-    held = followed(held, fitted) if held else None
+    held = as_far_as_followed(held, fitted) if held else None
     budget = Budget(speed=measured.identification.speed)
     found = Search(Explanation((), fitted), candidates(measured, specimen), errors, budget=budget)
     climbed: Climbed | None = None

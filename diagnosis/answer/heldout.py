@@ -48,7 +48,7 @@ class Shown:
     """When effects that do not always act do so in these recordings, if they were not learned from."""
 
 
-def followed(held: Measured, base: Fitted) -> Measured:
+def as_far_as_followed(held: Measured, base: Fitted) -> Measured:
     """Recordings held out, in windows that grow as those of the base fit did (`diagnosis.fit.growing`)."""
     if not held.parts_quickly:
         return held

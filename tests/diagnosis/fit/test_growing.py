@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from diagnosis.answer.diagnose import diagnose
-from diagnosis.answer.heldout import followed
+from diagnosis.answer.heldout import as_far_as_followed
 from diagnosis.data.measured import Measured
 from diagnosis.fit.growing import DEVIATIONS, FIRST, SHORTEST, cut_again, in_proportion
 from diagnosis.fit.intervals import covariances
@@ -92,7 +92,7 @@ def test_recordings_held_out_are_compared_in_windows_of_the_same_kind() -> None:
     """As long as what the states change is in proportion: beyond that a prediction is worth nothing."""
     base = stack(5, 6)
     whole = measure(STACK, [rocking_on_top(8, True)])
-    held = followed(whole, base)
+    held = as_far_as_followed(whole, base)
     assert 0.3 * whole.mask.sum() < held.mask.sum() < 0.95 * whole.mask.sum()
     assert {(w.recording, w.first) for w in held.windows} <= {(w.recording, w.first) for w in whole.windows}
 
@@ -108,7 +108,7 @@ def test_a_whole_diagnosis_compares_what_can_be_followed() -> None:
     """Nothing is missing in the stack; what is shown of the recording held out is in the windows that grew."""
     found = diagnose(STACK, stack(5, 6).measured.recordings, [rocking_on_top(8, True)])
     assert found.verdict == "nothing_missing"
-    held = followed(measure(STACK, [rocking_on_top(8, True)]), stack(5, 6))
+    held = as_far_as_followed(measure(STACK, [rocking_on_top(8, True)]), stack(5, 6))
     shown = next(w for w in found.windows if w.held_out)
     assert len(shown.start) == len(held.windows)
     assert np.sum(shown.end - shown.start) == pytest.approx(sum(w.samples for w in held.windows) * TIME_STEP)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,13 +11,15 @@ from benchmarks.diagnosis import rigid_stack
 from benchmarks.diagnosis.open_laws import LAWS
 from diagnosis.errors.model import calibrated
 from diagnosis.fit.setup import measure
+from diagnosis.progress import silent
 from diagnosis.search.candidates import candidates
 from diagnosis.search.found import Search
-from diagnosis.search.grown import grown
+from diagnosis.search.grown import beside_in_grown_windows, grown
 from diagnosis.search.refit import Explanation
 from grids.recordings.base import Recording
 from tests.diagnosis.fit.test_two_blocks import NOISE, TRUE, WALL
 from tests.diagnosis.made import TIME_STEP, motion, searched
+from tests.diagnosis.search.recovered import simulated
 
 FINE = 8
 """Steps of the program apart in a sample."""
@@ -59,3 +63,28 @@ def test_what_the_name_leaves_shows_more_in_them(searches: tuple[Search, Search]
     first, then = (s.tested(s.chosen).tested[0] for s in (before, after))
     assert first.depends_on == then.depends_on == "side"
     assert then.statistic > 1.4 * first.statistic
+
+
+def test_a_law_that_nothing_else_explains_adds_no_effect_and_is_left_to_be_tested(
+    searches: tuple[Search, Search],
+) -> None:
+    before, _ = searches
+    whole = measure(WALL, before.measured.recordings)
+    assert not list(beside_in_grown_windows(before, whole, silent))
+    assert before.longer is not None
+    assert before.longer.chosen.measured.mask.sum() > before.measured.mask.sum()
+
+
+def test_a_second_effect_that_grown_windows_ask_for_is_added() -> None:
+    """The search for the first did not know of a lean; in the windows that grow it leaves a force on one side."""
+    effect = {"viscous_damping": {"rate": 0.8}, "tilt": {"tilt": 0.015}}
+    whole = measure(WALL, [simulated("stacked", TRUE, effect, seed, 6.0) for seed in (1, 2)])
+    fitted, errors = calibrated(WALL, whole)
+    both = tuple(c for c in candidates(whole, WALL) if c.name in effect)
+    dashpot = tuple(c for c in both if c.name == "viscous_damping")
+    first = replace(searched(Search(Explanation((), fitted), dashpot, errors)), candidates=both)
+    *_, found = beside_in_grown_windows(first, whole, silent)
+    assert set(found.chosen.names) == set(effect)
+    values = found.chosen.fitted.values
+    assert values["viscous_damping.rate"] == pytest.approx(0.8, rel=0.1)
+    assert values["tilt.tilt"] == pytest.approx(0.015, rel=0.1)
