@@ -1,9 +1,9 @@
 """What the record of the base tells of its accelerometer's zero, whatever stands on it.
 
 A base that is shaken starts from rest and comes back to it, so over a recording of length T its acceleration has the
-mean (v(T) - v(0))/T = 0, and a reading with a wrong zero has that zero. Records are cut, so the velocity may be at any
-point of its way at either end: the mean's standard deviation is taken as `CUT` sqrt(2) s_v/T, s_v that of the velocity
-about its trend.
+mean (v(T) - v(0))/T = 0, and a reading with a wrong zero has that zero. Records are cut, and a computed pulse may leave
+the base with a velocity, so that may be anywhere in its range R about its trend at either end: the mean's standard
+deviation is taken as `CUT` R/T.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ import numpy as np
 
 from grids.recordings.base import REQUIRED, FloatArray, Recording
 
-CUT = 2.0
-"""Over what the two ends would give if they were any instants: records are cut where the motion is strong."""
+CUT = 0.5
+"""Two velocities anywhere in a range differ by .41 of it (root mean square): records are cut where motion is strong."""
 LEVEL = 0.01
 """m s-2; what an accelerometer's zero is known to at best: it drifts, and a table leans by a milliradian."""
 NU = 4.0
@@ -50,5 +50,5 @@ def _zero(base: FloatArray, time_step: float) -> tuple[float, float]:
     time = time_step * np.arange(base.size)
     velocity = time_step * np.cumsum(base)
     about = velocity - np.polyval(np.polyfit(time, velocity, 1), time)
-    cut = CUT * np.sqrt(2.0) * float(np.std(about)) / (time_step * base.size)
+    cut = CUT * float(np.ptp(about)) / (time_step * base.size)
     return float(np.mean(base)), float(np.hypot(cut, LEVEL))

@@ -52,10 +52,17 @@ def test_a_pulse_of_whole_cycles_and_a_base_at_rest() -> None:
     pulse, still = 3.0 * np.sin(2.0 * np.pi * time / 0.5), np.full(400, 1e-3)
     found = zeros([read(pulse), read(still), read(np.zeros(400))])
     assert found.mean[:2] == pytest.approx([0.0, 1e-3], abs=1e-9)
-    velocity = 3.0 * 0.5 / (2.0 * np.pi)  # (1 - cos) times this: its deviation is this over sqrt(2)
-    assert found.deviation[0] == pytest.approx(np.hypot(CUT * velocity / 2.0, LEVEL), rel=0.02)
+    velocity = 3.0 * 0.5 / (2.0 * np.pi)  # (1 - cos) times this, for 2 s
+    assert found.deviation[0] == pytest.approx(np.hypot(CUT * 2.0 * velocity / 2.0, LEVEL), rel=0.02)
     assert found.deviation[1] == pytest.approx(LEVEL, rel=1e-6)
     assert np.isinf(found.deviation[2]) and not np.any(found.rows(np.full(3, 0.5))[0][2])
+
+
+@pytest.mark.parametrize("length", [300, 1000, 3000])
+def test_a_half_sine_after_which_the_base_would_go_on_for_ever_suspects_nobody(length: int) -> None:
+    time = TIME_STEP * np.arange(length)
+    found = zeros([read(np.where(time < 0.5, 3.0 * np.sin(np.pi * time / 0.5), 0.0))])
+    assert abs(found.mean[0]) < 3.0 * found.deviation[0]
 
 
 @pytest.fixture(scope="module")
