@@ -12,7 +12,7 @@ import pytest
 from diagnosis.answer.diagnose import diagnose
 from diagnosis.answer.heldout import as_far_as_followed
 from diagnosis.data.measured import Measured
-from diagnosis.fit.growing import DEVIATIONS, FIRST, SHORTEST, cut_again, in_proportion
+from diagnosis.fit.growing import DEVIATIONS, FIRST, SHORTEST, _changes, cut_again, in_proportion
 from diagnosis.fit.intervals import covariances
 from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.prediction import Predictor
@@ -112,3 +112,15 @@ def test_a_whole_diagnosis_compares_what_can_be_followed() -> None:
     shown = next(w for w in found.windows if w.held_out)
     assert len(shown.start) == len(held.windows)
     assert np.sum(shown.end - shown.start) == pytest.approx(sum(w.samples for w in held.windows) * TIME_STEP)
+
+
+def test_states_go_along_with_a_change_of_the_parameters() -> None:
+    """What is left of it in a window is what no state could take up: it is not for states that a window ends."""
+    found = stack(5, 6)
+    linear = found.misfit.linearise(found.u, found.states)
+    basis = np.linalg.qr(linear.by_state)[0]
+    points = _changes(found)[2 * found.states.shape[1] :]
+    left = found.misfit.residuals(points)
+    changes = left[0::2] - left[1::2]
+    along = np.linalg.norm(np.einsum("wms,pwm->pws", basis, changes), axis=2) / np.linalg.norm(changes, axis=2)
+    assert len(points) == 2 * found.u.size and np.median(along) < 0.3
