@@ -208,18 +208,22 @@ def explains_all(explanation: Explanation) -> bool:
 
 
 def rivals(found: Search) -> list[tuple[Explanation, Candidate, float]]:
-    """Explanations with one effect exchanged, within the gap: (explanation, the other effect, gap)."""
+    """Explanations with one effect exchanged, within the gap: (explanation, the other effect, gap).
+
+    And with one more than others that are rivals already: beside a delay in the place of a filter, say, what stands in
+    the place of the other effect.
+    """
     if found.best is None:
         return []
     best, near = found.best, []
     seen = set(best.names)
-    for other in sorted(found.tried, key=adjusted):
-        if len(other.candidates) != len(best.candidates):
-            continue
-        gap = adjusted(other) - adjusted(best)
-        new = [c for c in other.candidates if c.name not in best.names]
-        if gap > GAP or len(new) != 1 or new[0].name in seen:
-            continue
-        seen.add(new[0].name)
-        near.append((other, new[0], max(gap, 0.0)))
-    return near
+    alike = [e for e in found.tried if len(e.candidates) == len(best.candidates)]
+    for most in range(1, len(best.candidates) + 1):
+        for other in sorted(alike, key=adjusted):
+            gap = adjusted(other) - adjusted(best)
+            new = [c for c in other.candidates if c.name not in seen]
+            if gap > GAP or len(new) != 1 or len(set(other.names) - set(best.names)) != most:
+                continue
+            seen.add(new[0].name)
+            near.append((other, new[0], max(gap, 0.0)))
+    return sorted(near, key=lambda entry: entry[2])

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from diagnosis.search.found import GAP, rivals
 from diagnosis.search.select import settle_ties
 
 
@@ -78,3 +79,23 @@ def test_what_stands_beside_the_delay_has_to_stay() -> None:
 
 def test_equal_explanations_are_named_in_the_catalogue_s_order() -> None:
     assert named(Explained(100.0, FILTER), Explained(100.3, GAIN))[0] == ("gain",)
+
+
+TILT, MASS = Candidate("tilt", "tilt"), Candidate("eccentricity", "offset")
+
+
+@pytest.mark.parametrize(
+    ("tried", "expected"),
+    [
+        ((Explained(101.0, TILT, DELAY), Explained(103.0, MASS, DELAY)), {"delay": 1.0, "eccentricity": 3.0}),
+        ((Explained(103.0, MASS, DELAY),), {}),
+        ((Explained(101.0, TILT, DELAY), Explained(100.0 + 2.0 * GAP, MASS, DELAY)), {"delay": 1.0}),
+        ((Explained(105.0, MASS, FILTER), Explained(101.0, MASS)), {"eccentricity": 5.0}),
+    ],
+    ids=["beside a rival", "two new names", "too far off", "fewer effects"],
+)
+def test_beside_a_rival_what_stands_in_the_place_of_the_other_effect_is_one(
+    tried: tuple[Explained, ...], expected: dict[str, float]
+) -> None:
+    found: Any = SimpleNamespace(best=Explained(100.0, TILT, FILTER), tried=list(tried))
+    assert {candidate.name: gap for _, candidate, gap in rivals(found)} == expected
