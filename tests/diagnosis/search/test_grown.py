@@ -16,9 +16,10 @@ from diagnosis.search.candidates import candidates
 from diagnosis.search.found import Search
 from diagnosis.search.grown import beside_in_grown_windows, grown
 from diagnosis.search.refit import Explanation
+from diagnosis.search.select import first_effect
 from grids.recordings.base import Recording
 from tests.diagnosis.fit.test_two_blocks import NOISE, TRUE, WALL
-from tests.diagnosis.made import TIME_STEP, motion, searched
+from tests.diagnosis.made import TIME_STEP, motion
 from tests.diagnosis.search.recovered import simulated
 
 FINE = 8
@@ -40,13 +41,19 @@ def recording(seed: int) -> Recording:
     return Recording(f"run_{seed}", TIME_STEP, base.time, channels)
 
 
+def named(found: Search) -> Search:
+    """A search up to its first effect."""
+    *_, found = first_effect(found, silent)
+    return found
+
+
 @pytest.fixture(scope="module")
 def searches() -> tuple[Search, Search]:
     """A dashpot found where one acts on one side only, before and in windows that grow with it."""
     whole = measure(WALL, [recording(3), recording(4)])
     fitted, errors = calibrated(WALL, whole)
     dashpot = tuple(c for c in candidates(whole, WALL) if c.name == "viscous_damping")
-    found = searched(Search(Explanation((), fitted), dashpot, errors))
+    found = named(Search(Explanation((), fitted), dashpot, errors))
     return found, grown(found, whole)
 
 
@@ -82,7 +89,7 @@ def test_a_second_effect_that_grown_windows_ask_for_is_added() -> None:
     fitted, errors = calibrated(WALL, whole)
     both = tuple(c for c in candidates(whole, WALL) if c.name in effect)
     dashpot = tuple(c for c in both if c.name == "viscous_damping")
-    first = replace(searched(Search(Explanation((), fitted), dashpot, errors)), candidates=both)
+    first = replace(named(Search(Explanation((), fitted), dashpot, errors)), candidates=both)
     *_, found = beside_in_grown_windows(first, whole, silent)
     assert set(found.chosen.names) == set(effect)
     values = found.chosen.fitted.values
