@@ -31,7 +31,7 @@ def statement(found: Diagnosis, model: Model) -> str:
     """The paragraph; every number in it is in another field of the answer too."""
     known = effects(model)
     declared = identification_of(model)
-    parts = [_suspicion(name, what) for name, all_of in found.suspicions.items() for what in all_of]
+    parts = _suspicions(found.suspicions)
     parts += [f"Seen in the recordings: {what}." for what in found.seen]
     if not found.finished and not found.effects:
         parts.append(
@@ -159,8 +159,16 @@ def _another(found: Diagnosis) -> list[str]:
     ]
 
 
-def _suspicion(recording: str, what: str) -> str:
-    return f"Check this first: {recording}: {what}{'' if what.endswith(('.', '?', '!')) else '.'}"
+def _suspicions(by_recording: Mapping[str, Sequence[str]]) -> list[str]:
+    """What looks wrong, once for all recordings in which it does."""
+    recordings: dict[str, list[str]] = {}
+    for name, all_of in by_recording.items():
+        for what in all_of:
+            recordings.setdefault(what, []).append(name)
+    return [
+        f"Check this first: {', '.join(names)}: {what}{'' if what.endswith(('.', '?', '!')) else '.'}"
+        for what, names in recordings.items()
+    ]
 
 
 def _nothing(found: Diagnosis) -> str:

@@ -98,6 +98,11 @@ def test_a_suspicion_comes_first() -> None:
     assert [(s["recording"], s["suspicion"]) for s in read] == [(k, v) for k, (v,) in wrong.items()]
 
 
+def test_what_looks_wrong_in_several_recordings_is_said_once() -> None:
+    text = said(suspicions=dict.fromkeys(("train_1", "test_1"), ("its clock is out of step",)))
+    assert text.startswith("Check this first: train_1, test_1: its clock is out of step. The model")
+
+
 def test_a_model_that_explains_nothing_names_nothing() -> None:
     fit = Fit(2.03, 2.03, 0.01, 0.0)
     lost = {"effects": (), "unexplained": True, "train": fit, "holdout": None, "constancy": ()}
