@@ -92,8 +92,10 @@ def test_a_zero_that_moves_counts_over_the_share_of_the_recording(misfit: Misfit
     staged = replace(misfit, predictor=replace(misfit.predictor, stages={"accelerometer_offset": stages}))
     known = misfit.measured.zeros
     z = (known.mean - 0.3 * np.array([0.75, 0.0])) / known.deviation
-    found = staged.prior(np.array([misfit.unknowns[0].coordinate(0.3)]))
-    assert found == pytest.approx(np.sum(NU * np.log1p(z**2 / NU)), rel=1e-2)
+    u, step = np.array([misfit.unknowns[0].coordinate(0.3)]), 1e-5
+    assert staged.prior(u) == pytest.approx(np.sum(NU * np.log1p(z**2 / NU)), rel=1e-2)
+    ahead, behind = (staged.prior_rows(u + d)[0] for d in (step, -step))
+    np.testing.assert_allclose(staged.prior_rows(u)[1][:, 0], (ahead - behind) / (2.0 * step), rtol=1e-5)
 
 
 def test_a_lean_and_a_wrong_zero_are_told_apart_though_the_block_moves_alike() -> None:
