@@ -21,6 +21,7 @@ from diagnosis.fit.setup import with_noise_of_the_base
 from diagnosis.fit.starts import Origin
 from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.progress import Progress
+from diagnosis.search.candidates import Candidate
 from diagnosis.search.details import least
 from diagnosis.search.found import Search
 from diagnosis.search.refit import Explanation, again, without
@@ -68,16 +69,15 @@ def beside_in_grown_windows(found: Search, whole: Measured, progress: Progress) 
 def _begun_anew(longer: Search) -> Search:
     """The search with the base model, and the effects one at a time, in the windows of what was found."""
     best = longer.chosen
-    base = best
+    singles = [_only(best, candidate) for candidate in best.candidates]
+    return replace(
+        longer, base=again(_only(best)), singles=singles, tried=[best, *singles], at_null=None, outside=None
+    )  # fmt: skip
+
+
+def _only(best: Explanation, *kept: Candidate) -> Explanation:
+    """Fit with only some of its effects."""
     for candidate in best.candidates:
-        base = without(base, candidate)
-    singles = [best]
-    if len(best.candidates) > 1:
-        singles = [_alone(best, k) for k in range(len(best.candidates))]
-    return replace(longer, base=again(base), singles=singles, tried=[*singles, best], at_null=None, outside=None)
-
-
-def _alone(best: Explanation, k: int) -> Explanation:
-    for candidate in (*best.candidates[:k], *best.candidates[k + 1 :]):
-        best = without(best, candidate)
+        if candidate not in kept:
+            best = without(best, candidate)
     return best

@@ -99,7 +99,7 @@ def test_a_zero_that_moves_counts_over_the_share_of_the_recording(misfit: Misfit
 
 
 def test_a_lean_and_a_wrong_zero_are_told_apart_though_the_block_moves_alike() -> None:
-    """Rotations alone would leave a gain of less than 1 between them; an eccentricity stays a rival of a lean."""
+    """Rotations alone leave both within the gap of rivals."""
     for name, values in (("tilt", {"tilt": OFFSET / 9.81}), ("accelerometer_offset", {"offset": OFFSET})):
         made = [recording(f"run_{seed}", seed, {name: values}) for seed in (1, 2)]
         measured = measure(SPECIMEN, made)
@@ -112,5 +112,6 @@ def test_a_lean_and_a_wrong_zero_are_told_apart_though_the_block_moves_alike() -
 
 def test_a_reading_with_a_wrong_zero_is_suspected_and_a_right_one_is_not() -> None:
     base = motion(3).horizontal
+    said = f"mean of {np.mean(base) + 0.3:+.2g} m s-2"
     assert not any("mean of" in one for one in suspicions_of(read(base)))
-    assert any("mean of +0.29 m s-2" in one for one in suspicions_of(read(base + 0.3)))
+    assert any(said in one for one in suspicions_of(read(base + 0.3)))
