@@ -8,8 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
 
-import numpy as np
-
 from diagnosis.errors.model import estimate
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.progress import Progress
@@ -37,6 +35,7 @@ from diagnosis.search.refit import (
 )
 from diagnosis.search.screen import Score, score
 from diagnosis.search.thresholds import from_measured, misfits, setting_in
+from diagnosis.search.ties import settle_ties
 from diagnosis.search.variants import with_other_numbers
 from diagnosis.search.weighing import by_white_noise, weigh_again
 from diagnosis.search.white_screen import against_white_noise
@@ -47,12 +46,6 @@ FAINT = 8.0
 FEWEST, FEWEST_ADEQUATE, MOST = 5, 2, 16
 SHARE_OF_FIRST = 0.05
 """Of the strongest statistic: what a first mechanism must reach to be refitted."""
-TIE = 0.5
-"""Gain within which two explanations are one for the data: the earlier in the catalogue is named."""
-LOGGER = 25.0
-"""Hz: loggers filter above it, and every logger filters."""
-LAG = np.sqrt(2.0) / (2.0 * np.pi * LOGGER)
-"""s that a second-order low-pass at that corner delays slow motions by."""
 NEAR, NEAR_ADEQUATE = 0.2, 0.6
 """Share of the leader's gain from which a single is refitted from the leader's optimum too."""
 FIRST_POOL = 3
@@ -296,27 +289,3 @@ def _next(found: Search, before: Explanation, further: Sequence[Explanation]) ->
         if not (incomplete and predicts_worse(before, one)):
             return one
     return None
-
-
-def settle_ties(found: Search) -> None:
-    """Name the earlier in the catalogue of equal explanations, and a low-pass where it explains a short lag as well.
-
-    A delay of that length is rarer than a filter, and recordings rarely tell them apart.
-    """
-    if found.best is None:
-        return
-    place = {c: k for k, c in enumerate(found.candidates)}
-    same = [e for e in [found.best, *found.tried] if len(e.candidates) == len(found.best.candidates)]
-    near = [e for e in same if adjusted(e) - adjusted(found.best) < TIE]
-    found.tried.append(found.best)
-    found.best = min(near, key=lambda e: (sum(place[c] for c in e.candidates), adjusted(e)))
-    if not 0.0 < found.best.fitted.values.get("delay.delay", 0.0) < LAG:
-        return
-    kept = set(found.best.names) - {"delay"}
-    filtered = [
-        e for e in same
-        if kept < set(e.names) and "filter.corner_hz" in e.fitted.values and adjusted(e) - adjusted(found.best) < GAP
-    ]  # fmt: skip
-    if filtered:
-        found.tried.append(found.best)
-        found.best = min(filtered, key=adjusted)

@@ -6,10 +6,12 @@ from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from diagnosis.search.found import GAP, rivals
-from diagnosis.search.select import settle_ties
+from diagnosis.search.ties import settle_ties
+from grids.instruments import INSTRUMENTS
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,28 +24,35 @@ class Candidate:
     price: float = 0.0
 
     @property
+    def mechanism(self) -> Any:
+        return INSTRUMENTS.get(self.name, SimpleNamespace(acts={}))
+
+    @property
     def unknowns(self) -> tuple[Any, ...]:
         return (SimpleNamespace(name=f"{self.name}.{self.parameter}"),)
 
 
 class Explained:
-    """A fit of known loss, its delay of ``lag`` s."""
+    """A fit of known loss to two windows, from 0 to 2 s and from 6 to 8 s; every parameter has the same ``value``."""
 
-    def __init__(self, loss: float, *candidates: Candidate, lag: float = 0.004) -> None:
+    def __init__(self, loss: float, *candidates: Candidate, value: float = 0.004) -> None:
         self.loss, self.candidates = loss, candidates
-        self.fitted = SimpleNamespace(values={c.unknowns[0].name: lag for c in candidates})
+        self.fitted = SimpleNamespace(values={c.unknowns[0].name: value for c in candidates})
+        self.measured = SimpleNamespace(
+            windows=(0, 1), mask=np.ones((2, 1, 201), bool), times=lambda w: 6.0 * w + np.linspace(0.0, 2.0, 201)
+        )
 
     @property
     def names(self) -> tuple[str, ...]:
         return tuple(c.name for c in self.candidates)
 
 
-GAIN, DELAY = Candidate("gain", "gain"), Candidate("delay", "delay")
+GAIN, DELAY, CLOCK = Candidate("gain", "gain"), Candidate("delay", "delay"), Candidate("clock", "rate")
 FILTER, HIGH = Candidate("filter", "corner_hz"), Candidate("filter", "high_pass_hz")
 
 
 def named(best: Explained, *tried: Explained) -> tuple[tuple[str, ...], Any]:
-    found: Any = SimpleNamespace(best=best, tried=list(tried), candidates=(GAIN, DELAY, FILTER, HIGH))
+    found: Any = SimpleNamespace(best=best, tried=list(tried), candidates=(GAIN, DELAY, CLOCK, FILTER, HIGH))
     settle_ties(found)
     return found.best.names, found
 
@@ -64,7 +73,22 @@ def test_a_low_pass_is_never_taken_for_a_delay() -> None:
 
 @pytest.mark.parametrize("lag", (-0.004, 0.012))
 def test_a_lag_that_no_logger_s_filter_has_is_a_delay(lag: float) -> None:
-    assert named(Explained(100.0, DELAY, lag=lag), Explained(101.0, FILTER))[0] == ("delay",)
+    assert named(Explained(100.0, DELAY, value=lag), Explained(101.0, FILTER))[0] == ("delay",)
+
+
+@pytest.mark.parametrize(
+    ("rate", "expected"),
+    [(-0.001, "filter"), (-0.0022, "filter"), (-0.0024, "clock"), (-0.008, "clock"), (0.001, "clock")],
+)
+def test_a_clock_that_lags_no_more_than_a_logger_s_filter_is_a_low_pass(rate: float, expected: str) -> None:
+    """Recorded times run 4 s ahead on the mean of what is compared: by -4 times the rate the responses are late."""
+    assert named(Explained(100.0, CLOCK, value=rate), Explained(104.0, FILTER))[0] == (expected,)
+    assert named(Explained(100.0, CLOCK, value=rate), Explained(100.0 + 1.2 * GAP, FILTER))[0] == ("clock",)
+
+
+def test_a_clock_and_a_delay_are_no_low_pass() -> None:
+    both = Explained(100.0, CLOCK, DELAY, value=-0.001)
+    assert set(named(both, Explained(101.0, FILTER, DELAY))[0]) == {"clock", "delay"}
 
 
 def test_a_high_pass_does_not_stand_in_for_a_delay() -> None:
