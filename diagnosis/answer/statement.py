@@ -8,12 +8,12 @@ from typing import Any
 
 from diagnosis.answer.phases import EVERYWHERE, words_of
 from diagnosis.answer.result import Beyond, Diagnosis, Effect, Extrapolated, Fit, Located
+from diagnosis.answer.untried import left_out, suspects_left_out
 from diagnosis.answer.when import comes_and_goes, held_text, when_text
 from diagnosis.data.measured import identification_of
 from diagnosis.fit.unknowns import effects
 from diagnosis.forces.constancy import BLOW, FOR_A_WHILE, Constancy
 from diagnosis.forces.varying import WINDOW
-from diagnosis.search.budget import ENDED
 from diagnosis.search.found import MISSING
 from diagnosis.search.null import LEAST_P
 from models import get
@@ -59,7 +59,7 @@ def statement(found: Diagnosis, model: Model) -> str:
     parts += _acts(found.located, words_of(declared), {effect.name for effect in found.effects if effect.stages})
     if found.verdict == "not_in_library" and not found.unexplained:
         parts.append("That does not settle it: what is missing is not in the library of mechanisms.")
-        parts += _left_out(found)
+        parts += left_out(found)
         parts += _contradicted(found)
         parts += [_beyond(one) for one in found.beyond]
         acting = declared if found.other_model is None else identification_of(get(found.other_model.model))
@@ -72,6 +72,8 @@ def statement(found: Diagnosis, model: Model) -> str:
     elif found.rivals:
         names = ", ".join(r.name.replace("_", " ") for r in found.rivals)
         parts.append(f"{names[0].upper()}{names[1:]} would explain nearly as much.")
+    if found.verdict != "not_in_library":
+        parts += suspects_left_out(found)
     if found.detail is not None and found.verdict != "not_in_library":
         parts.append(_detail(found.detail, found.provenance["constancy_threshold"]))
     parts.append(_fit(found.train, found.holdout))
@@ -225,12 +227,6 @@ def _by_recording(gains: Mapping[str, float]) -> list[str]:
 
 def _skipped(found: Diagnosis) -> list[str]:
     return [f"Stopped after the search; left out: {', '.join(found.skipped)}."] if found.skipped else []
-
-
-def _left_out(found: Diagnosis) -> list[str]:
-    """What the search's budget of work did not reach: the library may say more than it did."""
-    names = [name.replace("_", " ") for name, why in found.not_tried.items() if why == ENDED]
-    return [f"The search's budget of work ended before it had tried: {', '.join(names)}."] if names else []
 
 
 def _distinct(found: Sequence[Constancy]) -> list[Constancy]:

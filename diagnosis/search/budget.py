@@ -12,6 +12,8 @@ MOST = 220_000_000
 """Lane-steps of the search for the first effect: half a minute to a minute of one core."""
 JOINTS = 180_000_000
 """Lane-steps for the law of the strongest single at other joints."""
+UNTRIED = 180_000_000
+"""Lane-steps for what is left of the screen, in the place of the strongest single."""
 FURTHER = 360_000_000
 """Lane-steps for effects beside the first, whatever was spent before: where two act, the first explains little."""
 LAST = 150_000_000

@@ -12,7 +12,7 @@ from diagnosis.errors.model import estimate
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.progress import Progress
 from diagnosis.search.beside import POOL_SHARE, THOROUGH, extended, seconds, starts_of, worth_a_refit
-from diagnosis.search.budget import FURTHER, JOINTS, LAST
+from diagnosis.search.budget import FURTHER, JOINTS, LAST, UNTRIED
 from diagnosis.search.candidates import Candidate, firsts
 from diagnosis.search.details import least
 from diagnosis.search.exchange import drop, exchanged
@@ -36,6 +36,7 @@ from diagnosis.search.refit import (
 from diagnosis.search.screen import Score, score
 from diagnosis.search.thresholds import from_measured, misfits, setting_in
 from diagnosis.search.ties import settle_ties
+from diagnosis.search.untried import each_once, in_its_place
 from diagnosis.search.variants import with_other_numbers
 from diagnosis.search.weighing import by_white_noise, weigh_again
 from diagnosis.search.white_screen import against_white_noise
@@ -119,9 +120,11 @@ def _singles(found: Search, progress: Progress) -> None:
         wanted += _hidden_by_errors(scores, {entry.candidate for entry in wanted}, fewest)
         if misfits(white.fitted):
             late = setting_in(found.base, [entry.candidate for entry in found.scores])
-            wanted = _in_turn(wanted, [entry for entry in found.scores if entry.candidate in late])
+    left = []
+    wanted = _in_turn(wanted, [entry for entry in found.scores if entry.candidate in late])
     for k, entry in enumerate(wanted):
         if not found.affordable(entry.candidate.name):
+            left.append(entry)
             continue
         progress(f"refitting {entry.candidate.name}", 0.15 + 0.3 * k / len(wanted))
         fits = [extend(found.base, entry.candidate, start, QUICK) for start in starts_of(entry, found.scores)]
@@ -141,6 +144,8 @@ def _singles(found: Search, progress: Progress) -> None:
         found.singles[0] = again(reshaped(found.singles[0]))
     with found.work_of_its_own(JOINTS):
         at_other_joints(found)
+    with found.work_of_its_own(UNTRIED):
+        in_its_place(found, left)
     leader = found.singles[0]
     near = NEAR_ADEQUATE if adequate(leader) else NEAR
     for k, single in enumerate(found.singles[1:], start=1):
@@ -154,6 +159,7 @@ def _singles(found: Search, progress: Progress) -> None:
 
 def _in_turn(wanted: Sequence[Score], late: Sequence[Score]) -> list[Score]:
     """The strongest of a screen, then what has no slope at its null, then the others: a budget may end on the way."""
+    wanted = each_once(wanted)
     first, rest = wanted[:FEWEST_ADEQUATE], wanted[FEWEST_ADEQUATE:]
     return list({entry.candidate: entry for entry in (*first, *late, *rest)}.values())
 

@@ -9,7 +9,18 @@ import numpy as np
 import pytest
 
 import models
-from diagnosis.answer.result import Beyond, Diagnosis, Effect, EffectStage, Fit, Located, OtherModel, Undecided, Verdict
+from diagnosis.answer.result import (
+    Beyond,
+    Diagnosis,
+    Effect,
+    EffectStage,
+    Fit,
+    Located,
+    OtherModel,
+    Screened,
+    Undecided,
+    Verdict,
+)
 from diagnosis.answer.statement import effect_text, statement
 from diagnosis.data.measured import identification_of
 from diagnosis.fit.intervals import Estimate
@@ -173,6 +184,22 @@ def test_what_the_budget_did_not_reach_is_said_where_the_library_did_not_suffice
     text = said("not_in_library", not_tried=left)
     assert "ended before it had tried: tilt, a second effect beside gain." in text and "vertical" not in text
     assert "budget" not in said("not_in_library", not_tried={}) + said("missing", not_tried=left)
+
+
+def test_a_suspect_that_the_budget_did_not_reach_is_said_beside_what_is_named() -> None:
+    left = {
+        "tilt": ENDED,
+        "gain": ENDED,
+        "offset": "no channel of it",
+        "bounce": ENDED,
+        "locking at other joints": ENDED,
+    }
+    (named,) = {effect.name for effect in diagnosis("missing").effects}
+    scores = {named: 100.0, "tilt": 90.0, "gain": 21.0, "offset": 80.0, "bounce": 19.0}
+    screen = tuple(Screened(name, name, score, None, None) for name, score in scores.items())
+    assert "ended before it had tried: tilt, gain." in said("missing", not_tried=left, screen=screen)
+    refitted = tuple(replace(line, gain=3.0) for line in screen)
+    assert "budget" not in said("missing", not_tried=left, screen=refitted)
 
 
 def test_a_blow_is_said_with_its_instants() -> None:

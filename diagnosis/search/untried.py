@@ -1,0 +1,42 @@
+"""What the budget left untried of a screen, in the place of the strongest single: from where that one stands.
+
+From the base a refit of a wall under a wrong law takes many steps, and a record of many samples leaves work for a few
+of them only. The valley that the strongest has led to is mostly that of its rivals too, and they reach it in few.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from diagnosis.search.beside import starts_of
+from diagnosis.search.budget import ENDED
+from diagnosis.search.found import Search, adjusted
+from diagnosis.search.refit import QUICK, again, best_of, extend, over_ranges, without
+from diagnosis.search.screen import Score
+from diagnosis.search.weighing import by_white_noise
+
+
+def each_once(scores: Sequence[Score]) -> list[Score]:
+    """The strongest variant of every mechanism in the order given, then the others: laws at other joints, orders."""
+    first: dict[str, Score] = {}
+    for entry in scores:
+        first.setdefault(entry.candidate.name, entry)
+    return list({entry.candidate: entry for entry in (*first.values(), *scores)}.values())
+
+
+def in_its_place(found: Search, left: Sequence[Score]) -> None:
+    """Add singles of what was ``left`` of the screen; the likeliest is fitted thoroughly if it is one of them."""
+    leader = found.singles[0]
+    standing = without(leader, leader.candidates[0], 0)
+    for entry in left:
+        name = entry.candidate.name
+        if name in leader.names or not found.affordable(name):
+            continue
+        fits = [extend(standing, entry.candidate, start, QUICK) for start in starts_of(entry, found.scores)]
+        if fits:
+            found.singles.append(by_white_noise(best_of(fits), found.errors))
+            if found.not_tried.get(name) == ENDED:
+                del found.not_tried[name]
+    found.singles.sort(key=adjusted)
+    if found.singles[0] is not leader:
+        found.singles[0] = over_ranges(again(found.singles[0]))
