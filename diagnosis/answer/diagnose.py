@@ -220,7 +220,7 @@ def _assemble(
         verdict=verdict,
         statement="",
         effects=effects,
-        rivals=tuple(Rival(c.name, c.effect_class, gap) for _, c, gap in near),
+        rivals=tuple(Rival(r.candidate.name, r.candidate.effect_class, r.gap, " and ".join(r.replaced)) for r in near),
         located=acting[0],
         visited=acting[1],
         shows=shows(shown[0], explained, seed) if missing else (),

@@ -20,8 +20,7 @@ from diagnosis.errors.model import Errors
 from diagnosis.fit.intervals import covariances
 from diagnosis.fit.misfit import Misfit, reduce
 from diagnosis.fit.solver import fit
-from diagnosis.search.candidates import Candidate
-from diagnosis.search.found import Search
+from diagnosis.search.found import Near, Search
 from diagnosis.search.refit import Explanation
 from grids.recordings.base import CHANNELS, REQUIRED, SHARE, Recording
 from models.errors import InputError
@@ -33,7 +32,7 @@ NEW_SENSOR_NOISE = 0.01
 
 
 def next_experiment(
-    found: Search, near: Sequence[tuple[Explanation, Candidate, float]], planned: Mapping[str, Place] | None = None
+    found: Search, near: Sequence[Near], planned: Mapping[str, Place] | None = None
 ) -> Mapping[str, Any] | None:
     """The best recording, the best extra sensor and a static test that would separate the first rivals.
 
@@ -41,7 +40,7 @@ def next_experiment(
     """
     best = found.chosen
     own = set(best.classes)
-    other = next((e for e, c, _ in near if c.effect_class not in own), None)
+    other = next((r.explanation for r in near if r.candidate.effect_class not in own), None)
     if other is None:
         return None
     measured = best.measured

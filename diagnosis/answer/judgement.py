@@ -11,10 +11,10 @@ from diagnosis.answer.result import Undecided, Verdict
 from diagnosis.errors.adequacy import Inadequacy
 from diagnosis.forces.constancy import Constancy
 from diagnosis.search.candidates import Candidate
-from diagnosis.search.found import MISSING, Search, adjusted, price
+from diagnosis.search.found import MISSING, Near, Search, adjusted, price
 from diagnosis.search.left_out import WORSE
 from diagnosis.search.null import LEAST_P
-from diagnosis.search.refit import Explanation, gain_by_window
+from diagnosis.search.refit import gain_by_window
 
 UNEXPLAINED = 0.5
 """Share of the squared motion in the windows that, left over by the best model, makes any name meaningless."""
@@ -41,9 +41,7 @@ def contradicted(found: Search, held: Shown) -> tuple[float, float] | None:
     return (without, with_it) if with_it > WORSE * without else None
 
 
-def verdict_of(
-    found: Search, near: Sequence[tuple[Explanation, Candidate, float]], flagged: bool, explained: bool, finished: bool
-) -> Verdict:
+def verdict_of(found: Search, near: Sequence[Near], flagged: bool, explained: bool, finished: bool) -> Verdict:
     """One of the four. ``near``: the rivals; ``flagged``: not constant, the model errs, or contradicted."""
     if not finished:  # what was not tried may explain it as well
         return "cannot_tell_apart"
@@ -51,7 +49,7 @@ def verdict_of(
         return "not_in_library"
     if found.best is None:
         return "nothing_missing"
-    others = {c.effect_class for _, c, _ in near}
+    others = {one.candidate.effect_class for one in near}
     return "cannot_tell_apart" if others - set(found.best.classes) else "missing"
 
 

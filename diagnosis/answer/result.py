@@ -66,11 +66,15 @@ class Effect:
 
 @dataclass(frozen=True)
 class Rival:
-    """A mechanism that explains nearly as much: ``evidence_gap`` is how much less."""
+    """A mechanism that explains nearly as much: ``evidence_gap`` is how much less.
+
+    ``in_place_of``: the effect of the answer that it would replace, several with "and" between them.
+    """
 
     name: str
     effect_class: str
     evidence_gap: float
+    in_place_of: str
 
 
 @dataclass(frozen=True)

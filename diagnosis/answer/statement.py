@@ -8,6 +8,7 @@ from typing import Any
 
 from diagnosis.answer.phases import EVERYWHERE, words_of
 from diagnosis.answer.result import Beyond, Diagnosis, Effect, Extrapolated, Fit, Located
+from diagnosis.answer.rivals import nearly_as_much, told_apart
 from diagnosis.answer.untried import left_out, suspects_left_out
 from diagnosis.answer.when import comes_and_goes, held_text, when_text
 from diagnosis.data.measured import identification_of
@@ -67,11 +68,9 @@ def statement(found: Diagnosis, model: Model) -> str:
         if found.missing_force:
             parts += _law(found.missing_force)
     if found.verdict == "cannot_tell_apart" and found.rivals:
-        names = ", ".join(f"{r.name.replace('_', ' ')} ({r.evidence_gap:.1f} less)" for r in found.rivals)
-        parts.append(f"These recordings cannot tell it apart from: {names}.")
+        parts += [f"These recordings cannot tell {which}." for which in told_apart(found.rivals, len(found.effects))]
     elif found.rivals:
-        names = ", ".join(r.name.replace("_", " ") for r in found.rivals)
-        parts.append(f"{names[0].upper()}{names[1:]} would explain nearly as much.")
+        parts += nearly_as_much(found.rivals, len(found.effects))
     if found.verdict != "not_in_library":
         parts += suspects_left_out(found)
     if found.detail is not None and found.verdict != "not_in_library":

@@ -13,7 +13,6 @@ from diagnosis.fit.intervals import Estimate
 from diagnosis.fit.unknowns import Unknown
 from diagnosis.outcomes.answer import Compared, OutcomeDiagnosis, Posterior
 from diagnosis.outcomes.bank import Bank
-from diagnosis.outcomes.candidates import Repair
 from diagnosis.outcomes.evidence import best, chance_of_misfit, expected, left_out, log_of_kept
 from diagnosis.outcomes.ladder import SCATTERS
 from diagnosis.outcomes.measures import THRESHOLDS, exceeding, measures_of, threshold
@@ -48,7 +47,7 @@ def assemble(found: Search, flags: FloatArray, rng: np.random.Generator, progres
         verdict=_verdict(found, misfit),
         statement="",
         effects=tuple(_effect(step, estimates) for step in found.steps),
-        rivals=tuple(Rival(repair.name, repair.mechanism.effect_class, gap) for repair, gap in _rivals(found)),
+        rivals=_rivals(found),
         wrong=wrong_predictions(base, flags, outcomes.groups, measures),
         left=wrong_predictions(last, flags, outcomes.groups, measures),
         compared=_compared(found, flags, measures, base, last),
@@ -85,15 +84,20 @@ def _verdict(found: Search, misfit: float) -> Verdict:
         return "nothing_missing" if misfit > INADEQUATE else "not_in_library"
     if misfit <= INADEQUATE:
         return "not_in_library"
-    other = {repair.mechanism.effect_class for repair, _ in _rivals(found)}
+    other = {rival.effect_class for rival in _rivals(found)}
     return "cannot_tell_apart" if other - {r.mechanism.effect_class for r in found.chosen.effects} else "missing"
 
 
-def _rivals(found: Search) -> list[tuple[Repair, float]]:
+def _rivals(found: Search) -> tuple[Rival, ...]:
     """Of every effect that was found, the strongest first; not what was found itself."""
     named = {repair.name for repair in found.chosen.effects}
-    of_all = [rival for step in found.steps for rival in step.rivals if rival[0].name not in named]
-    return list({repair.name: (repair, gap) for repair, gap in sorted(of_all, key=lambda one: -one[1])}.values())
+    of_all = [
+        Rival(repair.name, repair.mechanism.effect_class, gap, step.effects[-1].name)
+        for step in found.steps
+        for repair, gap in step.rivals
+        if repair.name not in named
+    ]
+    return tuple({rival.name: rival for rival in sorted(of_all, key=lambda one: -one.evidence_gap)}.values())
 
 
 def _effect(step: Found, estimates: Mapping[str, Estimate]) -> Effect:

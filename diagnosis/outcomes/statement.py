@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from diagnosis.answer.rivals import told_apart
 from diagnosis.outcomes.answer import Compared, OutcomeDiagnosis, Wrong
 from diagnosis.outcomes.search import Search
 from grids.units import with_unit
@@ -25,8 +26,7 @@ def statement(answer: OutcomeDiagnosis, found: Search) -> str:
     if answer.at_bound:
         parts.append(f"The fit runs into the end of the range of {', '.join(answer.at_bound)}: more of it is wanted.")
     if answer.rivals:
-        names = ", ".join(f"{r.name.replace('_', ' ')} ({r.evidence_gap:.1f} less)" for r in answer.rivals)
-        parts.append(f"Outcomes alone cannot tell it apart from: {names}.")
+        parts += [f"Outcomes alone cannot tell {which}." for which in told_apart(answer.rivals, len(answer.effects))]
     if answer.verdict == "not_in_library":
         parts.append(
             "That does not settle it: what is left hangs together within groups of runs "

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -207,8 +208,17 @@ def explains_all(explanation: Explanation) -> bool:
     return adequate(explanation) and bool(np.max(by_window(explanation)) < BADLY)
 
 
-def rivals(found: Search) -> list[tuple[Explanation, Candidate, float]]:
-    """Explanations with one effect exchanged, within the gap: (explanation, the other effect, gap).
+class Near(NamedTuple):
+    """An explanation with one effect exchanged, within the gap: ``candidate`` in the place of those ``replaced``."""
+
+    explanation: Explanation
+    candidate: Candidate
+    gap: float
+    replaced: tuple[str, ...]
+
+
+def rivals(found: Search) -> list[Near]:
+    """Explanations with one effect exchanged, the nearest first.
 
     And with one more than others that are rivals already: beside a delay in the place of a filter, say, what stands in
     the place of the other effect.
@@ -216,14 +226,17 @@ def rivals(found: Search) -> list[tuple[Explanation, Candidate, float]]:
     if found.best is None:
         return []
     best, near = found.best, []
-    seen = set(best.names)
+    places = {name: {name} for name in best.names}
     alike = [e for e in found.tried if len(e.candidates) == len(best.candidates)]
     for most in range(1, len(best.candidates) + 1):
         for other in sorted(alike, key=adjusted):
             gap = adjusted(other) - adjusted(best)
-            new = [c for c in other.candidates if c.name not in seen]
+            new = [c for c in other.candidates if c.name not in places]
             if gap > GAP or len(new) != 1 or len(set(other.names) - set(best.names)) != most:
                 continue
-            seen.add(new[0].name)
-            near.append((other, new[0], max(gap, 0.0)))
-    return sorted(near, key=lambda entry: entry[2])
+            standing = set().union(*(places[name] for name in other.names if name in places))
+            gone = tuple(name for name in best.names if name not in other.names)
+            replaced = tuple(name for name in gone if name not in standing) or gone
+            places[new[0].name] = set(replaced)
+            near.append(Near(other, new[0], max(gap, 0.0), replaced))
+    return sorted(near, key=lambda one: one.gap)

@@ -26,6 +26,8 @@ def each_once(scores: Sequence[Score]) -> list[Score]:
 
 def in_its_place(found: Search, left: Sequence[Score]) -> None:
     """Add singles of what was ``left`` of the screen; the likeliest is fitted thoroughly if it is one of them."""
+    if not left:
+        return
     leader = found.singles[0]
     standing = without(leader, leader.candidates[0], 0)
     for entry in left:

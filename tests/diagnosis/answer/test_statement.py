@@ -17,6 +17,7 @@ from diagnosis.answer.result import (
     Fit,
     Located,
     OtherModel,
+    Rival,
     Screened,
     Undecided,
     Verdict,
@@ -35,6 +36,7 @@ from tests.diagnosis.report.example import diagnosis
 
 ORDER = {"order": Estimate(1.0, 1.0, 1.0, "1")}
 HIGH = Effect("filter", "filter", {"high_pass_hz": Estimate(3.6, 3.0, 4.4, "Hz"), **ORDER}, 80.0, 1e-6)
+TILT = Effect("tilt", "tilt", {"tilt": Estimate(0.01, 0.009, 0.011, "rad")}, 50.0, 1e-6)
 LOW = Effect("filter", "filter", {"corner_hz": Estimate(12.0, 10.0, 15.0, "Hz"), **ORDER}, 80.0, 1e-6)
 
 
@@ -200,6 +202,20 @@ def test_a_suspect_that_the_budget_did_not_reach_is_said_beside_what_is_named() 
     assert "ended before it had tried: tilt, gain." in said("missing", not_tried=left, screen=screen)
     refitted = tuple(replace(line, gain=3.0) for line in screen)
     assert "budget" not in said("missing", not_tried=left, screen=refitted)
+
+
+def test_of_several_effects_a_rival_is_said_with_the_one_that_it_would_replace() -> None:
+    """Of one there is no other to confuse it with."""
+    lean = Rival("eccentricity", "eccentricity", 0.12, "tilt")
+    both = {"effects": (LOW, TILT), "rivals": (lean, Rival("delay", "delay", 1.0, "filter"))}
+    text = said("cannot_tell_apart", **both)
+    assert "cannot tell tilt apart from: eccentricity (0.1 less)." in text
+    assert "cannot tell filter apart from: delay (1.0 less)." in text
+    alone = {"effects": (TILT,), "rivals": (lean,)}
+    assert "cannot tell it apart from: eccentricity (0.1 less)." in said("cannot_tell_apart", **alone)
+    assert "Eccentricity would explain nearly as much." in said(**alone)
+    text = said(**{**both, "rivals": (lean,)})
+    assert "Eccentricity in the place of tilt would explain nearly as much." in text
 
 
 def test_a_blow_is_said_with_its_instants() -> None:

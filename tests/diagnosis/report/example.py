@@ -202,7 +202,7 @@ def diagnosis(verdict: Verdict = "missing") -> Diagnosis:
         verdict=verdict,
         statement=sentence,
         effects=(effect,) if missing else (),
-        rivals=(Rival("base_gain", "base_gain", 4.1),) if verdict == "cannot_tell_apart" else (),
+        rivals=(Rival("base_gain", "base_gain", 4.1, "gain"),) if verdict == "cannot_tell_apart" else (),
         located=()
         if nothing
         else (

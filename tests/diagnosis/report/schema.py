@@ -47,6 +47,7 @@ class RivalPart(Part):
     name: str
     effect_class: str = Field(alias="class")
     evidence_gap: float
+    in_place_of: str
 
 
 class ShowsPart(Part):

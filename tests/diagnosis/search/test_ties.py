@@ -122,4 +122,6 @@ def test_beside_a_rival_what_stands_in_the_place_of_the_other_effect_is_one(
     tried: tuple[Explained, ...], expected: dict[str, float]
 ) -> None:
     found: Any = SimpleNamespace(best=Explained(100.0, TILT, FILTER), tried=list(tried))
-    assert {candidate.name: gap for _, candidate, gap in rivals(found)} == expected
+    assert {near.candidate.name: near.gap for near in rivals(found)} == expected
+    places = {"delay": ("filter",), "eccentricity": ("tilt",)}
+    assert all(near.replaced == places[near.candidate.name] for near in rivals(found))
