@@ -294,7 +294,9 @@ def _estimates(
 
 
 def _screened(found: Search) -> tuple[Screened, ...]:
-    fits = {e.candidates[0]: e for e in reversed(found.singles)}
+    """The screen and its refits, all under the errors of the base model: later singles are those near the answer."""
+    start = found if found.at_null is None else found.at_null
+    fits = {e.candidates[0]: e for e in reversed(start.singles)}
     lines: dict[str, Screened] = {}
     for entry in found.scores:
         fit = fits.get(entry.candidate)
@@ -306,7 +308,7 @@ def _screened(found: Search) -> tuple[Screened, ...]:
             entry.candidate.name,
             entry.candidate.effect_class,
             entry.statistic,
-            found.base.loss - fit.loss if fit else None,
+            start.base.loss - fit.loss if fit else None,
             estimate,
         )
         if line.name not in lines or (line.gain or 0.0) > (lines[line.name].gain or 0.0):

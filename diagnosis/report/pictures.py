@@ -43,7 +43,10 @@ def drawings(diagnosis: Diagnosis, specimen: Specimen, recordings: Sequence[Reco
         found["phase_plane"] = partial(plot_phase_plane, diagnosis.traces, diagnosis.windows, channel=lead)
     if diagnosis.screen:
         evidence = {effect.name: effect.evidence for effect in diagnosis.effects}
-        found["suspects"] = partial(plot_suspects, diagnosis.screen, diagnosis.null_band, evidence=evidence)
+        near = [rival.name for rival in diagnosis.rivals]
+        found["suspects"] = partial(
+            plot_suspects, diagnosis.screen, diagnosis.null_band, evidence=evidence, rivals=near
+        )
     for channel in diagnosis.errors.channels if diagnosis.errors else ():
         found[f"errors_{channel.channel}"] = partial(plot_errors, channel)
     found["fits"] = partial(plot_fits, diagnosis.train, diagnosis.holdout)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -27,6 +27,7 @@ def plot_suspects(
     null_band: float,
     *,
     evidence: Mapping[str, float] | None = None,
+    rivals: Collection[str] = (),
     width: float = WIDE,
     palette: Palette = PAPER,
 ) -> Axes:
@@ -34,10 +35,13 @@ def plot_suspects(
 
     Hollow: the score, a forecast without a refit; full: the gain of the refit. The band is what
     chance alone stays within 95 times in 100. ``evidence``: of the effects of the answer, in bold; of several it is
-    that of each beside the others, a diamond, where the gain is that of each alone.
+    that of each beside the others, a diamond, where the gain is that of each alone. They and their ``rivals`` are drawn
+    however weak each is alone.
     """
     named = evidence or {}
-    shown = order_of(screen)[:MOST]
+    ordered = order_of(screen)
+    asked = [s for s in ordered[MOST:] if s.name in named or s.name in rivals]
+    shown = order_of([*ordered[: MOST - len(asked)], *asked])
     (ax,) = new_panels([0.36 * max(len(shown), 2) + 1.1], width, palette)
     ax.set_xscale("log")
     ax.axvspan(LEAST, max(null_band, LEAST), color=palette.band, linewidth=0.0, zorder=0, label="chance")

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 from dataclasses import replace
 from importlib import import_module
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from diagnosis import calibrate, diagnose
+from diagnosis.answer.diagnose import _screened
 from diagnosis.answer.heldout import Shown
 from diagnosis.answer.result import Beyond, Diagnosis
+from diagnosis.fit.setup import measure
+from diagnosis.search.candidates import candidates
 from diagnosis.search.found import MISSING, Search
 from models.errors import InputError
 from tests.diagnosis.made import SPECIMEN, TRUE, recording
@@ -118,6 +123,19 @@ def test_a_search_stopped_at_once_claims_nothing() -> None:
     assert not found.finished and not found.effects and not found.located and found.p_value is None
     assert found.holdout is not None and found.holdout.share_of_achievable is None
     assert "stopped before anything was found" in found.statement and "leaves something out" not in found.statement
+
+
+def test_every_refit_of_the_screen_is_told_though_later_ones_are_of_several_effects() -> None:
+    """Under the errors of the base model, as the forecasts are."""
+    some = [replace(one, unknowns=()) for one in candidates(measure(SPECIMEN, [recording("a", 1)]), SPECIMEN)]
+    tilt, gain = (next(one for one in some if one.name == name) for name in ("tilt", "gain"))
+    alone = SimpleNamespace(candidates=(tilt,), loss=60.0, fitted=SimpleNamespace(values={}))
+    found: Any = SimpleNamespace(
+        singles=[], base=SimpleNamespace(loss=50.0),
+        scores=[SimpleNamespace(candidate=one, statistic=30.0) for one in (tilt, gain)],
+        at_null=SimpleNamespace(singles=[alone], base=SimpleNamespace(loss=100.0)),
+    )  # fmt: skip
+    assert {line.name: line.gain for line in _screened(found)} == {"tilt": 40.0, "gain": None}
 
 
 def test_priors_hold_what_the_recordings_do_not_tell() -> None:

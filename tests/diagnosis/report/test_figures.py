@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.patches import PathPatch
 
+from diagnosis.answer.result import Screened
 from diagnosis.report.figures import (
     plot_before_after,
     plot_fits,
@@ -22,6 +23,7 @@ from diagnosis.report.figures import (
 from diagnosis.report.figures.curve import MOST_POINTS, thin
 from diagnosis.report.figures.levels import BORDERS, DEPTHS, level_of
 from diagnosis.report.figures.phase_plane import noise_of_trace
+from diagnosis.report.figures.suspects import MOST
 from diagnosis.report.svg import _relative, picture
 from tests.diagnosis.report.example import FORCE, SIGMA, diagnosis, specimen
 
@@ -63,6 +65,14 @@ def test_suspects_are_in_order_and_the_found_one_bold() -> None:
     assert names[:2] == ["pivot inset", "rounded corner"]
     bold = [text.get_text() for text in ax.get_yticklabels() if text.get_fontweight() == "bold"]
     assert bold == ["pivot inset"]
+
+
+def test_what_was_found_and_its_rivals_are_among_the_suspects_however_weak_alone() -> None:
+    strong = [Screened(f"other_{k}", "other", 100.0 - k, None, None) for k in range(20)]
+    weak = [Screened(name, name, 1.0, None, None) for name in ("tilt", "delay", "clock")]
+    ax = plot_suspects([*strong, *weak], 8.0, evidence={"tilt": 500.0, "other_3": 90.0}, rivals=("delay",))
+    names = [text.get_text() for text in ax.get_yticklabels()]
+    assert len(names) == MOST and names[-2:] == ["tilt", "delay"] and names[0] == "other 0"
 
 
 def test_fits_draw_before_after_and_noise() -> None:
