@@ -172,8 +172,9 @@ def _assemble(
     final = law.explanation if law else chosen
     if law:
         gains = [gain for c, gain in zip(chosen.candidates, gains, strict=True) if c in final.candidates]
+        near = [rival for rival in near if set(rival.replaced) <= set(final.names)]
         if not final.candidates:  # nothing is told of what the law replaced
-            near, against, beyond = [], None, ()
+            against, beyond = None, ()
         shown = [stages.needed(lambda: compare(found.base, final, measured, found.errors))]
     settled_at, effects, base = stages.optional(
         "the profile likelihood (the intervals are symmetric instead)",

@@ -4,7 +4,7 @@ Errors that were estimated without the law hold part of what it does, and a law 
 too smooth. So it is estimated as if the sensors' errors were white, too, and then under errors estimated with it in.
 What is missing may act for a while in each recording only (`diagnosis.search.for_a_while`): then what was named, which
 took it to act always, is left out. Or it has a frequency of its own (`diagnosis.search.driven`). A law of time itself
-is not among them: no other recording could be predicted.
+is not among them: no other recording could be predicted. What was named and does nothing beside the law is left out.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from diagnosis.search.driven import with_oscillator
 from diagnosis.search.for_a_while import asking, exact, gain
 from diagnosis.search.found import MISSING
 from diagnosis.search.left_out import WORSE, error_left_out
-from diagnosis.search.refit import Explanation
+from diagnosis.search.refit import Explanation, without
 from diagnosis.search.spells import ALWAYS, InEach, Interval, in_spell
 from diagnosis.search.tables import Law, estimate, form_of
 from diagnosis.search.weighing import as_white_noise
@@ -42,11 +42,27 @@ def missing_law(explanation: Explanation, base: Explanation, errors: Errors) -> 
     led = estimate(_as_white(explanation, errors), errors)
     for law in (as_they_are, led):
         best, error = _better(law, best, error)
-    error = min(error, _left_out(explanation))  # what was named gives way only to what predicts better than it
+    named = _left_out(explanation)
+    error = min(error, named)  # what was named gives way only to what predicts better than it
     plain = _as_white(base, errors)
     for law in (for_a_while(plain, errors), driven(plain, errors)):
         best, error = _better(law, best, error)
-    return best
+    return best if best is None else _beside_what_acts(best, explanation, errors, named)
+
+
+def _beside_what_acts(law: Law, explanation: Explanation, errors: Errors, named: float) -> Law:
+    """The law without the effects that do nothing beside it, if it predicts better than they do alone (``named``).
+
+    A rung is no effect beside it.
+    """
+    found = law.explanation
+    if found.fitted.misfit.predictor.rung is not None:
+        return law
+    idle = [c for c in found.removable if without(found, c).loss - found.loss < MISSING]
+    for candidate in idle:
+        explanation = without(explanation, candidate)
+    alone = estimate(_as_white(explanation, errors), errors) if idle else None
+    return law if alone is None or WORSE * _left_out(alone.explanation) >= named else alone
 
 
 def _better(law: Law | None, best: Law | None, error: float) -> tuple[Law | None, float]:

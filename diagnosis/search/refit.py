@@ -111,6 +111,7 @@ def without(explanation: Explanation, candidate: Candidate, iterations: int = IT
         in_spell(base.misfit, candidate.name, None),
         unknowns=tuple(base.misfit.unknowns[i] for i in keep),
         fixed={k: v for k, v in base.misfit.fixed.items() if k not in candidate.held},
+        smooth=None if base.misfit.smooth is None else base.misfit.smooth[:, keep],
     )
     rest = tuple(c for c in explanation.candidates if c is not candidate)
     return Explanation(rest, fit(misfit, base.u[keep], base.states, iterations))

@@ -16,6 +16,7 @@ from diagnosis.fit.setup import measure
 from diagnosis.fit.solver import fit
 from diagnosis.fit.unknowns import of_specimen
 from diagnosis.fit.whitening import sensor_noise_only
+from diagnosis.search import law as law_of
 from diagnosis.search.candidates import candidates
 from diagnosis.search.law import missing_law
 from diagnosis.search.refit import Explanation, extend
@@ -113,6 +114,36 @@ def test_a_law_that_the_errors_hold_is_found_and_predicts() -> None:
     assert law is not None and law.tables[0].term == "impact"
     assert (before - chi2(held, other, law)) / (before - 1.0) > 0.8
     assert without is None or chi2(held, other, law) <= chi2(held, other, without) + 0.05
+
+
+def test_what_was_named_is_left_out_where_the_law_leaves_it_nothing_to_do() -> None:
+    """A dashpot on both sides was named for one that works on one side."""
+    measured = windows((1, 2), HIDDEN, 0)
+    some = {one.name: one for one in candidates(measured, SPECIMEN)}
+    plain = base(measured)
+    named = extend(plain, some["viscous_damping"], some["viscous_damping"].null + 1.0)
+    fitted, errors = refitted(named.fitted, disturbance_about(named.fitted))
+    law = missing_law(replace(named, fitted=fitted), plain, errors)
+    assert law is not None and not law.explanation.candidates
+    assert law.tables[0].term == "damping"
+    other = windows((3, 4), HIDDEN, 1)
+    before, after = chi2(named, other), chi2(named, other, law)
+    assert before > 1.3 and (before - after) / (before - 1.0) > 0.7
+
+
+def test_what_was_named_rightly_keeps_its_name_though_a_table_does_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A dashpot on both sides, even where it is held to do nothing: the table in its place predicts no better."""
+    monkeypatch.setattr(law_of, "MISSING", np.inf)
+    measured = windows((1, 2), {row("damping", side, k): -RATE for side in SIDES for k in range(KNOTS)}, 0)
+    plain = base(measured)
+    dashpot = next(one for one in candidates(measured, SPECIMEN) if one.name == "viscous_damping")
+    named = extend(plain, dashpot, dashpot.null + 1.0)
+    fitted, errors = refitted(named.fitted, disturbance_about(named.fitted))
+    named, table = replace(named, fitted=fitted), estimate(plain)
+    assert table is not None
+    beside = law_of._beside_what_acts(replace(table, explanation=named), named, errors, law_of._left_out(named))
+    assert beside.explanation is named
+    assert law_of._beside_what_acts(replace(table, explanation=named), named, errors, 1.0).explanation is not named
 
 
 def test_noise_alone_asks_for_no_law() -> None:
