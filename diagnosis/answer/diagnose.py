@@ -295,9 +295,12 @@ def _estimates(
 
 
 def _screened(found: Search) -> tuple[Screened, ...]:
-    """The screen and its refits, all under the errors of the base model: later singles are those near the answer."""
+    """The screen and its refits, all under the errors of the base model: later singles are those near the answer.
+
+    A refit that explains less than the base model stayed in a valley that the base has left, and tells nothing.
+    """
     start = found if found.at_null is None else found.at_null
-    fits = {e.candidates[0]: e for e in reversed(start.singles)}
+    fits = {e.candidates[0]: e for e in reversed(start.singles) if e.loss < start.base.loss}
     lines: dict[str, Screened] = {}
     for entry in found.scores:
         fit = fits.get(entry.candidate)

@@ -129,11 +129,14 @@ def test_every_refit_of_the_screen_is_told_though_later_ones_are_of_several_effe
     """Under the errors of the base model, as the forecasts are."""
     some = [replace(one, unknowns=()) for one in candidates(measure(SPECIMEN, [recording("a", 1)]), SPECIMEN)]
     tilt, gain = (next(one for one in some if one.name == name) for name in ("tilt", "gain"))
-    alone = SimpleNamespace(candidates=(tilt,), loss=60.0, fitted=SimpleNamespace(values={}))
+    alone, stuck = (
+        SimpleNamespace(candidates=(one,), loss=loss, fitted=SimpleNamespace(values={}))
+        for one, loss in ((tilt, 60.0), (gain, 130.0))
+    )
     found: Any = SimpleNamespace(
         singles=[], base=SimpleNamespace(loss=50.0),
         scores=[SimpleNamespace(candidate=one, statistic=30.0) for one in (tilt, gain)],
-        at_null=SimpleNamespace(singles=[alone], base=SimpleNamespace(loss=100.0)),
+        at_null=SimpleNamespace(singles=[alone, stuck], base=SimpleNamespace(loss=100.0)),
     )  # fmt: skip
     assert {line.name: line.gain for line in _screened(found)} == {"tilt": 40.0, "gain": None}
 
