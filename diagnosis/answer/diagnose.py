@@ -299,6 +299,7 @@ def _screened(found: Search) -> tuple[Screened, ...]:
 
     A refit that explains less than the base model stayed in a valley that the base has left, and tells nothing.
     """
+    found = found if found.shorter is None else found.shorter
     start = found if found.at_null is None else found.at_null
     fits = {e.candidates[0]: e for e in reversed(start.singles) if e.loss < start.base.loss}
     lines: dict[str, Screened] = {}

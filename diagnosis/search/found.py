@@ -84,6 +84,8 @@ class Search:
     """This search with one effect that begins or ends, that leaves something unexplained."""
     longer: Search | None = None
     """What was found, in windows that have grown with it (`diagnosis.search.grown`)."""
+    shorter: Search | None = None
+    """The search that this one goes on from in longer windows: its screen and singles are of all mechanisms."""
     strongest_law: tuple[Explanation, float] | None = None
     """Of an explanation of several effects, with the evidence of its strongest law (`diagnosis.search.details`)."""
     about: About | None = None

@@ -60,18 +60,19 @@ def beside_in_grown_windows(found: Search, whole: Measured, progress: Progress) 
     found.longer = longer = grown(found, whole)
     if not longer.tested(longer.chosen).flags(least(found, found.chosen)):
         return
-    for stage in further_effects(_begun_anew(longer), progress):
+    for stage in further_effects(_begun_anew(found, longer), progress):
         longer = stage
     if len(longer.chosen.candidates) > len(found.best.candidates):
         yield longer
 
 
-def _begun_anew(longer: Search) -> Search:
+def _begun_anew(found: Search, longer: Search) -> Search:
     """The search with the base model, and the effects one at a time, in the windows of what was found."""
     best = longer.chosen
     singles = [_only(best, candidate) for candidate in best.candidates]
     return replace(
-        longer, base=again(_only(best)), singles=singles, tried=[best, *singles], at_null=None, outside=None
+        longer, base=again(_only(best)), singles=singles, tried=[best, *singles], at_null=None, outside=None,
+        shorter=found,
     )  # fmt: skip
 
 

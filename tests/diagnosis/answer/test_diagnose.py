@@ -134,11 +134,13 @@ def test_every_refit_of_the_screen_is_told_though_later_ones_are_of_several_effe
         for one, loss in ((tilt, 60.0), (gain, 130.0))
     )
     found: Any = SimpleNamespace(
-        singles=[], base=SimpleNamespace(loss=50.0),
+        singles=[], base=SimpleNamespace(loss=50.0), shorter=None,
         scores=[SimpleNamespace(candidate=one, statistic=30.0) for one in (tilt, gain)],
         at_null=SimpleNamespace(singles=[alone, stuck], base=SimpleNamespace(loss=100.0)),
     )  # fmt: skip
     assert {line.name: line.gain for line in _screened(found)} == {"tilt": 40.0, "gain": None}
+    longer: Any = SimpleNamespace(scores=[], singles=[], at_null=None, shorter=found)
+    assert _screened(longer) == _screened(found)
 
 
 def test_priors_hold_what_the_recordings_do_not_tell() -> None:
