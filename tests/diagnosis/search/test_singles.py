@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, NamedTuple
 
 import pytest
 
@@ -86,9 +86,15 @@ def test_every_law_with_a_memory_counts_events_along_its_own_motion() -> None:
 
 
 def test_the_strongest_of_the_screen_come_before_what_has_no_slope_there() -> None:
-    """A refit of a law that sets in at a threshold may cost the whole budget."""
-    names = ["maxwell", "bouc_wen", "gain", "locking", "sliding", "delay"]
-    entries: dict[str, Any] = {name: SimpleNamespace(candidate=name) for name in names}
-    wanted = [entries[name] for name in ("maxwell", "bouc_wen", "gain", "locking", "delay")]
-    found = _in_turn(wanted, [entries["locking"], entries["sliding"]])
-    assert [entry.candidate for entry in found] == ["maxwell", "bouc_wen", "locking", "sliding", "gain", "delay"]
+    """A refit of a law that sets in at a threshold may cost the whole budget; laws at further joints come last."""
+
+    class Law(NamedTuple):
+        name: str
+        joints: str = ""
+
+    ordered = [Law("maxwell", "both"), Law("maxwell", "base"), *(Law(x) for x in ("bouc_wen", "gain", "locking"))]
+    entries: dict[Law, Any] = {one: SimpleNamespace(candidate=one) for one in (*ordered, Law("sliding"))}
+    found = _in_turn([entries[one] for one in ordered], [entries[Law("locking")], entries[Law("sliding")]])
+    names = [(entry.candidate.name, entry.candidate.joints) for entry in found]
+    first = [("maxwell", "both"), ("bouc_wen", ""), ("locking", ""), ("sliding", ""), ("gain", "")]
+    assert names == [*first, ("maxwell", "base")]
