@@ -135,15 +135,13 @@ def test_what_was_named_rightly_keeps_its_name_though_a_table_does_the_same(monk
     """A dashpot on both sides, even where it is held to do nothing: the table in its place predicts no better."""
     monkeypatch.setattr(law_of, "MISSING", np.inf)
     measured = windows((1, 2), {row("damping", side, k): -RATE for side in SIDES for k in range(KNOTS)}, 0)
-    plain = base(measured)
     dashpot = next(one for one in candidates(measured, SPECIMEN) if one.name == "viscous_damping")
-    named = extend(plain, dashpot, dashpot.null + 1.0)
+    named = extend(base(measured), dashpot, dashpot.null + 1.0)
     fitted, errors = refitted(named.fitted, disturbance_about(named.fitted))
-    named, table = replace(named, fitted=fitted), estimate(plain)
-    assert table is not None
-    beside = law_of._beside_what_acts(replace(table, explanation=named), named, errors, law_of._left_out(named))
-    assert beside.explanation is named
-    assert law_of._beside_what_acts(replace(table, explanation=named), named, errors, 1.0).explanation is not named
+    named = replace(named, fitted=fitted)
+    law = Law(named, (), MECHANISM)
+    assert law_of._beside_what_acts(law, named, errors, law_of._left_out(named)) is law
+    assert not law_of._beside_what_acts(law, named, errors, 1.0).explanation.candidates
 
 
 def test_noise_alone_asks_for_no_law() -> None:
