@@ -36,7 +36,7 @@ from diagnosis.search.refit import (
 from diagnosis.search.screen import Score, score
 from diagnosis.search.thresholds import from_measured, misfits, setting_in
 from diagnosis.search.ties import settle_ties
-from diagnosis.search.untried import each_once, in_its_place
+from diagnosis.search.untried import in_its_place
 from diagnosis.search.variants import with_other_numbers
 from diagnosis.search.weighing import by_white_noise, weigh_again
 from diagnosis.search.white_screen import against_white_noise
@@ -158,10 +158,16 @@ def _singles(found: Search, progress: Progress) -> None:
 
 
 def _in_turn(wanted: Sequence[Score], late: Sequence[Score]) -> list[Score]:
-    """The strongest of a screen, then what has no slope at its null, then the others: a budget may end on the way."""
-    wanted = each_once(wanted)
-    first, rest = wanted[:FEWEST_ADEQUATE], wanted[FEWEST_ADEQUATE:]
-    return list({entry.candidate: entry for entry in (*first, *late, *rest)}.values())
+    """The strongest of a screen, then what has no slope at its null, then the others: a budget may end on the way.
+
+    The strongest variant of every mechanism comes before its others: laws at other joints, other orders.
+    """
+    variants: dict[str, Score] = {}
+    for entry in wanted:
+        variants.setdefault(entry.candidate.name, entry)
+    strongest = list(variants.values())
+    ordered = (*strongest[:FEWEST_ADEQUATE], *late, *strongest[FEWEST_ADEQUATE:], *wanted)
+    return list({entry.candidate: entry for entry in ordered}.values())
 
 
 def led_by(found: Search, leader: Explanation) -> bool:

@@ -16,14 +16,6 @@ from diagnosis.search.screen import Score
 from diagnosis.search.weighing import by_white_noise
 
 
-def each_once(scores: Sequence[Score]) -> list[Score]:
-    """The strongest variant of every mechanism in the order given, then the others: laws at other joints, orders."""
-    first: dict[str, Score] = {}
-    for entry in scores:
-        first.setdefault(entry.candidate.name, entry)
-    return list({entry.candidate: entry for entry in (*first.values(), *scores)}.values())
-
-
 def in_its_place(found: Search, left: Sequence[Score]) -> None:
     """Add singles of what was ``left`` of the screen; the likeliest is fitted thoroughly if it is one of them."""
     if not left:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from types import SimpleNamespace
-from typing import Any, NamedTuple
 
 import pytest
 
@@ -18,7 +16,7 @@ from diagnosis.search.candidates import candidates
 from diagnosis.search.found import Search
 from diagnosis.search.refit import Explanation, extend
 from diagnosis.search.screen import Score, score
-from diagnosis.search.untried import each_once, in_its_place
+from diagnosis.search.untried import in_its_place
 from diagnosis.search.weighing import reweighed
 from tests.diagnosis.made import SPECIMEN, recording
 
@@ -39,13 +37,6 @@ def begun() -> Search:
     found.singles = [extend(found.base, some[WRONG], some[WRONG].null)]
     found.not_tried = {TRUE: ENDED, "tilt": ENDED}
     return found
-
-
-class Law(NamedTuple):
-    """A law at one or both joints."""
-
-    name: str
-    place: str
 
 
 def again(found: Search, budget: Budget) -> Search:
@@ -86,14 +77,3 @@ def test_a_search_whose_budget_ends_at_once_tries_all_that_the_screen_asks_for(b
     select._singles(found, silent)
     assert {single.names[0] for single in found.singles} == {TRUE, WRONG, "tilt"}
     assert found.singles[0].names == (TRUE,) and TRUE not in found.not_tried
-
-
-def test_laws_at_other_joints_come_after_the_first_of_every_law() -> None:
-    def entry(name: str, place: str) -> Any:
-        return SimpleNamespace(candidate=Law(name, place))
-
-    names = [("locking", "both"), ("locking", "base"), ("hardening", "both"), ("locking", "top"), ("tilt", "")]
-    ordered = each_once([entry(*one) for one in names])
-    assert [(e.candidate.name, e.candidate.place) for e in ordered] == [
-        ("locking", "both"), ("hardening", "both"), ("tilt", ""), ("locking", "base"), ("locking", "top"),
-    ]  # fmt: skip
