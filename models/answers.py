@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from models.base import MISSING, STATUS, UNANSWERED, Quantity
+from models.base import MISSING, STATUS, UNANSWERED, Event, Quantity
 from models.runs import Run
 
 
@@ -39,13 +39,17 @@ def unanswered(declared: Iterable[Quantity], size: int, samples: int, states: in
     return Run(found, np.full((size, samples, states), np.nan), ((),) * size)
 
 
-def among(whole: Run, lanes: NDArray[np.intp], part: Run) -> Run:
-    """``whole`` with the outputs, states and events of ``lanes`` as those of ``part``."""
-    outputs, samples, events = dict(whole.outputs), whole.samples.copy(), list(whole.events)
-    for name, values in outputs.items():
-        outputs[name] = values.copy()
-        outputs[name][lanes] = part.outputs[name]
-    samples[lanes] = part.samples
-    for lane, own in zip(lanes.tolist(), part.events, strict=True):
+def among(declared: Iterable[Quantity], size: int, lanes: NDArray[np.intp], part: Run) -> Run:
+    """The run of ``size`` lanes of which only ``lanes`` can be run, as ``part``; the others `unanswered`."""
+    others = np.setdiff1d(np.arange(size), lanes)
+    rest = unanswered(declared, others.size, *part.samples.shape[1:])
+    outputs: dict[str, NDArray[Any]] = {}
+    for name, values in part.outputs.items():
+        outputs[name] = np.empty(size)
+        outputs[name][lanes], outputs[name][others] = values, rest.outputs[name]
+    samples = np.empty((size, *part.samples.shape[1:]))
+    samples[lanes], samples[others] = part.samples, np.nan
+    events: list[tuple[Event, ...]] = [()] * size
+    for lane, own in zip(lanes.tolist(), part.events, strict=False):
         events[lane] = own
     return Run(outputs, samples, tuple(events), part.steps)

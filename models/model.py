@@ -133,7 +133,7 @@ class Model(Placing, ABC, Generic[C]):
         if not able.size:
             return unanswered(outputs, unable.size, request.samples, len(self.states))
         found = self._integrated(integrator, coefficients.take(able), request.take(able))
-        return among(unanswered(outputs, unable.size, request.samples, found.samples.shape[2]), able, found)
+        return among(outputs, unable.size, able, found)
 
     def _integrated(self, integrator: str, coefficients: C, request: Request) -> Run:
         if integrator == "lanes":
@@ -253,6 +253,7 @@ class Model(Placing, ABC, Generic[C]):
         request = Request(
             shaking.lines, np.ones(n), self.resolve_options(options), first=first, last=last,
             samples=int(np.max(steps)) + 1, initial={name: by_lane(v, n) for name, v in initial.items()},
+            bare=True,
         )  # fmt: skip
         run = self.run("lanes", coefficients, request)
         after = self.resume(run.samples[np.arange(n), last - first], run.outputs, request.initial)

@@ -23,7 +23,7 @@ class Request:
     Histories: ``samples`` states of every lane at the time step of the shaking, from sample ``first`` (n,) to
     ``last`` (n,; default: from the start to the end of the tail), through rest and overturning.
     ``initial``: arrays (n,) by the names of the model's states; what is left out is as at rest.
-    ``log``: most events kept of a lane.
+    ``log``: most events kept of a lane. ``bare``: only the motion is asked for; outputs that cost more may be left out.
     """
 
     shaking: Shaking
@@ -35,6 +35,7 @@ class Request:
     last: Index | None = None
     samples: int = 0
     log: int = 0
+    bare: bool = False
 
     @property
     def history(self) -> bool:

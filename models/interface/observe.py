@@ -17,46 +17,24 @@ def observe(wall: LayeredWall, state: FloatArray) -> Observed:
     With effects ``(n, m, 16)``: the other coordinates and their rates after the plain ones.
     """
     t1, t2, z1, z2, v1, v2, y1, y2 = np.moveaxis(state[:, :, :8], 2, 0)
-    x1 = x2 = zm = beside = np.zeros_like(t1)
-    tm, vm = t1, v1
-    if wall.effects is not None and state.shape[2] == 16:
-        x1, x2, tm, zm, _, _, vm, _ = np.moveaxis(state[:, :, 8:], 2, 0)
-        beside = wall.effects.top_offset[:, None]
+    tm, vm = (state[:, :, 10], state[:, :, 14]) if state.shape[2] == 16 else (t1, v1)
 
     def lane(values: FloatArray) -> FloatArray:
         return values[:, None]
 
-    half = lane(0.5 * wall.height_1)
+    def centre(of_block: bool) -> FloatArray:
+        from models.interface.lanes.centres import centres  # compiled when it is first asked for
 
-    def rolled(slip: FloatArray, half_width: FloatArray, turn: FloatArray) -> FloatArray:
-        """Slip of a joint, and what it moves on by its edge."""
-        if not wall.toe_held:
-            return slip
-        return np.asarray(slip + np.sign(turn) * lane(half_width) * (1.0 - np.cos(turn)))
-
-    def foot() -> FloatArray:
-        return rolled(x1, wall.base_half_width, t1)
-
-    def leaning() -> tuple[FloatArray, FloatArray]:
-        """sin of the lower and of the upper half."""
-        lower = np.sin(t1)
-        return lower, lower if tm is t1 else np.sin(tm)
-
-    def wall_centre() -> FloatArray:
-        # of both halves
-        lower, upper = leaning()
-        return np.asarray(foot() + 0.75 * half * lower + (0.25 * half + 0.5 * zm) * upper)
-
-    def block_centre() -> FloatArray:
-        along = rolled(x2, wall.top_half_width, t2 - tm)
-        above = half + lane(wall.top_thickness_in_height) + zm + z2
-        lower, upper = leaning()
-        centre = foot() + half * lower
-        if np.any(along):
-            centre += along * np.cos(tm)
-        centre += above * upper
-        centre += lane(wall.centre_2) * np.sin(t2)
-        return np.asarray(centre + beside * np.cos(t2) if np.any(beside) else centre)
+        toe = 1.0 if wall.toe_held else 0.0
+        offset = 0.0 if wall.effects is None else wall.effects.top_offset
+        each = (
+            0.5 * wall.height_1, wall.top_thickness_in_height, wall.centre_2, offset, toe * wall.base_half_width,
+            toe * wall.top_half_width,
+        )  # fmt: skip
+        found = np.empty(state.shape[:2])
+        lanes = np.stack([np.broadcast_to(values, (wall.size,)) for values in each], axis=1)
+        centres(np.ascontiguousarray(state), lanes, of_block, found)
+        return found
 
     def contact_1() -> FloatArray:
         if wall.joints == "top":
@@ -77,8 +55,8 @@ def observe(wall: LayeredWall, state: FloatArray) -> Observed:
             "rotation_2": lambda: t2,
             "rotation_rate_1": lambda: v1,
             "rotation_rate_2": lambda: v2,
-            "displacement_1_x": wall_centre,
-            "displacement_2_x": block_centre,
+            "displacement_1_x": lambda: centre(of_block=False),
+            "displacement_2_x": lambda: centre(of_block=True),
             "compression_base": lambda: -z1,
             "compression_top": lambda: -z2,
             "contact_1": contact_1,

@@ -14,7 +14,8 @@ from models.interface.declaration import STATES
 from models.interface.lanes import rows as r
 from models.interface.lanes.advance import advance
 from models.interface.lanes.effects.given import energy, given_effects
-from models.interface.lanes.effects.rows import G_STATE
+from models.interface.lanes.effects.rows import G_STATE, More
+from models.interface.lanes.fibres import Rubber
 from models.interface.lanes.laws import given_laws, stored_in_layers
 from models.interface.lanes.sense import SAME_TIME, agree, diverged, pressed
 from models.interface.layered import LayeredWall
@@ -83,6 +84,8 @@ def run(wall: LayeredWall, request: Request, refinement: int = 1) -> Run:
         # when a wall falls is as sensitive as any peak: the finest steps need not tell
         within = SAME_TIME if finer < FINEST else np.inf
         again = again[pressed(some, taken.result) & ~agree(some, coarse, taken.result, within)]
+    if request.bare:
+        return Run({}, found.trace, steps=steps)
     result = found.result
     result[diverged(wall, request, result), r.R_FAILED] = 1.0
     result[again, r.R_FAILED] = 1.0
@@ -132,7 +135,14 @@ def _advanced(wall: LayeredWall, request: Request, refinement: int, low_pass: fl
         record, *request.steps(1, record.end), given, tables, request.history,
         None if wall.joints == "both" or more is not None else True, None if laws is None else True, laws, more,
     )  # fmt: skip
-    result, first = tables.result, given[:, r.Q_STATE : r.Q_STATE + 4]
+    if not request.bare:
+        _account(wall, given, laws, more, tables.result)
+    return int(steps)
+
+
+def _account(wall: LayeredWall, given: FloatArray, laws: Rubber | None, more: More | None, result: FloatArray) -> None:
+    """What the joints stored and gave back in a run is no part of what they lost: taken off in ``result``."""
+    first = given[:, r.Q_STATE : r.Q_STATE + 4]
     hidden = (None, None) if laws is None else (laws.hidden, laws.ended)
     with np.errstate(invalid="ignore", over="ignore"):
         last = result[:, r.R_END_1 : r.R_END_Z2 + 1]
@@ -142,7 +152,6 @@ def _advanced(wall: LayeredWall, request: Request, refinement: int, low_pass: fl
             began = more.given[:, G_STATE:]
             change = energy(wall, first, began, hidden[0]) - energy(wall, last, more.ended, hidden[1])
         result[:, r.R_LOST_B : r.R_LOST_T + 1] += change
-    return int(steps)
 
 
 def outputs(wall: LayeredWall, table: NDArray[np.float64]) -> dict[str, NDArray[Any]]:
