@@ -221,11 +221,9 @@ def evaluate(
                     turned[:, i] = piece.at_knots @ pulled[i][piece.knots]
             information += w * (turned.T @ one.projector @ turned)
             along[:, at] += w * turned.T @ one.on_common
-            known = one.on_common @ spread[np.ix_(at, at)]
+            left_over = one.projector - w * (one.on_common @ spread[np.ix_(at, at)] @ one.on_common.T)
             for i in acting:
-                part = piece.parts[i]
-                assert part is not None
-                trace[i] += part.trace(one.projector) - w * float(np.sum(known * part.times(one.on_common)))
+                trace[i] += piece.parts[i].trace(left_over)  # type: ignore[union-attr]
         information -= along @ spread @ along.T
     return State(deviance, trace - quadratic, information, quadratic, trace, chi2, determinants, price, shift, spread)
 

@@ -88,7 +88,10 @@ class Misfit:
     def whitened(self, predicted: FloatArray) -> FloatArray:
         """Residuals (P, W, M) of predictions (P, W, C, N)."""
         difference = predicted - self.measured.values
-        found = self.whitening(np.where(np.isfinite(difference), difference, 1e3))
+        known = np.isfinite(difference)
+        if not known.all():
+            difference[~known] = 1e3
+        found = self.whitening(difference)
         shared = self.whitening.shared
         return found if shared is None else found + shared @ self.level
 
