@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.data.noise import response_noise, smooth
+from diagnosis.data.noise import response_noise
+from diagnosis.data.smoothing import smooth
 from diagnosis.data.windows import Window
 from grids.recordings.base import REQUIRED, FloatArray, Recording
 from models.identification import Identification, Largest, State, WindowLengths

@@ -105,11 +105,3 @@ def base_noise(recording: Recording) -> float:
     blocks = max(values.size // BLOCK, 1)
     levels = [noise_of(part).sigma for part in np.array_split(values, blocks)]
     return float(np.quantile(levels, QUIET_SHARE)) if np.any(values) else 0.0
-
-
-def smooth(values: FloatArray, time_step: float, width: float, slope: bool = False) -> FloatArray:
-    """Local cubic over ``width`` seconds, at least 7 samples; its ``slope`` (per s) instead of its value."""
-    from scipy.signal import savgol_filter
-
-    count = min(max(7, round(width / time_step) | 1), (values.size - 1) | 1)
-    return np.asarray(savgol_filter(values, count, 3, deriv=int(slope), delta=time_step))

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.data.noise import smooth
+from diagnosis.data.smoothing import smooth
 from grids.recordings.base import FloatArray
 from models.identification import WindowLengths
 

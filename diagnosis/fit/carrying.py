@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.data.measured import Measured
-from diagnosis.data.noise import smooth
+from diagnosis.data.smoothing import smooth
 from grids.instruments.base import Surroundings
 from grids.instruments.staged import Sets, recorded_in_stages
 from grids.instruments.windowed import recorded_in_windows

@@ -11,7 +11,7 @@ from functools import partial
 import numpy as np
 
 from diagnosis.data.measured import Measured
-from diagnosis.data.noise import smooth
+from diagnosis.data.smoothing import smooth
 from diagnosis.data.windows import ABOVE_NOISE
 from diagnosis.fit.prediction import Point, Predictor, held
 from diagnosis.fit.unknowns import instruments_of

@@ -2,13 +2,14 @@
 
 The filter acts on the signal taken as linear between samples, so that a corner above the Nyquist
 frequency of the recording keeps its meaning. In windows it is applied in two parts: its delay of slow signals,
-as a clock error, and the filter advanced by that delay. So a window that starts at a recorded peak
-starts at the peak of the motion too, and what came before its first sample is the parabola through
+as a clock error, and the filter read that much later, between samples too. So a window that starts at a recorded
+peak starts at the peak of the motion too, and what came before its first sample is the parabola through
 the first samples.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import Literal, NamedTuple
 
@@ -26,23 +27,53 @@ FITTED = 8
 
 
 class Discrete(NamedTuple):
-    """A filter for an input linear between samples: its polynomials in z^-1, and what it makes of a constant one."""
+    """A filter for an input linear between samples: its polynomials in z^-1, and what it makes of a constant one.
+
+    ``late``: how many samples after the first its output of the first one comes.
+    """
 
     numerator: NDArray[np.float64]
     denominator: NDArray[np.float64]
     steady: float
+    late: int = 0
 
 
 @lru_cache(maxsize=4096)
-def discrete(corner_hz: float, order: int, kind: Kind, time_step: float) -> Discrete:
-    """The Butterworth filter for samples ``time_step`` (s) apart."""
+def discrete(corner_hz: float, order: int, kind: Kind, time_step: float, share: float = 0.0) -> Discrete:
+    """The Butterworth filter for samples ``time_step`` (s) apart, read a ``share`` of a step after each."""
     from scipy.signal import butter, cont2discrete, ss2tf, tf2ss
 
-    numerator, denominator = butter(order, 2.0 * np.pi * corner_hz, btype=kind, analog=True, output="ba")
-    a, b, c, d, _ = cont2discrete(tf2ss(numerator, denominator), time_step, method="foh")
+    continuous = tf2ss(*butter(order, 2.0 * np.pi * corner_hz, btype=kind, analog=True, output="ba"))
+    a, b, c, d, _ = cont2discrete(continuous, time_step, method="foh")
     rows, poles = ss2tf(a, b, c, d)
     unit = np.linalg.solve(np.eye(a.shape[0]) - a, b[:, 0])
-    return Discrete(rows[0], poles, float(c[0] @ unit + d[0, 0]))
+    steady = float(c[0] @ unit + d[0, 0])
+    if not share:
+        return Discrete(rows[0], poles, steady)
+    return Discrete(_read_between(continuous, poles, time_step, share), poles, steady, late=1)
+
+
+def _read_between(
+    continuous: Sequence[NDArray[np.float64]], poles: NDArray[np.float64], time_step: float, share: float
+) -> NDArray[np.float64]:
+    """Numerator of the filter x' = A x + b u, y = c x + d u that is read a share of a step after each sample.
+
+    It has no more coefficients than its answer to a pulse, which rises over one step and falls over the next, tells.
+    """
+    from scipy.linalg import expm
+
+    a, b, c, d = continuous
+    n = a.shape[0]
+    rates = np.zeros((n + 2, n + 2))  # of x, u and the slope of u
+    rates[:n, :n], rates[:n, n], rates[n, n + 1] = a, b[:, 0], 1.0
+    step, part = expm(rates * time_step), expm(rates * (share * time_step))
+    x, answer = np.zeros(n), []
+    for before, after in ((0.0, 1.0), (1.0, 0.0), *[(0.0, 0.0)] * n):
+        given = np.array([*x, before, (after - before) / time_step])
+        between = part @ given
+        answer.append(float(c[0] @ between[:n] + d[0, 0] * between[n]))
+        x = (step @ given)[:n]
+    return np.convolve(answer, poles)[: n + 2]
 
 
 @lru_cache(maxsize=64)
@@ -62,16 +93,20 @@ def stages(values: Values) -> list[tuple[float, int, Kind]]:
     return found
 
 
-def run(system: Discrete, signal: FloatArray, time_step: float) -> FloatArray:
-    """Output of the filter for signals (..., samples), each led in by its own parabola."""
+def run(system: Discrete, signal: FloatArray, time_step: float, later: int = 0) -> FloatArray:
+    """Output of the filter for signals (..., samples), each led in by its own parabola; read so many samples ``later``.
+
+    Beyond its end a signal keeps its last value.
+    """
     from scipy.signal import lfilter
 
-    count = int(np.ceil(LEAD_IN / time_step))
-    few = min(FITTED, signal.shape[-1])
-    whole = np.concatenate([signal[..., :few] @ backwards(few, count), signal], axis=-1)
+    count, later = int(np.ceil(LEAD_IN / time_step)), later + system.late
+    few, samples = min(FITTED, signal.shape[-1]), signal.shape[-1]
+    held = np.repeat(signal[..., -1:], later, axis=-1)
+    whole = np.concatenate([signal[..., :few] @ backwards(few, count), signal, held], axis=-1)
     first = whole[..., :1]
     passed = lfilter(system.numerator, system.denominator, whole - first, axis=-1) + system.steady * first
-    return np.asarray(passed)[..., count:]
+    return np.asarray(passed)[..., count + later : count + later + samples]
 
 
 def delay(values: Values) -> float:
@@ -86,27 +121,20 @@ def delay(values: Values) -> float:
 
 
 def respond(channels: Channels, values: Values, around: Surroundings) -> Channels:
-    for corner, order, kind in stages(values):
-        system = discrete(corner, order, kind, around.time_step)
-        channels = {name: run(system, x, around.time_step) for name, x in channels.items()}
-    return channels
+    return _read(channels, values, around, 0.0)
 
 
 def respond_in_windows(channels: Channels, values: Values, around: Surroundings) -> Channels:
-    advance = delay(values) / around.time_step
-    filtered = respond(channels, values, around)
-    return {name: shifted(x, advance) for name, x in filtered.items()} if advance else filtered
+    return _read(channels, values, around, delay(values) / around.time_step)
 
 
-def shifted(signal: FloatArray, advance: float) -> FloatArray:
-    """The signal read ``advance`` samples later; the last value is held. nan between samples that are not finite."""
-    from scipy.interpolate import CubicSpline
-
-    index = np.arange(signal.shape[-1])
-    at, finite = np.minimum(index + advance, index[-1]), np.isfinite(signal)
-    found = np.asarray(CubicSpline(index, np.where(finite, signal, 0.0), axis=-1)(at))
-    low, high = np.floor(at).astype(int), np.ceil(at).astype(int)
-    return np.where(finite[..., low] & finite[..., high], found, np.nan)
+def _read(channels: Channels, values: Values, around: Surroundings, later: float) -> Channels:
+    """The channels as filtered, the low-pass read so many samples ``later``."""
+    for corner, order, kind in stages(values):
+        whole, share = divmod(later, 1.0) if kind == "lowpass" else (0.0, 0.0)
+        system = discrete(corner, order, kind, around.time_step, share)
+        channels = {name: run(system, x, around.time_step, int(whole)) for name, x in channels.items()}
+    return channels
 
 
 MECHANISM = Mechanism(

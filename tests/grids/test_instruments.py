@@ -6,10 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.signal import butter, sosfilt
+from scipy.signal import butter, lfilter, sosfilt
 
 from grids.instruments import INSTRUMENTS, moved, recorded
 from grids.instruments.base import Surroundings
+from grids.instruments.filter import discrete
 from grids.instruments.staged import recorded_in_stages
 from grids.instruments.windowed import read_at, recorded_in_windows
 from models.shaking import Shaking
@@ -155,6 +156,20 @@ def test_filter_is_butterworth(order: int, corner: float) -> None:
     wave = np.sin(2 * np.pi * corner * np.arange(6000) * STEP)
     out = recorded({"rotation_1": wave}, switched, Surroundings(STEP, np.zeros(6000)))["rotation_1"][3000:]
     assert np.sqrt(2 * np.mean(out**2)) == pytest.approx(np.sqrt(0.5), rel=5e-3)
+
+
+@pytest.mark.parametrize("order", [1, 2, 3, 4])
+@pytest.mark.parametrize("share", [0.25, 0.75])
+def test_a_filter_read_between_samples_is_that_of_a_recording_as_fine(order: int, share: float) -> None:
+    """From rest, of any signal that is linear between samples."""
+    fine, samples = 4, 200
+    signal = np.cumsum(np.random.default_rng(order).normal(size=samples))
+    signal -= signal[0]
+    between = np.interp(np.arange(fine * (samples - 1) + 1) / fine, np.arange(samples), signal)
+    plain, read = discrete(9.0, order, "lowpass", STEP / fine), discrete(9.0, order, "lowpass", STEP, share)
+    told = lfilter(plain.numerator, plain.denominator, between)[round(share * fine) :: fine]
+    found = lfilter(read.numerator, read.denominator, signal)[read.late :]
+    np.testing.assert_allclose(found, told, atol=1e-8 * np.ptp(signal))
 
 
 @pytest.mark.parametrize("order", [1, 2, 4])

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from diagnosis.data.noise import smooth
+from diagnosis.data.smoothing import smooth
 from diagnosis.data.windows import ABOVE_NOISE, Window, cut, over_noise, rest_level
 from models.identification import WindowLengths
 

@@ -36,9 +36,7 @@ def test_a_change_of_any_source_of_a_kernel_is_another_hash(
     model = module.split(".")[1]
     compiled_in = {copied / path.relative_to(ROOT) for path in (ROOT / "models" / model / "lanes").rglob("*.py")}
     compiled_in = {
-        path
-        for path in compiled_in
-        if path.name not in OWN and "from models.lanes.compiler import" in path.read_text()
+        path for path in compiled_in if path.name not in OWN and "from models.lanes.compiler import" in path.read_text()
     }
     assert compiled_in <= set(made_of), "every piece of the kernel belongs to it"
     assert copied / "models" / "lanes" / "compiler.py" in made_of
