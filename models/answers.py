@@ -50,6 +50,6 @@ def among(declared: Iterable[Quantity], size: int, lanes: NDArray[np.intp], part
     samples = np.empty((size, *part.samples.shape[1:]))
     samples[lanes], samples[others] = part.samples, np.nan
     events: list[tuple[Event, ...]] = [()] * size
-    for lane, own in zip(lanes.tolist(), part.events, strict=False):
+    for lane, own in zip(lanes.tolist(), part.events, strict=True):
         events[lane] = own
     return Run(outputs, samples, tuple(events), part.steps)

@@ -286,9 +286,7 @@ class Identification:
     move with every motion of the base, and are still only where it is. ``windows`` None: the
     model runs through whole recordings (``stretches``). ``forces`` empty: laws outside the library are not tested for.
     ``phases``: every phase word in plain English. ``scatter`` None: events are taken to repeat exactly.
-    ``most_effects``: how many a search adds at most; ``further_work``: what it may cost, over that of other models;
-    ``speed``: lane-steps a second of the model's kernel over those of a wall's, with which a search's budget of work
-    goes in proportion.
+    ``most_effects``: how many a search adds at most; ``further_work``: what it may cost, over that of other models.
     ``coordinates``: parameters in whose place a fit within a range works with something that recordings tell better
     (`models.model.Model.declared`), as soon as a mechanism acts. ``whole``: whole-number parameters of mechanisms, with
     the values that are tried.
@@ -317,7 +315,6 @@ class Identification:
     stretches: Stretches | None = None
     most_effects: int = 3
     further_work: float = 1.0
-    speed: float = 1.0
     same: Mapping[str, str] = field(default_factory=dict)
     ladder: tuple[Rung, ...] = ()
     exposures: tuple[Exposure, ...] = ()

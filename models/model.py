@@ -51,6 +51,7 @@ class Model(Placing, ABC, Generic[C]):
     at an instant (`models.piecewise`); None: it never can.
     ``takes_vertical``: whether a vertical motion of the base enters the equations; ``vertical_by_default``:
     whether it does where a specimen does not say.
+    ``call_time``: what a diagnosis takes for a call of the kernel beside its lane-steps, in s of a typical core.
     """
 
     name: str
@@ -68,6 +69,7 @@ class Model(Placing, ABC, Generic[C]):
     resumes_with: tuple[str, ...] | None = None
     takes_vertical: bool = True
     vertical_by_default: bool = False
+    call_time: float = 1.5e-3
 
     # --- what a model gives
 
@@ -138,10 +140,14 @@ class Model(Placing, ABC, Generic[C]):
     def _integrated(self, integrator: str, coefficients: C, request: Request) -> Run:
         if integrator == "lanes":
             found = self.run_lanes(coefficients, request)
-            DONE.call(found.steps)
+            DONE.call(found.steps, self.call_time + found.steps * self.step_time(coefficients))
             return found
         lanes = [slice(k, k + 1) for k in range(coefficients.size)]
         return Run.joined([self.run_reference(coefficients.take(k), request.take(k)) for k in lanes])
+
+    def step_time(self, coefficients: C) -> float:
+        """What a lane-step of the kernel takes a typical core (s), with what a diagnosis makes of its samples."""
+        return 5e-8
 
     def settle(self, run: Run, time_step: float) -> FloatArray:
         """States of a history in which what has overturned stays where it lies; default: as computed."""

@@ -84,15 +84,18 @@ class Request:
 
 @dataclass
 class Work:
-    """What this process has asked of the kernels: lane-steps and calls. It does not depend on the machine."""
+    """What this process has asked of the kernels: lane-steps, and how long all of it takes a typical core (s).
+
+    Counted, not clocked: it does not depend on the machine.
+    """
 
     steps: int = 0
-    calls: int = 0
+    seconds: float = 0.0
 
-    def call(self, steps: int) -> None:
-        """One call of a kernel, of so many lane-steps."""
+    def call(self, steps: int, seconds: float) -> None:
+        """One call of a kernel, of so many lane-steps, that takes so long."""
         self.steps += steps
-        self.calls += 1
+        self.seconds += seconds
 
 
 DONE = Work()

@@ -43,7 +43,7 @@ from diagnosis.fit.setup import as_recorded, measure
 from diagnosis.progress import Progress, Stages, silent
 from diagnosis.search import bootstrap as bootstrapping
 from diagnosis.search.beginnings import alone, beside
-from diagnosis.search.budget import Budget
+from diagnosis.search.budget import ANSWER, SEARCH, Budget
 from diagnosis.search.candidates import absent, candidates
 from diagnosis.search.found import Search, misfit_per_sample, rivals
 from diagnosis.search.grown import beside_in_grown_windows, grown
@@ -78,13 +78,13 @@ def diagnose(
     out what the answer can do without (``skipped``); a second one is raised. Raises InputError.
     """
     progress("calibrating the base model and the errors of the recordings", 0.02)
+    whole = Budget(SEARCH)
     specimen, seen = as_recorded(specimen, [*training, *holdout])
     measured = measure(specimen, training)
     held = measure(specimen, holdout, measured.reference_peak) if holdout else None  # refused before the search
     fitted, errors = calibrated(specimen, measured, seed)
     held = as_far_as_followed(held, fitted) if held else None
-    budget = Budget(speed=measured.identification.speed)
-    found = Search(Explanation((), fitted), candidates(measured, specimen), errors, budget=budget)
+    found = Search(Explanation((), fitted), candidates(measured, specimen), errors, whole=whole)
     climbed: Climbed | None = None
     finished = True
     try:
@@ -163,8 +163,9 @@ def _assemble(
     law: Law | None = None
     if verdict == "not_in_library" and not unexplained:
         progress("the missing force as a model", 0.88)
+        left = Budget(ANSWER, found.whole.began)
         law = stages.optional(
-            "the missing force as a model", lambda: missing_law(chosen, found.base, found.errors), lambda: None
+            "the missing force as a model", lambda: missing_law(chosen, found.base, found.errors, left), lambda: None
         )
     if law and to_show and worsens(chosen, law.explanation, to_show, found.errors):
         found.not_tried[law.mechanism.name] = "the tables that fit these recordings predict those held out worse"

@@ -146,7 +146,8 @@ def _in_spells(found: Search, start: Explanation, screened: _Screened) -> list[E
     hidden = list(_quick(found, start, white, ends, cost, MOST_HIDDEN))
     fits += hidden
     if start is found.base:
-        fits += [single for one in found.singles[:MOST_SINGLES] if (single := _in_part(one, cost)) is not None]
+        strongest = (one for one in found.singles[:MOST_SINGLES] if found.affordable(at_an_instant(one.names[0])))
+        fits += [single for one in strongest if (single := _in_part(one, cost)) is not None]
     fits.sort(key=adjusted)
     if not fits:
         return []
@@ -154,8 +155,13 @@ def _in_spells(found: Search, start: Explanation, screened: _Screened) -> list[E
     near = [single for single in _different(fits) if adjusted(start) - adjusted(single) >= enough][:THOROUGH]
     # a sensor that was knocked passes for noise that drifts: which is likelier is told under errors of its own
     near += [e for e in hidden[:1] if e.names not in [one.names for one in near]]
-    wanted = (single for single in near if found.affordable(f"{single.names[-1]} from or to an instant"))
+    wanted = (single for single in near if found.affordable(at_an_instant(single.names[-1])))
     return sorted((thorough(single) for single in wanted), key=adjusted)
+
+
+def at_an_instant(name: str) -> str:
+    """What was not tried of a mechanism."""
+    return f"{name} from or to an instant"
 
 
 def _different(fits: Sequence[Explanation]) -> list[Explanation]:
@@ -241,7 +247,8 @@ def _quick(
         return
     whole = _of_whole_recordings(m.recording_of, ends)
     for one in strongest[:most]:
-        if float(one.statistic.max()) < max(FAINT + cost, SHARE * largest):
+        name = one.score.candidate.name
+        if float(one.statistic.max()) < max(FAINT + cost, SHARE * largest) or not found.affordable(at_an_instant(name)):
             return
         for allowed in (np.ones(len(ends), bool), whole):
             if not allowed.any():

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -20,7 +21,7 @@ from diagnosis.errors.model import Errors
 from diagnosis.fit.linearisation import Linearisation
 from diagnosis.fit.solver import Fitted
 from diagnosis.forces.constancy import About, Constancy
-from diagnosis.search.budget import ENDED, Budget
+from diagnosis.search.budget import ENDED, SEARCH, Budget
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.null import Null
 from diagnosis.search.refit import Explanation, from_other, gain_by_window
@@ -76,6 +77,8 @@ class Search:
     not_tried: dict[str, str] = field(default_factory=dict)
     """By mechanism: why the model refused it, or that the budget ended."""
     budget: Budget = field(default_factory=Budget)
+    whole: Budget = field(default_factory=partial(Budget, SEARCH))
+    """Of all searches of an answer together."""
     outside: Constancy | None = None
     """A force outside the library that explains what the best single leaves."""
     struck: Constancy | None = None
@@ -124,16 +127,17 @@ class Search:
         return known
 
     def affordable(self, *names: str) -> bool:
-        """Whether the budget lasts; if not, that these mechanisms or stages were not tried (further) is noted."""
-        if self.budget.spent:
+        """Whether the budgets last; if not, that these mechanisms or stages were not tried (further) is noted."""
+        spent = self.budget.spent or self.whole.spent
+        if spent:
             for name in names:
                 self.not_tried.setdefault(name, ENDED)
-        return not self.budget.spent
+        return not spent
 
     @contextmanager
     def work_of_its_own(self, most: float) -> Iterator[None]:
-        """Within, the budget is ``most`` lane-steps; what they cost is not taken off the budget outside."""
-        outer, self.budget = self.budget, Budget(most, self.budget.speed)
+        """Within, the budget is ``most`` s; what is spent there is not taken off the budget outside."""
+        outer, self.budget = self.budget, Budget(most)
         try:
             yield
         finally:

@@ -102,7 +102,7 @@ def rungs(
     for rung in ladder:
         if not _meant_for(rung, recordings):
             continue
-        why = ENDED if budget.spent else _refusal(rung, specimen)
+        why = ENDED if budget.spent or found.whole.spent else _refusal(rung, specimen)
         if not why:
             progress(f"another base model: {rung.name.replace('_', ' ')}", 0.48)
             try:

@@ -15,6 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from diagnosis.errors.model import Errors, refitted
+from diagnosis.search.budget import Budget
 from diagnosis.search.driven import with_oscillator
 from diagnosis.search.for_a_while import asking, exact, gain
 from diagnosis.search.found import MISSING
@@ -28,26 +29,30 @@ TURNS = 3
 """Of estimating a law in its intervals, and asking each recording for them given the law."""
 
 
-def missing_law(explanation: Explanation, base: Explanation, errors: Errors) -> Law | None:
+def missing_law(
+    explanation: Explanation, base: Explanation, errors: Errors, budget: Budget | None = None
+) -> Law | None:
     """The law that the explanation lacks, of four ways the one that predicts; ``base``: without what was named.
 
     ``errors``: of the recordings without it. With one recording there is nothing to predict: under the errors as they
-    are.
+    are. Ways that the ``budget`` does not reach are left out.
     """
     as_they_are = estimate(explanation)
     if np.unique(explanation.measured.recording_of).size < 2:
         return as_they_are
-    best: Law | None = None
-    error = np.inf
-    led = estimate(_as_white(explanation, errors), errors)
-    for law in (as_they_are, led):
-        best, error = _better(law, best, error)
+    best, error = _better(as_they_are, None, np.inf)
+    budget = budget or Budget(np.inf)
+    if not budget.spent:
+        best, error = _better(estimate(_as_white(explanation, errors), errors), best, error)
     named = _left_out(explanation)
     error = min(error, named)  # what was named gives way only to what predicts better than it
+    if budget.spent:
+        return best
     plain = _as_white(base, errors)
-    for law in (for_a_while(plain, errors), driven(plain, errors)):
-        best, error = _better(law, best, error)
-    return best if best is None else _beside_what_acts(best, explanation, errors, named)
+    best, error = _better(for_a_while(plain, errors), best, error)
+    if not budget.spent:
+        best, error = _better(driven(plain, errors), best, error)
+    return best if best is None or budget.spent else _beside_what_acts(best, explanation, errors, named)
 
 
 def _beside_what_acts(law: Law, explanation: Explanation, errors: Errors, named: float) -> Law:

@@ -66,6 +66,8 @@ def weigh_again(found: Search) -> None:
         near.append(found.best)
     judged: list[tuple[float, Explanation, Errors]] = []
     for explanation in near:
+        if judged and found.whole.spent:
+            break
         if len(judged) < MOST_OWN and found.gain(explanation) > OWN * found.gain(found.best):
             fitted, errors = refitted(explanation.fitted, found.errors.base, found.errors)
             price = adjusted(explanation) - explanation.loss
@@ -75,6 +77,8 @@ def weigh_again(found: Search) -> None:
     found.base = reweighed(found.base, found.errors)
     others = [reweighed(e, found.errors) for e in near if e.candidates != found.best.candidates]
     close = [e for e in others if adjusted(e) - adjusted(found.best) < CLOSE]
+    if found.whole.spent:
+        close = []
     found.tried = [found.best, *(resized(e) if any(e is one for one in close) else e for e in others)]
     if close:
         found.best = min([resized(found.best), *found.tried], key=adjusted)

@@ -39,5 +39,4 @@ IDENTIFICATION = Identification(
     phases={"impact": "at impacts", "between_impacts": "between impacts", **PHASES},
     same={"rotation_2": "rotation_1"},
     ladder=LADDER,
-    further_work=2.0,  # two effects and an instrument take about as much
 )  # fmt: skip

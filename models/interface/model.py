@@ -43,6 +43,7 @@ class Interface(Model[LayeredWall]):
     states = declaration.STATES
     identification = IDENTIFICATION
     bodies = 2
+    call_time = 1e-2
     not_placed = ("wall_flexibility",)
     vertical_by_default = True
     resumes_with: tuple[str, ...] | None = (
@@ -72,6 +73,11 @@ class Interface(Model[LayeredWall]):
     def rest(self, wall: LayeredWall) -> FloatArray:
         """q ``(n, 4)`` at rest under gravity, relaxed."""
         return modes.static_state(wall)
+
+    def step_time(self, coefficients: LayeredWall) -> float:
+        from models.interface.lanes.run import step_time
+
+        return step_time(coefficients)
 
     def run_lanes(self, coefficients: LayeredWall, request: Request) -> Run:
         from models.interface.lanes.run import run

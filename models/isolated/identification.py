@@ -23,5 +23,4 @@ IDENTIFICATION = Identification(
     ),
     most_effects=4,
     further_work=4.0,
-    speed=10.0,
 )

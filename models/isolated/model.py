@@ -35,6 +35,7 @@ class Isolated(Model[Chain]):
     observables = declaration.OBSERVABLES
     states = declaration.STATES
     identification = IDENTIFICATION
+    call_time = 4e-3
     takes_vertical = False
 
     def assemble(self, values: Values, options: Mapping[str, str], *, vertical: bool, size: int) -> Chain:

@@ -18,11 +18,11 @@ from models.interface.lanes.carry import carry as advance
 from models.interface.lanes.effects.given import given_effects
 from models.interface.lanes.effects.rows import N_ENDED
 from models.interface.lanes.laws import HISTORY, given_laws, some
-from models.interface.lanes.run import given_table, low_passes, pitching, substeps
+from models.interface.lanes.run import given_table, low_passes, pitching, step_time, substeps
 from models.interface.layered import LayeredWall
 from models.lanes.record import of_lanes
 from models.lanes.tables import groups
-from models.runs import Prescribed
+from models.runs import DONE, Prescribed
 from models.shaking import Shaking
 
 
@@ -40,6 +40,7 @@ def carry(
     given = given_table(wall, np.ones(wall.size), begun, rest)
     steps = substeps(wall, modes.at_rest(wall).squares, time_step)
     given[:, r.Q_STEPS] = steps
+    DONE.call(0, float(np.sum(last * steps)) * step_time(wall))
     laws = given_laws(wall, at_rest, time_step / steps, initial)
     held, prescribed = along.held(STATES)
     states = np.zeros((wall.size, marks.size, len(STATES)))
