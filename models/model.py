@@ -17,7 +17,7 @@ from models.identification import Identification
 from models.mechanisms import acting_on, applied
 from models.peaks import peaks
 from models.placing import Placing
-from models.runs import DONE, Prescribed, Request, Run
+from models.runs import DONE, Prescribed, Request, Run, by_lane
 from models.shaking import Shaking
 
 MOST_LOGGED = 50_000
@@ -391,12 +391,6 @@ class Model(Placing, ABC, Generic[C]):
         if coefficients.size != size:
             raise ValueError(f"values broadcast to {coefficients.size} lanes, {size} are asked for")
         return coefficients
-
-
-def by_lane(values: Any, lanes: int) -> FloatArray:
-    """Numbers of all lanes alike (a scalar) or of each (lanes, ...)."""
-    array = np.asarray(values, dtype=np.float64)
-    return array if array.ndim > 1 else np.broadcast_to(array, (lanes,))
 
 
 def _any_of(found: Sequence[tuple[NDArray[np.bool_], str]]) -> NDArray[np.bool_]:

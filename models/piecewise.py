@@ -18,8 +18,9 @@ from numpy.typing import NDArray
 
 from models.base import Event, FloatArray, History, OverParts, Quantity, Values
 from models.errors import InputError
-from models.model import Model, by_lane
+from models.model import Model
 from models.observed import Observed
+from models.runs import by_lane
 from models.shaking import Shaking
 
 JOINED: Mapping[OverParts, Callable[[Sequence[float]], float]] = {

@@ -82,6 +82,12 @@ class Request:
         return {name: float(values[0]) for name, values in self.initial.items()}
 
 
+def by_lane(values: Any, lanes: int) -> FloatArray:
+    """Numbers of all lanes alike (a scalar) or of each (lanes, ...)."""
+    array = np.asarray(values, dtype=np.float64)
+    return array if array.ndim > 1 else np.broadcast_to(array, (lanes,))
+
+
 @dataclass
 class Work:
     """What this process has asked of the kernels: lane-steps, and how long all of it takes a typical core (s).
