@@ -43,7 +43,7 @@ from diagnosis.fit.setup import as_recorded, measure
 from diagnosis.progress import Progress, Stages, silent
 from diagnosis.search import bootstrap as bootstrapping
 from diagnosis.search.beginnings import alone, beside
-from diagnosis.search.budget import ANSWER, SEARCH, Budget
+from diagnosis.search.budget import ANSWER, ENDED, SEARCH, Budget
 from diagnosis.search.candidates import absent, candidates
 from diagnosis.search.found import Search, misfit_per_sample, rivals
 from diagnosis.search.grown import beside_in_grown_windows, grown
@@ -164,8 +164,14 @@ def _assemble(
     if verdict == "not_in_library" and not unexplained:
         progress("the missing force as a model", 0.88)
         left = Budget(ANSWER, found.whole.began)
+
+        def lasts() -> bool:
+            if left.spent:
+                found.not_tried["other laws in a table"] = ENDED
+            return not left.spent
+
         law = stages.optional(
-            "the missing force as a model", lambda: missing_law(chosen, found.base, found.errors, left), lambda: None
+            "the missing force as a model", lambda: missing_law(chosen, found.base, found.errors, lasts), lambda: None
         )
     if law and to_show and worsens(chosen, law.explanation, to_show, found.errors):
         found.not_tried[law.mechanism.name] = "the tables that fit these recordings predict those held out worse"

@@ -9,13 +9,12 @@ is not among them: no other recording could be predicted. What was named and doe
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from diagnosis.errors.model import Errors, refitted
-from diagnosis.search.budget import Budget
 from diagnosis.search.driven import with_oscillator
 from diagnosis.search.for_a_while import asking, exact, gain
 from diagnosis.search.found import MISSING
@@ -30,29 +29,28 @@ TURNS = 3
 
 
 def missing_law(
-    explanation: Explanation, base: Explanation, errors: Errors, budget: Budget | None = None
+    explanation: Explanation, base: Explanation, errors: Errors, lasts: Callable[[], bool] = lambda: True
 ) -> Law | None:
     """The law that the explanation lacks, of four ways the one that predicts; ``base``: without what was named.
 
     ``errors``: of the recordings without it. With one recording there is nothing to predict: under the errors as they
-    are. Ways that the ``budget`` does not reach are left out.
+    are. Further ways are left out once the work no longer ``lasts``.
     """
     as_they_are = estimate(explanation)
     if np.unique(explanation.measured.recording_of).size < 2:
         return as_they_are
     best, error = _better(as_they_are, None, np.inf)
-    budget = budget or Budget(np.inf)
-    if not budget.spent:
+    if lasts():
         best, error = _better(estimate(_as_white(explanation, errors), errors), best, error)
     named = _left_out(explanation)
     error = min(error, named)  # what was named gives way only to what predicts better than it
-    if budget.spent:
+    if not lasts():
         return best
     plain = _as_white(base, errors)
     best, error = _better(for_a_while(plain, errors), best, error)
-    if not budget.spent:
+    if lasts():
         best, error = _better(driven(plain, errors), best, error)
-    return best if best is None or budget.spent else _beside_what_acts(best, explanation, errors, named)
+    return best if best is None or not lasts() else _beside_what_acts(best, explanation, errors, named)
 
 
 def _beside_what_acts(law: Law, explanation: Explanation, errors: Errors, named: float) -> Law:
