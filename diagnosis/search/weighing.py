@@ -12,6 +12,7 @@ from dataclasses import replace
 from diagnosis.errors.model import Errors, refitted
 from diagnosis.fit.solver import Fitted, fit
 from diagnosis.fit.whitening import sensor_noise_only
+from diagnosis.search.budget import ENDED
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.found import Search, adjusted
 from diagnosis.search.refit import Explanation, best_of, further, resized, ways, without
@@ -77,7 +78,8 @@ def weigh_again(found: Search) -> None:
     found.base = reweighed(found.base, found.errors)
     others = [reweighed(e, found.errors) for e in near if e.candidates != found.best.candidates]
     close = [e for e in others if adjusted(e) - adjusted(found.best) < CLOSE]
-    if found.whole.spent:
+    if close and found.whole.spent:
+        found.not_tried.setdefault("other sizes of what was found", ENDED)
         close = []
     found.tried = [found.best, *(resized(e) if any(e is one for one in close) else e for e in others)]
     if close:

@@ -11,6 +11,7 @@ import models
 from diagnosis import diagnose
 from diagnosis.errors.model import calibrated
 from diagnosis.fit.setup import measure
+from diagnosis.search import weighing
 from diagnosis.search.budget import ENDED, Budget
 from diagnosis.search.candidates import candidates
 from diagnosis.search.found import Search
@@ -45,6 +46,29 @@ def test_work_of_its_own_is_no_more_than_what_all_searches_have_together() -> No
     with search.work_of_its_own(np.inf):
         assert not search.affordable("tilt")
     assert search.not_tried == {"tilt": ENDED}
+
+
+def test_other_sizes_are_left_out_once_the_work_of_an_answer_is_done(monkeypatch: pytest.MonkeyPatch) -> None:
+    measured = measure(SPECIMEN, [recording(f"train_{k}", k, {"viscous_damping": {"rate": 0.15}}) for k in (1, 2)])
+    fitted, errors = calibrated(SPECIMEN, measured)
+    tried = tuple(c for c in candidates(measured, SPECIMEN) if c.name in TRIED)
+    found = searched(Search(Explanation((), fitted), tried, errors))
+    asked: list[str] = []
+
+    def resized(explanation: Explanation) -> Explanation:
+        asked.extend(explanation.names)
+        return explanation
+
+    monkeypatch.setattr(weighing, "resized", resized)
+    monkeypatch.setattr(weighing, "CLOSE", np.inf)
+    monkeypatch.setattr(weighing, "NEAR", -np.inf)
+    found.tried += found.singles + [e for e in (found.at_null or found).singles if e.names != found.chosen.names]
+    weighing.weigh_again(found)
+    assert set(asked) == set(TRIED)
+    asked.clear()
+    found.whole = Budget(-1.0)
+    weighing.weigh_again(found)
+    assert not asked and found.not_tried["other sizes of what was found"] == ENDED
 
 
 def test_an_answer_is_given_however_little_work_it_may_take(monkeypatch: pytest.MonkeyPatch) -> None:
