@@ -29,6 +29,8 @@ from models.kinematics import Place
 SCALES = (0.7, 1.0, 1.4)
 NEW_SENSOR_NOISE = 0.01
 """Noise assumed of a channel that is not measured yet, over its peak."""
+LEAST = 1.0
+"""Expected evidence under which an experiment is not offered: it would tell as good as nothing."""
 
 
 def next_experiment(
@@ -36,7 +38,8 @@ def next_experiment(
 ) -> Mapping[str, Any] | None:
     """The best recording, the best extra sensor and a static test that would separate the first rivals.
 
-    ``planned``: channels at positions on the bodies that could be recorded as well.
+    None where nothing would; recording and sensor None where none would. ``planned``: channels at positions on the
+    bodies that could be recorded as well.
     """
     best = found.chosen
     own = set(best.classes)
@@ -53,21 +56,21 @@ def next_experiment(
             gain = _expected(best, other, made, found.errors) if made is not None else 0.0
             bank[recording.name, scale] = gain
     (name, scale), expected = max(bank.items(), key=lambda item: item[1])
+    again = {"base_motion": name, "scale": scale, "expected_evidence": expected} if expected >= LEAST else None
+    sensor = _sensor(best, other, found.errors, planned or {})
     mine = [c for c in best.candidates if c.name not in other.names]
     theirs = [c for c in other.candidates if c.name not in best.names]
     pair = (*mine, *theirs)
-    return {
-        "separates": [c.name for c in pair],
-        "recording": {"base_motion": name, "scale": scale, "expected_evidence": expected},
-        "sensor": _sensor(best, other, found.errors, planned or {}),
-        "static_test": "; or ".join(dict.fromkeys(c.mechanism.static_test for c in pair if c.mechanism.static_test)),
-    }
+    static = "; or ".join(dict.fromkeys(c.mechanism.static_test for c in pair if c.mechanism.static_test))
+    if not (again or sensor or static):
+        return None
+    return {"separates": [c.name for c in pair], "recording": again, "sensor": sensor, "static_test": static}
 
 
 def _sensor(
     best: Explanation, other: Explanation, errors: Errors, planned: Mapping[str, Place]
 ) -> Mapping[str, Any] | None:
-    """The channel that is not recorded yet and would add most evidence, on the same runs."""
+    """The channel that is not recorded yet and would add most evidence, on the same runs; None where none would."""
     measured = best.measured
     gains = {}
     for name in unrecorded(measured, planned):
@@ -76,6 +79,8 @@ def _sensor(
     if not gains:
         return None
     name, expected = max(gains.items(), key=lambda item: item[1])
+    if expected < LEAST:
+        return None
     return {"channel": name, "noise": f"{NEW_SENSOR_NOISE:.0%} of its peak", "expected_evidence": expected}
 
 
@@ -134,15 +139,14 @@ def _evidence(truth: Explanation, rival: Explanation, made: Recording, errors: E
         return 0.0
     acts = measured.shakings[0].vertical is not None and measured.shakings[0].vertical_acts
     windows = arrange(measured.model, [made], acts, measured.lengths, measured.reference_peak)
-    predictor = replace(fitted.misfit.predictor, measured=windows)
-    misfit = Misfit(predictor, errors.of_sensors(windows), fitted.misfit.unknowns, fitted.misfit.fixed)
     true = truth.fitted
     of_truth = replace(true.misfit.predictor, measured=windows)  # effects that begin do so in their own stages
-    own = Misfit(of_truth, misfit.whitening, true.misfit.unknowns, true.misfit.fixed)
-    states = fit(replace(own, unknowns=(), fixed={**own.fixed, **true.values}), np.zeros(0), windows.states).states
-    clean = of_truth.predict([own.point(true.u, states)])[0]
-    exact = replace(misfit, predictor=replace(predictor, measured=replace(windows, values=clean * windows.mask)))
-    linear = exact.linearise(fitted.u, states)
+    own = Misfit(of_truth, errors.of_sensors(windows), (), {**true.misfit.fixed, **true.values})
+    point = own.point(np.zeros(0), fit(own, np.zeros(0), windows.states).states)
+    clean = of_truth.predict([point])[0]
+    predictor = replace(fitted.misfit.predictor, measured=replace(windows, values=clean * windows.mask))
+    exact = Misfit(predictor, errors.expected(of_truth, point), fitted.misfit.unknowns, fitted.misfit.fixed)
+    linear = exact.linearise(fitted.u, point.states)
     reduced = reduce(linear)
     weights = exact.weights(linear.residual)
     j = reduced.by_unknown

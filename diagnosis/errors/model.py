@@ -20,6 +20,7 @@ from diagnosis.errors.scattered import Events, gauss_newton, known_changes, line
 from diagnosis.errors.sensors import of_sensors
 from diagnosis.errors.stills import stills
 from diagnosis.fit.misfit import Misfit
+from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.setup import base_fit
 from diagnosis.fit.solver import Fitted, fit_thoroughly
 from diagnosis.fit.whitening import Whitening, base_columns, responses
@@ -93,6 +94,15 @@ class Errors:
         channels = self.whitening.measured.channels
         peaks = peaks_of(self.whitening.measured)
         return of_sensors(self.components, self.theta, self.unit, channels, peaks, measured)
+
+    def expected(self, predictor: Predictor, point: Point) -> Whitening:
+        """What is to be expected in windows of other recordings: sensors' errors, base noise and events that scatter.
+
+        The latter about the motion at ``point``.
+        """
+        base = base_columns(predictor, responses(predictor, point))
+        scattered = self.scatter * kicks(predictor, point).columns
+        return self.of_sensors(predictor.measured).with_columns(np.concatenate([base, scattered], axis=-1))
 
 
 def disturbance_about(fitted: Fitted) -> FloatArray:

@@ -108,6 +108,18 @@ def test_page_says_what_was_found(verdict: Verdict) -> None:
     assert ("What does not stay the same" in words) == bool(found.constancy)
 
 
+def test_page_says_that_shaking_again_would_not_tell() -> None:
+    found = diagnosis("cannot_tell_apart")
+    alone = {
+        "separates": ["tilt", "eccentricity"],
+        "recording": None,
+        "sensor": None,
+        "static_test": "weigh the corners",
+    }
+    words = " ".join(" ".join(outline(render(replace(found, next_experiment=alone))).text).split())
+    assert "weigh the corners" in words and "under 1" in words and "as well" not in words
+
+
 def test_page_says_when_it_was_stopped() -> None:
     assert "stopped before its end" in render(replace(diagnosis(), finished=False))
     assert "stopped before its end" not in render(diagnosis())
