@@ -20,6 +20,7 @@ from diagnosis.forces.constancy import About
 from diagnosis.progress import silent
 from diagnosis.report import extend
 from diagnosis.search import ladder
+from diagnosis.search.budget import ENDED, Budget
 from diagnosis.search.found import MISSING, Search
 from diagnosis.search.refit import Explanation
 from grids.recordings.base import Recording
@@ -60,6 +61,13 @@ def recorded(model: str, rotations: int) -> Recording:
 @cache
 def calibrated_fit(model: str, rotations: int) -> tuple[Fitted, Errors]:
     return calibrated(PIER, measure(PIER, [recorded(model, rotations)]))
+
+
+def test_other_base_models_are_left_out_once_the_work_of_an_answer_is_done() -> None:
+    fitted, errors = calibrated_fit("interface", 1)
+    found = Search(Explanation((), fitted), (), errors, whole=Budget(-1.0))
+    assert ladder.rungs(found, PIER, [], 0, silent) == []
+    assert found.not_tried and set(found.not_tried.values()) == {ENDED}
 
 
 def test_rubber_under_a_pier_is_named_with_its_stiffness_and_the_answer_is_a_specimen() -> None:
