@@ -6,6 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TypeVar
 
+from models.errors import InputError
+
 T = TypeVar("T")
 Progress = Callable[[str, float], None]
 """Called with what is being done and the share of the whole that is done."""
@@ -17,16 +19,23 @@ def silent(text: str, share: float) -> None:
 
 @dataclass
 class Stages:
-    """``stopped``: someone pressed Ctrl-C, so nothing that can be left out is begun; ``skipped`` names it."""
+    """``stopped``: someone pressed Ctrl-C, so nothing that can be left out is begun; ``skipped`` names it.
+
+    ``failed``: by stage that can be left out, why it could not be done; it costs that stage and not the answer.
+    """
 
     stopped: bool = False
     skipped: list[str] = field(default_factory=list)
+    failed: dict[str, str] = field(default_factory=dict)
 
     def optional(self, what: str, stage: Callable[[], T], instead: Callable[[], T]) -> T:
-        """The result of ``stage``, or of ``instead`` once a Ctrl-C was pressed."""
+        """The result of ``stage``, or of ``instead`` once a Ctrl-C was pressed and where it raises InputError."""
         if not self.stopped:
             try:
                 return stage()
+            except InputError as error:
+                self.failed[what] = str(error)
+                return instead()
             except KeyboardInterrupt:
                 self.stopped = True
         self.skipped.append(what)

@@ -96,7 +96,13 @@ def calibrate(
     given = specimen.mechanisms
     specimen, seen = as_recorded(specimen, recordings)
     measured = measure(specimen, recordings)
-    alone = list(recordings) if len(recordings) > 1 else []
+    compared = {window.recording for window in measured.windows}
+    alone = [r for k, r in enumerate(recordings) if k in compared] if len(compared) > 1 else []
+    weak = [
+        f"{r.name} never moves clearly beyond its noise: left out"
+        for k, r in enumerate(recordings)
+        if k not in compared
+    ]
     profiles = len(specimen.tolerance) + len(specimen.calibrate) if profile else 0
     steps = _steps(progress, 2 + len(alone) + profiles)
     steps("fitting all recordings together")
@@ -109,7 +115,7 @@ def calibrate(
     found = _summary(fitted, errors, fitted.measured.undisturbed, profile, by_recording, steps)
     instruments = {name: values for name, values in specimen.mechanisms.items() if name not in given}
     drifts = _drifts(by_recording, list(each.values()))
-    return replace(found, drifts=drifts, seen=tuple(str(one) for one in seen), instruments=instruments)
+    return replace(found, drifts=drifts, seen=(*map(str, seen), *weak), instruments=instruments)
 
 
 def specimen_of(specimen: Specimen, found: Calibration) -> Specimen:

@@ -257,7 +257,7 @@ def _assemble(
         errors=errors,
         channels=stages.optional("what each channel adds", lambda: added_by_channels(final.fitted), dict),
         posterior=drawn,
-        not_tried=not_tried(found),
+        not_tried={**not_tried(found), **stages.failed},
         reference_peak=true_peak(chosen),
         provenance=_provenance(specimen, found, constancy, seed),
         finished=finished,

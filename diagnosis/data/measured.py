@@ -264,6 +264,14 @@ def arrange(
                 f"{state.channel} is missing in {', '.join(lacking)}: model {model.name} cannot start a window "
                 "without it; record or map it."
             )
+    for recording in recordings:
+        for channel in dict.fromkeys((*channels, *(state.channel for state in declared.free))):
+            values = recording.channels[channel]
+            if np.ptp(values) == 0.0:
+                raise InputError(
+                    f"{channel} of {recording.name} reads {values[0]:g} throughout: a sensor that is dead, or nothing "
+                    "that moved; leave out the channel or the recording."
+                )
     leads = [lead.channel for lead in declared.leads]
     windows: list[Window] = []
     for k, recording in enumerate(recordings):

@@ -26,7 +26,7 @@ def by_window(errors: Errors) -> FloatArray:
 def deviance(fitted: Fitted, errors: Errors) -> float:
     """-2 log likelihood of a fit under the errors estimated about it."""
     each, price = _by_piece(errors)
-    return float(each.sum()) + price + fitted.misfit.prior(fitted.u)
+    return float(each.sum()) + price + fitted.misfit.prior_of_unknowns(fitted.u)
 
 
 def _by_piece(errors: Errors) -> tuple[FloatArray, float]:

@@ -9,6 +9,7 @@ import numpy as np
 from diagnosis.data.measured import AsItWas, Measured
 from diagnosis.errors.drifts import columns, knots_of
 from diagnosis.errors.model import Errors
+from diagnosis.errors.own import own_error
 from diagnosis.errors.scattered import Events
 from diagnosis.fit.solver import Fitted
 from models.base import FloatArray
@@ -29,27 +30,36 @@ def scattered(errors: Errors, fitted: Fitted, rng: np.random.Generator) -> Float
 
 
 def draw(errors: Errors, measured: Measured, rng: np.random.Generator) -> FloatArray:
-    """Errors (W, C, N) of every window: noise of the sensors and of the base motion."""
+    """Errors (W, C, N) of every window: noise of the sensors and of the base motion.
+
+    And of a model that runs through whole recordings its own, which is no sign of what is missing.
+    """
     found = np.einsum("wcnk,wk->wcn", errors.base, rng.normal(size=errors.base.shape[::3]))
     knots = knots_of(measured, errors.components)
     if knots is not None:
         drift = errors.prior.root(errors.theta) @ rng.normal(size=(knots.time.size, 1))
         found += columns(knots, drift, measured)[..., 0]
+    for component, theta in zip(errors.components, errors.theta, strict=True):
+        if component.kind == "inadequacy" and component.channel is None:
+            own = own_error(measured, component.scale)
+            found += np.sqrt(theta) * np.einsum("wcnk,wk->wcn", own, rng.normal(size=own.shape[::3]))
     samples = np.arange(measured.values.shape[2])
     peak = np.max(np.abs(measured.values) * measured.mask, axis=(0, 2))
     roots: dict[tuple[int, float], FloatArray] = {}
     for w, window in enumerate(measured.windows):
         step = measured.recordings[window.recording].time_step
         for c, unit in enumerate(measured.units[w]):
-            own = [(k, t) for k, t in zip(errors.components, errors.theta, strict=True) if k.channel == c and t > 0.0]
+            acting = [
+                (k, t) for k, t in zip(errors.components, errors.theta, strict=True) if k.channel == c and t > 0.0
+            ]
             if (c, step) not in roots:
                 lag = np.abs(samples[:, None] - samples[None, :]) * step
                 covariance: FloatArray = 1e-9 * np.eye(samples.size)
-                for component, theta in own:
+                for component, theta in acting:
                     if not component.moving and not component.shared:
                         covariance = covariance + theta * component.kernel(lag)
                 roots[c, step] = np.asarray(np.linalg.cholesky(covariance), np.float64)
-            growing = sum(t for k, t in own if k.kind == "growing")
+            growing = sum(t for k, t in acting if k.kind == "growing")
             size = np.abs(measured.values[w, c]) / max(float(peak[c]), 1e-300)
             noise = roots[c, step] @ rng.normal(size=samples.size)
             found[w, c] += unit * noise + errors.unit[c] * np.sqrt(growing) * size * rng.normal(size=samples.size)

@@ -15,7 +15,7 @@ from diagnosis.errors.likelihood import Piece, Solved, solve
 from models.base import FloatArray
 
 LOWEST, STEP, FINE, HIGHEST = 6.0, 0.2, 0.02, 48.0
-"""Hz; below, a line cannot be told from motion, above there are no averages."""
+"""Hz; below, a line cannot be told from motion, above there are no averages; and less than half the sampling rate."""
 CLEAR = 8.0
 """Standard deviations over what is expected at which a line counts."""
 APART = 1.5
@@ -26,7 +26,9 @@ MOST = 2
 def lines(pieces: Sequence[Piece], channels: int, theta: FloatArray, weights: FloatArray) -> tuple[Component, ...]:
     """Lines beyond what the other components explain, at most MOST a channel, strongest first."""
     found: list[Component] = []
-    frequency = np.arange(LOWEST, HIGHEST, STEP)
+    frequency = np.arange(LOWEST, min(HIGHEST, _fastest(pieces) - STEP), STEP)
+    if not frequency.size:
+        return ()
     solved = [solve(piece, theta) for piece in pieces]
     for c in range(channels):
         left = _score(pieces, solved, c, frequency, weights)
@@ -39,6 +41,11 @@ def lines(pieces: Sequence[Piece], channels: int, theta: FloatArray, weights: Fl
             found.append(Component("hum", c, float(sharp)))
             left[np.abs(frequency - frequency[best]) < APART] = 0.0
     return tuple(found)
+
+
+def _fastest(pieces: Sequence[Piece]) -> float:
+    """Half the lowest sampling rate of the pieces (Hz), from which on another line makes the same samples."""
+    return 0.5 / max(float(np.diff(np.unique(piece.time))[:1].max(initial=1e-9)) for piece in pieces)
 
 
 def _score(

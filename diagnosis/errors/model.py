@@ -179,7 +179,7 @@ def estimate(fitted: Fitted, base: FloatArray, start: Errors | None = None) -> E
     theta, state = maximise(pieces, prior, theta, weights)
     whitening = _whitening(fitted.measured, scene.unit, components, theta, base, kicked.columns, prior)
     step = fitted.measured.recordings[0].time_step
-    loss = robust_deviance(state, pieces, moving) + fitted.misfit.prior(fitted.u)
+    loss = robust_deviance(state, pieces, moving) + fitted.misfit.prior_of_unknowns(fitted.u)
     return Errors(
         components, theta, scene.unit, pieces, weights, prior, state.deviance, loss, step, whitening, base, kicked
     )

@@ -34,6 +34,8 @@ SHARE = 0.05
 """Of the pulses, by which they are changed up and down to see what they do to the first order."""
 STEPS = (1.0, 0.5, 0.25, 0.1)
 """Shares of a Gauss-Newton step that are tried."""
+REWEIGHTED = 3
+"""Times that the level of shared errors is found with the weights that it leaves."""
 AROUND = np.array([-1, 0, 1])
 """Samples around an event in which its pulse lies, if it was placed about a motion close by."""
 
@@ -107,13 +109,28 @@ def shortened(misfit: Misfit, scatter: float, now: Events, aim: Events) -> Event
     def height(events: Events) -> float:
         known = AsItWas(events.pulses(m), np.zeros(m.values.shape))
         about = replace(misfit, predictor=replace(misfit.predictor, measured=replace(m, as_it_was=known)))
-        return about.loss(events.u, events.states) + float(np.sum((events.changes / scatter) ** 2))
+        return _least_loss(about, events) + float(np.sum((events.changes / scatter) ** 2))
 
     trials = [now.towards(aim, share) for share in STEPS]
     trials = [replace(one, u=clip(misfit.unknowns, one.u)) for one in trials]
     heights = [height(one) for one in trials]
     best = int(np.argmin(heights))
     return trials[best] if heights[best] < height(now) else None
+
+
+def _least_loss(misfit: Misfit, events: Events) -> float:
+    """The loss at the level of the errors that windows share at which it is least: it is linear in that."""
+    shared = misfit.whitening.shared
+    if shared is None:
+        return misfit.loss(events.u, events.states)
+    still = misfit.at_level(np.zeros(shared.shape[-1]))
+    residual = still.residuals([still.point(events.u, events.states)])[0]
+    level = np.zeros(shared.shape[-1])
+    for _ in range(REWEIGHTED):
+        weights = still.weights(residual + shared @ level)
+        precision = np.einsum("w,wmi,wmj->ij", weights, shared, shared, optimize=True) + np.eye(level.size)
+        level = -np.linalg.solve(precision, np.einsum("w,wmi,wm->i", weights, shared, residual, optimize=True))
+    return float(misfit.losses(residual + shared @ level).sum()) + misfit.at_level(level).prior(events.u)
 
 
 def linear_about(misfit: Misfit, events: Events) -> Misfit:

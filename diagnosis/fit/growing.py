@@ -111,7 +111,7 @@ def _changes(fitted: Fitted) -> list[Point]:
     values, axes = np.linalg.eigh(precision)
     changes = [(np.zeros(u.size), axes[:, :, k] / np.sqrt(values[:, k, None])) for k in range(states.shape[1])]
     hessian, _ = normal(misfit, reduce(linear), misfit.weights(linear.residual), u)
-    variances, own = np.linalg.eigh(np.linalg.inv(hessian)[: u.size, : u.size])
+    variances, own = np.linalg.eigh(np.linalg.pinv(hessian, hermitian=True)[: u.size, : u.size])
     for k in range(u.size):
         moved = np.sqrt(max(float(variances[k]), 0.0)) * own[:, k]
         ahead = np.swapaxes(by_state, 1, 2) @ (linear.by_unknown[..., : u.size] @ moved)[..., None]

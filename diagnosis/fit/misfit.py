@@ -119,8 +119,13 @@ class Misfit:
         return np.asarray(NU * n * np.log1p(np.sum(residuals**2, axis=-1) / (NU * n)))
 
     def prior(self, u: FloatArray) -> float:
+        """Of the unknowns and of the errors that windows share."""
+        return self.prior_of_unknowns(u) + float(self.level @ self.level)
+
+    def prior_of_unknowns(self, u: FloatArray) -> float:
+        """Of the unknowns alone: the likelihood of the errors has a price for those that windows share."""
         r, _ = self.prior_rows(u)
-        return float(r @ r + self.level @ self.level)
+        return float(r @ r)
 
     def prior_normal(self, u: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Precision (k, k) and gradient (k,) of half the priors, those of the shared errors last."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from diagnosis.fit.setup import vertical_acts
 from diagnosis.fit.unknowns import Unknown, library, of_parameter
 from grids.instruments import INSTRUMENTS
 from grids.instruments.base import Level
@@ -32,7 +33,7 @@ def repairs(model: Model, specimen: Specimen, motions: Sequence[Motion]) -> tupl
     for name, mechanism in library(model).items():
         if name in specimen.mechanisms or mechanism.tabulated:
             continue
-        if why := _why_not(name, mechanism, motions, specimen.vertical or model.vertical_by_default):
+        if why := _why_not(name, mechanism, motions, vertical_acts(specimen, model, ())):
             refused[name] = why
             continue
         found.append(Repair(mechanism, tuple(of_parameter(mechanism, p) for p in mechanism.parameters)))

@@ -59,4 +59,9 @@ def _usable(outcomes: Outcomes) -> FloatArray:
             f"{outcomes.name}: {outcomes.size} runs, {fell} overturned: at least {FEWEST} runs are needed, and two of "
             "either outcome"
         )
+    if len(set(outcomes.groups)) < 2:
+        raise InputError(
+            f"{outcomes.name}: all {outcomes.size} runs are of one group, '{outcomes.groups[0]}'; an answer is checked "
+            "on groups that it has not learned from: give runs of two ground motions or more"
+        )
     return outcomes.overturned.astype(np.float64)

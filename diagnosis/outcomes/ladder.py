@@ -20,6 +20,7 @@ import numpy as np
 from scipy.stats import norm
 
 from diagnosis.data.averaging import averaged, stride
+from diagnosis.fit.setup import vertical_acts
 from diagnosis.fit.unknowns import fixed_values, instruments_of, without_instruments
 from diagnosis.progress import Progress, silent
 from grids.instruments import moved
@@ -75,7 +76,7 @@ class Ladder:
     @classmethod
     def of(cls, model: Model, specimen: Specimen, motions: Sequence[Motion]) -> Ladder:
         """The motions as means over about 10 ms: overturning does not feel what is faster."""
-        acts = model.vertical_by_default if specimen.vertical is None else specimen.vertical
+        acts = vertical_acts(specimen, model, ())
         shakings = [_thinned(motion.shaking(vertical_acts=acts)) for motion in motions]
         return cls(model, specimen, shakings, fixed_values(after_the_last(specimen)))
 

@@ -54,8 +54,7 @@ def null_distribution(screen: Linearisation, scores: Sequence[Score]) -> Null:
     values, vectors = np.linalg.eigh(gram / np.outer(size, size))
     root = vectors * np.sqrt(np.maximum(values, 0.0))
     z = np.random.default_rng(0).normal(size=(DRAWS, n)) @ root.T
-    one_sided = np.array([s.candidate.one_sided for s in kept], bool)
-    z = np.where(one_sided & (z < 0.0), 0.0, z)
+    z = np.where(z * np.array([s.side for s in kept], np.float64) < 0.0, 0.0, z)
     draws = np.sort(np.max(z**2, axis=1)) if n else np.zeros(DRAWS)
     level = float(np.quantile(draws, 1.0 - TAIL))
     effective = TAIL / float(chi2.sf(level, 1)) if level > 0.0 else 1.0

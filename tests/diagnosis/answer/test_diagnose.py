@@ -182,6 +182,17 @@ def test_a_range_is_searched_globally() -> None:
     assert 0.8 < found.misfit_per_sample < 1.2
 
 
+def test_a_recording_that_never_moves_costs_no_calibration() -> None:
+    """It has no window: the others are fitted together and alone, and it is said."""
+    runs = [recording("train_1", 1), recording("train_2", 2)]
+    noise = np.random.default_rng(0).normal(size=runs[0].time.size)
+    weak = replace(runs[0], name="weak", channels={**runs[0].channels, "rotation_1": 1e-5 * noise})
+    found = calibrate(SPECIMEN, [*runs, weak], profile=False)
+    assert set(found.by_recording) == {"train_1", "train_2"}
+    assert any("weak never moves" in said for said in found.seen)
+    assert not calibrate(SPECIMEN, [runs[0], weak], profile=False).by_recording
+
+
 def test_nothing_to_compare_is_said() -> None:
     flat = recording("flat", 1)
     still = replace(

@@ -16,6 +16,7 @@ from diagnosis.progress import Stages
 from diagnosis.search.found import MISSING, Search
 from diagnosis.search.null import LEAST_P, Null
 from diagnosis.search.refit import Explanation
+from models.errors import InputError
 from tests.diagnosis.made import SPECIMEN, recording
 
 NO_ERRORS: Any = None
@@ -140,6 +141,16 @@ def test_ctrl_c_costs_the_stage_and_those_after_it() -> None:
     assert stages.needed(lambda: "done") == "done"
     with pytest.raises(KeyboardInterrupt):
         stages.needed(interrupted)
+
+
+def test_a_stage_that_cannot_be_done_costs_itself_alone() -> None:
+    def refused() -> str:
+        raise InputError("a run cannot be cut there")
+
+    stages = Stages()
+    assert stages.optional("first", refused, lambda: "instead") == "instead"
+    assert stages.optional("second", lambda: "done", lambda: "instead") == "done"
+    assert stages.failed == {"first": "a run cannot be cut there"} and not stages.skipped and not stages.stopped
 
 
 def test_a_needed_stage_is_begun_anew_once() -> None:

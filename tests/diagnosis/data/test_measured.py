@@ -42,6 +42,16 @@ def test_a_channel_of_one_recording_alone_is_left_out_and_told() -> None:
     assert left_out([rated]) == {} and left_out([plain, plain]) == {}
 
 
+@pytest.mark.parametrize("channel", ["rotation_1", "rotation_rate_1"])
+def test_a_sensor_that_is_dead_is_named(channel: str) -> None:
+    alive = recording("a", 1)
+    rate = np.gradient(alive.channels["rotation_1"], alive.time_step)
+    whole = replace(alive, channels={**alive.channels, "rotation_rate_1": rate})
+    dead = replace(whole, name="b", channels={**whole.channels, channel: np.zeros(whole.time.size)})
+    with pytest.raises(InputError, match=rf"{channel} of b reads 0 throughout: a sensor that is dead"):
+        measure(SPECIMEN, [whole, dead])
+
+
 def test_what_a_window_needs_is_named_with_the_recordings_that_lack_it() -> None:
     two = Specimen(title="two blocks", model="stacked", parameters={})
     with pytest.raises(InputError, match=r"rotation_2 is missing in a, b: model stacked"):

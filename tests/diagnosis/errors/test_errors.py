@@ -8,11 +8,15 @@ from functools import cache
 
 import numpy as np
 import pytest
+from scipy.optimize import minimize
 from scipy.signal import lfilter
 
 from diagnosis.errors.adequacy import inadequacy, repeatability
-from diagnosis.errors.likelihood import climbed, maximise, whitened
-from diagnosis.errors.model import Errors, calibrated, disturbance_about, refitted
+from diagnosis.errors.comparison import deviance
+from diagnosis.errors.likelihood import Piece, climbed, maximise, whitened
+from diagnosis.errors.lines import lines
+from diagnosis.errors.model import Errors, calibrated, disturbance_about, estimate, refitted
+from diagnosis.errors.scattered import Events, _least_loss
 from diagnosis.errors.summary import summary
 from diagnosis.errors.words import error_lines
 from diagnosis.fit.linearisation import linearise_about
@@ -62,6 +66,40 @@ def about(case: str) -> tuple[Explanation, Explanation, Errors]:
     first = base_fit(SPECIMEN, measured)
     fitted, found = refitted(first, disturbance_about(first))
     return Explanation((), first), Explanation((), fitted), found
+
+
+def test_the_likelihood_does_not_depend_on_where_a_fit_left_the_drift() -> None:
+    """A drift has its price in the likelihood of the errors: that of the fit must not come on top."""
+    explanation, errors = about("drift")[1:]
+    fitted = explanation.fitted
+    level = fitted.misfit.level
+    assert level.size
+    elsewhere = replace(fitted, misfit=fitted.misfit.at_level(level + 3.0))
+    found = [estimate(one, errors.base, errors) for one in (fitted, elsewhere)]
+    assert found[0].loss == pytest.approx(found[1].loss, abs=1e-9)
+    assert deviance(fitted, errors) == pytest.approx(deviance(elsewhere, errors), abs=1e-9)
+
+
+def test_steps_towards_scattered_impacts_are_judged_at_the_drift_that_they_leave() -> None:
+    _, base, errors = about("drift")
+    misfit, fitted = errors.repeating(base.fitted.misfit), base.fitted
+    now = Events(fitted.u, fitted.states, errors.kicks, np.zeros(errors.kicks.window.size))
+    least = _least_loss(misfit, now)
+    best = minimize(lambda level: misfit.at_level(level).loss(fitted.u, fitted.states), np.zeros(misfit.level.size))
+    assert least == pytest.approx(best.fun, abs=1e-3) and least < misfit.loss(fitted.u, fitted.states) - 1.0
+
+
+@pytest.mark.parametrize("rate", [50.0, 80.0])
+def test_hum_is_sought_below_half_the_sampling_rate(rate: float) -> None:
+    """From there on another line makes the same samples."""
+    rng, time = np.random.default_rng(2), np.arange(80) / rate
+    hum = 0.4 * rate
+    piece = Piece(
+        time, np.zeros(80, int), np.cos(2.0 * np.pi * hum * time + 0.4) + 0.1 * rng.normal(size=80),
+        np.ones((80, 1)), np.zeros((80, 1)), 0.01 * np.eye(80), (),
+    )  # fmt: skip
+    found = [line.scale for line in lines([piece] * 3, 1, np.zeros(0), np.ones(3))]
+    assert found[0] == pytest.approx(hum, abs=0.1) and max(found) < 0.5 * rate
 
 
 def test_impacts_that_scatter_are_told() -> None:

@@ -18,6 +18,7 @@ from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.prediction import Predictor
 from diagnosis.fit.setup import base_fit, measure
 from diagnosis.fit.solver import Fitted, fit_thoroughly
+from diagnosis.fit.unknowns import Unknown
 from diagnosis.fit.whitening import sensor_noise_only
 from grids.specimen import Specimen
 from models.base import FloatArray
@@ -45,6 +46,15 @@ def bends(fitted: Fitted) -> np.ndarray:
     up, down, plain = misfit.predictor.predict([misfit.point(fitted.u, x) for x in states])
     bend = (up + down - 2.0 * plain) / (2.0 * m.units[:, :, None]) * m.mask
     return np.asarray(np.linalg.norm(bend, axis=(1, 2)))
+
+
+def test_a_parameter_that_changes_nothing_is_no_obstacle() -> None:
+    """A restitution in a range without a prior, of a joint that never closes in short windows."""
+    fitted = stack(5, 6)
+    idle = Unknown("nothing", "1", 0.0, 2.0, 1.0, 1.0)
+    misfit = replace(fitted.misfit, unknowns=(*fitted.misfit.unknowns, idle))
+    moved = [point.values["nothing"] for point in _changes(replace(fitted, misfit=misfit, u=np.append(fitted.u, 1.0)))]
+    assert moved and np.all(np.isfinite(moved)) and np.ptp(moved) < 1e-6
 
 
 def test_what_a_window_holds_is_in_proportion() -> None:

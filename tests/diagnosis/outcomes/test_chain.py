@@ -14,6 +14,7 @@ import pytest
 import models
 from diagnosis.fit.unknowns import library
 from diagnosis.outcomes import OutcomeDiagnosis, diagnose_outcomes, predict_outcomes
+from diagnosis.outcomes.candidates import repairs
 from diagnosis.outcomes.files import EXTENDED, JSON, PAGE, RUNS, prediction_text, read_answer, write_answer
 from grids.motions import Motion
 from grids.recordings.outcomes import Outcomes
@@ -120,6 +121,21 @@ def test_too_few_runs_are_refused() -> None:
         diagnose_outcomes(BLOCK, few)
     with pytest.raises(InputError, match="of no run whether it overturned"):
         diagnose_outcomes(BLOCK, replace(few, overturned=None))
+
+
+def test_runs_of_one_group_are_refused_before_anything_is_simulated() -> None:
+    with pytest.raises(InputError, match=r"all 12 runs are of one group, 'group 0'.*two ground motions"):
+        diagnose_outcomes(BLOCK, runs_of(1, {}, groups=1, each=12))
+
+
+def test_a_vertical_motion_that_is_left_out_may_be_what_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A wall on rubber takes it by default, so that it may only be missing where the specimen leaves it out."""
+    monkeypatch.setattr("diagnosis.outcomes.candidates.library", library)
+    wall, shaken = models.get("interface"), [Motion("m", STEP, np.zeros(10), vertical=np.zeros(10))]
+    for vertical, missing in ((None, False), (False, True), (True, False)):
+        found, refused = repairs(wall, replace(BLOCK, model="interface", vertical=vertical), shaken)
+        assert ("vertical_acceleration" in {one.name for one in found}) is missing
+        assert ("vertical_acceleration" in refused) is not missing
 
 
 def test_a_folder_without_an_answer_is_named(tmp_path: Path) -> None:

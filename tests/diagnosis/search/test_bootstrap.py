@@ -17,9 +17,11 @@ from diagnosis.fit.solver import fit
 from diagnosis.search.bootstrap import p_value, tail_probability
 from diagnosis.search.candidates import candidates
 from diagnosis.search.found import Search
-from diagnosis.search.null import LEAST_P
+from diagnosis.search.null import LEAST_P, null_distribution
 from diagnosis.search.refit import Explanation
 from diagnosis.search.screen import score
+from tests.diagnosis.answer.test_building import SPECIMEN as BUILDING
+from tests.diagnosis.answer.test_building import made
 from tests.diagnosis.made import SPECIMEN, recording
 
 
@@ -38,6 +40,29 @@ def test_whitened_draws_are_white() -> None:
     drawn = base.misfit.whitening(np.stack([draw(errors, base.measured, rng) for _ in range(150)]))
     inside = base.measured.compared.reshape(len(base.measured.windows), -1)
     assert np.mean(drawn[:, inside] ** 2) == pytest.approx(0.985, abs=0.025)
+
+
+def test_draws_of_whole_runs_hold_the_error_of_the_model_itself() -> None:
+    """Of a building the largest part: without it everything that was found would be beyond chance."""
+    measured = measure(BUILDING, [made("small", 1.0, 1), made("large", 2.5, 2)])
+    errors = calibrated(BUILDING, measured)[1]
+    own = np.array([c.kind == "inadequacy" for c in errors.components])
+    rms = []
+    for variance in (0.0, 4.0):
+        given = replace(errors, theta=np.where(own, variance, errors.theta))
+        drawn = draw(given, measured, np.random.default_rng(3))[measured.mask] / errors.unit[0]
+        rms.append(float(np.mean(drawn**2)))
+    assert rms[1] - rms[0] == pytest.approx(4.0 * own.sum(), rel=0.5)
+
+
+def test_one_sided_tests_count_on_the_side_on_which_their_effect_may_lie() -> None:
+    """The same test written with the other sign of its coordinate is the same test, and no second chance."""
+    found = null()
+    opened = linearise_about(found.base.fitted)
+    one = next(s for s in score(opened, found.candidates) if s.side == 1)
+    mirrored = replace(one, column=-one.column, side=-1)
+    alone, both = (null_distribution(opened, some) for some in ([one], [one, mirrored]))
+    assert both.band == pytest.approx(alone.band, rel=0.05) and alone.band < 3.0
 
 
 def test_scores_of_draws_are_those_of_chance() -> None:
