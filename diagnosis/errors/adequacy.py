@@ -97,10 +97,10 @@ def _ratio(errors: Errors, variance: FloatArray) -> float:
     return float(np.max(variance / np.maximum([below(errors, c) for c in range(variance.size)], 1e-300)))
 
 
-def below(errors: Errors, channel: int, highest: float = BAND) -> float:
-    """Variance of a sensor's noise below ``highest`` Hz, in units squared."""
-    frequency = np.linspace(0.25, highest, 60)
-    return float(np.mean(density(errors, channel, frequency)) * highest)
+def below(errors: Errors, channel: int) -> float:
+    """Variance of a sensor's noise below `BAND` Hz, in units squared."""
+    frequency = np.linspace(0.25, BAND, 60)
+    return float(np.mean(density(errors, channel, frequency)) * BAND)
 
 
 def density(errors: Errors, channel: int, frequency: FloatArray, moving: bool = False) -> FloatArray:

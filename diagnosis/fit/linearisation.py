@@ -30,11 +30,10 @@ class Linearisation:
         windows, samples, k = self.by_unknown.shape
         return (self.weights[:, None, None] * self.by_unknown).reshape(windows * samples, k)
 
-    def reduced(self, residual: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Weighted residuals (..., W, M) off the states, and their products with the base derivatives."""
+    def reduced(self, residual: FloatArray) -> FloatArray:
+        """Whitened residuals (..., W, M) off the states."""
         column = residual[..., None]
-        off = (column - self.basis @ (np.swapaxes(self.basis, 1, 2) @ column))[..., 0]
-        return off, off.reshape(*off.shape[:-2], len(self.weighted)) @ self.weighted
+        return np.asarray((column - self.basis @ (np.swapaxes(self.basis, 1, 2) @ column))[..., 0])
 
     def product(self, one: FloatArray, other: FloatArray) -> float:
         """Inner product of two reduced columns with the base parameters projected out."""

@@ -163,12 +163,12 @@ class Misfit:
     def loss(self, u: FloatArray, states: FloatArray) -> float:
         return float(self.losses(self.residuals([self.point(u, states)])).sum()) + self.prior(u)
 
-    def linearise(self, u: FloatArray, states: FloatArray, one_sided: bool = False) -> Linear:
-        """Residuals and derivatives at a point; ``one_sided`` by unknowns for the steps of a fit."""
-        return answered(self.linearising(u, states, one_sided), self.predictor)
+    def linearise(self, u: FloatArray, states: FloatArray) -> Linear:
+        """Residuals and derivatives at a point."""
+        return answered(self.linearising(u, states), self.predictor)
 
     def linearising(self, u: FloatArray, states: FloatArray, one_sided: bool = False) -> Asking[Linear]:
-        """The same, which asks for its predictions."""
+        """The same, which asks for its predictions; ``one_sided`` by unknowns for the steps of a fit."""
         here = self.point(u, states)
         ends, widths = [], []
         for i, unknown in enumerate(self.unknowns):

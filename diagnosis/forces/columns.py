@@ -57,7 +57,7 @@ class Forces:
 
     def column(self, kind: Force, factor: FloatArray | None = None) -> FloatArray:
         """Whitened residual (W, M), off the states, that a force of this kind times ``factor`` (W, N) leaves."""
-        return self.screen.reduced(self.fitted.misfit.whitening(self.predicted(kind, factor)))[0]
+        return self.screen.reduced(self.fitted.misfit.whitening(self.predicted(kind, factor)))
 
     def predicted(self, kind: Force, factor: FloatArray | None = None) -> FloatArray:
         """Change (W, C, N) of the channels by a force of this kind times ``factor`` (W, N)."""

@@ -91,7 +91,7 @@ def _columns(forces: Forces) -> Iterator[tuple[str, str, FloatArray]]:
     for word, factor in _phases(forces, forces.motion):
         for error in _errors(forces):
             column = np.where(m.mask, error * factor[:, None, :], 0.0)
-            yield "", word, forces.screen.reduced(forces.fitted.misfit.whitening(column))[0]
+            yield "", word, forces.screen.reduced(forces.fitted.misfit.whitening(column))
 
 
 def _phases(forces: Forces, motion: Motion) -> Iterator[tuple[str, FloatArray]]:

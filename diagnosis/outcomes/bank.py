@@ -19,7 +19,6 @@ from scipy.stats import norm, qmc, truncnorm
 
 from diagnosis.fit.unknowns import Unknown, values_of
 from diagnosis.outcomes.ladder import LOG_SCALES, Ladder, probabilities
-from diagnosis.progress import Progress, silent
 from models.base import FloatArray
 
 NARROWEST = 0.02
@@ -181,7 +180,6 @@ def filled(
     outcomes: FloatArray,
     rounds: Sequence[Sequence[Drawn] | int],
     rng: np.random.Generator,
-    progress: Progress = silent,
 ) -> Bank:
     """A bank from rounds of proposals; a number stands for so many points from kernels about the best so far.
 
@@ -191,7 +189,7 @@ def filled(
     drawn: list[Drawn] = []
     points, fell = np.zeros((0, len(unknowns))), np.zeros((0, outcomes.size, LOG_SCALES.size))
     bank: Bank | None = None
-    for number, one in enumerate(rounds):
+    for one in rounds:
         if isinstance(one, int):
             assert bank is not None
             shares = bank.shares(bank.log_likelihood(outcomes)).sum(axis=1)
@@ -202,8 +200,7 @@ def filled(
             proposals = one
         new = np.vstack([proposal.draw(count, rng) for proposal, count in proposals])
         drawn += proposals
-        share = lambda text, done, number=number: progress("", (number + done) / len(rounds))  # noqa: E731
-        fell = np.concatenate([fell, ladder.fell([values_of(unknowns, u) for u in new], share)])
+        fell = np.concatenate([fell, ladder.fell([values_of(unknowns, u) for u in new])])
         points = np.vstack([points, new])
         total = sum(count for _, count in drawn)
         mixture = logsumexp([np.log(count / total) + q.log_density(points) for q, count in drawn], axis=0)

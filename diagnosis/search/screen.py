@@ -81,14 +81,14 @@ def _score_one(screen: Linearisation, base: Point, candidate: Candidate) -> Scor
     near = [null.copy(), null.copy()]
     near[0][0], near[1][0] = min(max(null[0] - STEP, low), null[0]), min(max(null[0] + STEP, low), high)
     trials = list(candidate.grid())
-    off, _ = screen.reduced(misfit.residuals([at(base, candidate, u) for u in (*near, *trials)]))
+    off = screen.reduced(misfit.residuals([at(base, candidate, u) for u in (*near, *trials)]))
     work = (DONE.steps - begin) / len(off)
     derivative = (off[1] - off[0]) / (near[1][0] - near[0][0])
     off, information = off[2:], screen.product(derivative, derivative)
     best, start = 0.0, null
     if information <= 1e-12:
         trials = list(candidate.grid(by_threshold=True))
-        off, _ = screen.reduced(misfit.residuals([at(base, candidate, u) for u in trials]))
+        off = screen.reduced(misfit.residuals([at(base, candidate, u) for u in trials]))
     else:
         step = -screen.scores_with_residual(derivative) / information
         if null[0] < high if step > 0.0 else null[0] > low:

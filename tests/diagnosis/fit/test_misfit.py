@@ -88,7 +88,7 @@ def test_score_directions_are_finite_differences(problem) -> None:
             ends[1] = at(base, candidate, null - step)
         width = step[0] * (1.0 if ends[1] is base else 2.0)
         r = fitted.misfit.residuals(ends)
-        wanted = opened.reduced((r[0] - r[1]) / width)[0]
+        wanted = opened.reduced((r[0] - r[1]) / width)
         error = np.linalg.norm(found[name].column - wanted) / np.linalg.norm(wanted)
         assert error < 0.03, (name, error)
 

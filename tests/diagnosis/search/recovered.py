@@ -112,7 +112,7 @@ def assert_directions(fitted: Fitted, own: Sequence[Candidate], least: float = 0
         step[0] = OTHER_STEP if null[0] < candidate.unknowns[0].bounds[1] else -OTHER_STEP
         back = null if candidate.one_sided else null - step
         r = fitted.misfit.residuals([at(fitted.point, candidate, u) for u in (null + step, back)])
-        wanted = opened.reduced((r[0] - r[1]) / (null + step - back)[0])[0]
+        wanted = opened.reduced((r[0] - r[1]) / (null + step - back)[0])
         # the statistic knows the direction alone; where an impact comes or goes within a step there is no derivative
         along = np.sum(found.column * wanted) / (np.linalg.norm(found.column) * np.linalg.norm(wanted))
         assert along > least, (candidate.name, along)
