@@ -21,7 +21,15 @@ from diagnosis.answer.heldout import (
     windows_of,
     worsens,
 )
-from diagnosis.answer.judgement import contradicted, explains, p_of_effects, p_of_missing, undecided, verdict_of
+from diagnosis.answer.judgement import (
+    contradicted,
+    explains,
+    p_of_effects,
+    p_of_missing,
+    undecided,
+    unfit,
+    verdict_of,
+)
 from diagnosis.answer.ladder import confirmed, other_model
 from diagnosis.answer.located import located
 from diagnosis.answer.missing_force import missing_force
@@ -149,10 +157,11 @@ def _assemble(
     beyond: tuple[Beyond, ...] = ()
     if found.best is not None and climbed is None and not flagged:
         beyond = stages.optional("whether effects go beyond their ranges", lambda: beyond_ranges(found), tuple)
-    doubted = bool(flagged) or errors.inadequacy.large or against is not None or bool(beyond)
+    far = () if unexplained else unfit(judging)
+    doubted = bool(flagged) or errors.inadequacy.large or against is not None or bool(beyond) or bool(far)
     verdict = verdict_of(found, near, doubted, not unexplained, finished)
     gains = [climbed.gain] if climbed else stages.needed(lambda: evidence(found))
-    p_value = p_of_missing(found, gains, errors.inadequacy, flagged, finished)
+    p_value = p_of_missing(found, gains, errors.inadequacy, flagged, far, finished)
     if draws and finished and climbed is None:
         score_p = p_value
         p_value = stages.optional(
@@ -253,6 +262,7 @@ def _assemble(
         held_stages=held.held_stages if held else (),
         contradicted=against,
         beyond=beyond,
+        unfit=far,
         other_model=other_model(climbed, final) if climbed else None,
         errors=errors,
         channels=stages.optional("what each channel adds", lambda: added_by_channels(final.fitted), dict),

@@ -7,17 +7,19 @@ from collections.abc import Sequence
 import numpy as np
 
 from diagnosis.answer.heldout import Shown, relative_misfit
-from diagnosis.answer.result import Undecided, Verdict
+from diagnosis.answer.result import Undecided, Unfit, Verdict
 from diagnosis.errors.adequacy import Inadequacy
 from diagnosis.forces.constancy import Constancy
 from diagnosis.search.candidates import Candidate
-from diagnosis.search.found import MISSING, Near, Search, adjusted, price
+from diagnosis.search.found import BADLY, MISSING, Near, Search, adjusted, by_window, price
 from diagnosis.search.left_out import WORSE
 from diagnosis.search.null import LEAST_P
 from diagnosis.search.refit import gain_by_window
 
 UNEXPLAINED = 0.5
 """Share of the squared motion in the windows that, left over by the best model, makes any name meaningless."""
+FEW = 2
+"""Windows far from the noise that make an answer inadequate; a single one may be an event that was misread."""
 CHANCE = 0.05
 """p-value from which on the strongest suspect is no stronger than chance."""
 
@@ -39,6 +41,24 @@ def contradicted(found: Search, held: Shown) -> tuple[float, float] | None:
         return None
     without, with_it = (relative_misfit(held.measured, predicted) for predicted in (held.before, held.after))
     return (without, with_it) if with_it > WORSE * without else None
+
+
+def unfit(found: Search) -> tuple[Unfit, ...]:
+    """The windows that what was found leaves far from the noise, the worst first; none where there are hardly any.
+
+    The likelihood counts a window that cannot be explained by its logarithm only, so that one wrong event does not pass
+    for noise; what acts in a few windows alone must not go unsaid for that.
+    """
+    m = found.measured
+    if m.stretches is not None:  # the model's own error is a part of theirs
+        return ()
+    fitted = found.chosen.measured
+    each = by_window(found.chosen)
+    far = [k for k in np.argsort(-each) if each[k] > BADLY]
+    if len(far) < FEW:
+        return ()
+    of = [(fitted.recordings[w.recording], w, float(each[k])) for k in far for w in [fitted.windows[k]]]
+    return tuple(Unfit(r.name, float(r.time[w.first]), float(r.time[w.first + w.samples - 1]), x) for r, w, x in of)
 
 
 def verdict_of(found: Search, near: Sequence[Near], flagged: bool, explained: bool, finished: bool) -> Verdict:
@@ -64,14 +84,20 @@ def p_of_effects(found: Search, gains: Sequence[float], effects: Sequence[Candid
 
 
 def p_of_missing(
-    found: Search, gains: Sequence[float], left: Inadequacy, flagged: Sequence[Constancy], finished: bool
+    found: Search,
+    gains: Sequence[float],
+    left: Inadequacy,
+    flagged: Sequence[Constancy],
+    far: Sequence[Unfit],
+    finished: bool,
 ) -> float | None:
     """p-value of "something is missing"; None if a search was stopped early.
 
-    Of the strongest effect, else of the strongest suspect; of the model's own large error, or of what is not the same
-    everywhere, if less.
+    Of the strongest effect, else of the strongest suspect; of the model's own large error, of what is not the same
+    everywhere, or of windows ``far`` from the noise, if less.
     """
     least = [max(left.p_value, LEAST_P)] if left.large else []
+    least += [LEAST_P] if far else []
     least += [p_value(found, one.evidence) for one in flagged]
     if gains:
         return min([*p_of_effects(found, gains, found.chosen.candidates), *least])

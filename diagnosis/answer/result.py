@@ -230,6 +230,19 @@ class Beyond:
 
 
 @dataclass(frozen=True)
+class Unfit:
+    """A window of a recording, ``start`` to ``end`` in s, that the answer leaves far from the noise.
+
+    ``misfit``: mean squared residual over the variance of what is expected.
+    """
+
+    recording: str
+    start: float
+    end: float
+    misfit: float
+
+
+@dataclass(frozen=True)
 class Diagnosis:
     """The answer. Everything the report shows is here; nothing in the report is computed anew."""
 
@@ -264,6 +277,8 @@ class Diagnosis:
     """In which state recordings held out were predicted, of effects that do not always act."""
     contradicted: tuple[float, float] | None = None
     """Misfit on recordings held out without and with the effects found, where that is why they are no explanation."""
+    unfit: tuple[Unfit, ...] = ()
+    """Windows that what was found leaves far from the noise, where there are so many that it is no explanation."""
     beyond: tuple[Beyond, ...] = ()
     """Effects found that would have to be larger than the library takes for possible: they are no explanation."""
     visited: tuple[Visited, ...] = ()

@@ -7,7 +7,7 @@ from string import Formatter
 from typing import Any
 
 from diagnosis.answer.phases import EVERYWHERE, words_of
-from diagnosis.answer.result import Beyond, Diagnosis, Effect, Extrapolated, Fit, Located
+from diagnosis.answer.result import Beyond, Diagnosis, Effect, Extrapolated, Fit, Located, Unfit
 from diagnosis.answer.rivals import nearly_as_much, told_apart
 from diagnosis.answer.untried import left_out, suspects_left_out
 from diagnosis.answer.when import comes_and_goes, held_text, when_text
@@ -63,6 +63,7 @@ def statement(found: Diagnosis, model: Model) -> str:
         parts += left_out(found)
         parts += _contradicted(found)
         parts += [_beyond(one) for one in found.beyond]
+        parts += _unfit(found.unfit)
         acting = declared if found.other_model is None else identification_of(get(found.other_model.model))
         parts += [_flag(flag, acting) for flag in _distinct(found.constancy)[:2]]
         if found.missing_force:
@@ -132,6 +133,18 @@ def _beyond(one: Beyond) -> str:
         f"{one.parameter.replace('_', ' ')} ends at {one.limit:.3g}{unit}, and {one.wanted:.3g}{unit} fits better "
         f"(evidence {one.evidence:.0f})."
     )
+
+
+def _unfit(far: Sequence[Unfit]) -> list[str]:
+    """That windows are left far from the noise, the worst of them."""
+    if not far:
+        return []
+    worst = [f"{one.start:.1f} to {one.end:.1f} s of {one.recording} ({one.misfit:.0f})" for one in far[:MOST_NAMED]]
+    more = "" if len(far) <= MOST_NAMED else f" and {len(far) - MOST_NAMED} more"
+    return [
+        "Windows remain that are far from the noise, with so many times the variance that is expected: "
+        f"{', '.join(worst)}{more}."
+    ]
 
 
 def _contradicted(found: Diagnosis) -> list[str]:

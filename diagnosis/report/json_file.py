@@ -27,6 +27,7 @@ def as_mapping(diagnosis: Diagnosis) -> dict[str, Any]:
         "constancy": _entries(diagnosis.constancy),
         "detail": None if diagnosis.detail is None else entry(asdict(diagnosis.detail)),
         "beyond_range": _entries(diagnosis.beyond),
+        "unfit_windows": _entries(diagnosis.unfit),
         "undecided": None if diagnosis.undecided is None else entry(asdict(diagnosis.undecided)),
         "suspicions": [
             {"recording": name, "suspicion": what} for name, all_of in diagnosis.suspicions.items() for what in all_of

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -10,14 +11,14 @@ import pytest
 
 from diagnosis.answer import heldout, judgement
 from diagnosis.errors.adequacy import Inadequacy
-from diagnosis.fit.setup import measure
+from diagnosis.fit.setup import base_fit, measure
 from diagnosis.forces.constancy import Constancy
 from diagnosis.progress import Stages
 from diagnosis.search.found import MISSING, Search
 from diagnosis.search.null import LEAST_P, Null
 from diagnosis.search.refit import Explanation
 from models.errors import InputError
-from tests.diagnosis.made import SPECIMEN, recording
+from tests.diagnosis.made import SPECIMEN, TIME_STEP, recording
 
 NO_ERRORS: Any = None
 SMALL = Inadequacy((0.0,), 0.0, 0.0, True)
@@ -49,7 +50,7 @@ def test_shapes_are_paid_for() -> None:
 
 def test_of_two_effects_the_stronger_one_tells_the_chance_not_their_sum() -> None:
     found = search(best=explanation([90.0] * 4, candidate("a"), candidate("b")))
-    assert judgement.p_of_missing(found, [9.0, 12.0], SMALL, (), True) == NULL.p_value(12.0) > NULL.p_value(21.0)
+    assert judgement.p_of_missing(found, [9.0, 12.0], SMALL, (), (), True) == NULL.p_value(12.0) > NULL.p_value(21.0)
 
 
 def test_no_chance_is_told_beyond_what_anyone_tested() -> None:
@@ -60,21 +61,21 @@ def test_a_large_error_of_the_model_is_as_unlikely_as_its_deviance() -> None:
     large, faint = Inadequacy((1.0,), 4.0, 40.0, True), Inadequacy((0.1,), 0.2, 40.0, True)
     assert large.large and not faint.large
     found = search(explanation([100.0] * 4, candidate("a")))
-    assert judgement.p_of_missing(found, [], large, (), True) == LEAST_P
-    assert judgement.p_of_missing(found, [], faint, (), True) == 1.0
+    assert judgement.p_of_missing(found, [], large, (), (), True) == LEAST_P
+    assert judgement.p_of_missing(found, [], faint, (), (), True) == 1.0
 
 
 def test_what_is_not_the_same_everywhere_is_as_unlikely_as_its_evidence() -> None:
     found = search(explanation([100.0] * 4, candidate("a")))
     one = Constancy("restitution", "window", 17.0)
-    assert judgement.p_of_missing(found, [], SMALL, (one,), True) == NULL.p_value(17.0) < 0.05
+    assert judgement.p_of_missing(found, [], SMALL, (one,), (), True) == NULL.p_value(17.0) < 0.05
 
 
 def test_what_a_stopped_search_did_not_test_has_no_p_value() -> None:
     single = explanation([90.0] * 4, candidate("a"))
-    assert judgement.p_of_missing(search(single), [], SMALL, (), finished=False) is None
-    assert judgement.p_of_missing(search(single), [], SMALL, (), finished=True) == LEAST_P
-    assert judgement.p_of_missing(Search(explanation([1.0]), (), NO_ERRORS), [], SMALL, (), finished=True) is None
+    assert judgement.p_of_missing(search(single), [], SMALL, (), (), finished=False) is None
+    assert judgement.p_of_missing(search(single), [], SMALL, (), (), finished=True) == LEAST_P
+    assert judgement.p_of_missing(Search(explanation([1.0]), (), NO_ERRORS), [], SMALL, (), (), finished=True) is None
 
 
 @pytest.mark.parametrize(
@@ -84,14 +85,14 @@ def test_what_a_stopped_search_did_not_test_has_no_p_value() -> None:
 def test_a_suspect_refused_says_what_it_rests_on(losses: list[float], rests_on: str) -> None:
     suspect = explanation(losses, candidate("saturation"))
     found = search(suspect)
-    left_open = judgement.undecided(found, judgement.p_of_missing(found, [], SMALL, (), True))
+    left_open = judgement.undecided(found, judgement.p_of_missing(found, [], SMALL, (), (), True))
     assert left_open is not None and (left_open.name, left_open.rests_on) == ("saturation", rests_on)
     assert left_open.gain == 400.0 - sum(losses) and (left_open.gain >= MISSING) == bool(rests_on)
 
 
 def test_what_chance_brings_is_not_undecided() -> None:
     found = search(explanation([99.9] * 4, candidate("a")))
-    assert judgement.undecided(found, judgement.p_of_missing(found, [], SMALL, (), True)) is None
+    assert judgement.undecided(found, judgement.p_of_missing(found, [], SMALL, (), (), True)) is None
 
 
 @pytest.mark.parametrize(("share", "explained"), [(0.05, True), (0.6, True), (0.8, False), (1.3, False)])
@@ -163,3 +164,25 @@ def test_a_needed_stage_is_begun_anew_once() -> None:
 
     stages = Stages()
     assert stages.needed(stage) == "done" and stages.stopped
+
+
+@pytest.mark.parametrize("windows", [1, 2])
+def test_more_than_one_window_far_from_the_noise_is_no_explanation(windows: int) -> None:
+    """The likelihood counts them by their logarithm only; a single one may be an event that was misread."""
+    measured = measure(SPECIMEN, [recording("a", 1)])
+    fitted = base_fit(SPECIMEN, measured)
+    assert judgement.unfit(Search(Explanation((), fitted), (), NO_ERRORS)) == ()
+    m = fitted.measured
+    shaken = np.zeros(m.values.shape)
+    for w in (2, 5)[:windows]:
+        length = m.windows[w].samples
+        shaken[w, 0, :length] = 4.0 * (w + 1) * m.units[w, 0] * np.sin(np.linspace(0.0, 40.0, length))
+    predictor = replace(fitted.misfit.predictor, measured=replace(m, values=m.values + shaken))
+    disturbed = replace(fitted, misfit=replace(fitted.misfit, predictor=predictor))
+    found = judgement.unfit(Search(Explanation((), disturbed), (), NO_ERRORS))
+    assert len(found) == (windows if windows > 1 else 0)
+    if found:
+        assert found[0].misfit > found[1].misfit > 3.0 and found[0].recording == "a"
+        assert found[0].start == pytest.approx(m.windows[5].first * TIME_STEP)
+        clean = judgement.p_of_missing(search(), [], SMALL, (), found, True)
+        assert clean == LEAST_P and judgement.verdict_of(search(), [], True, True, True) == "not_in_library"

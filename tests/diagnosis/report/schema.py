@@ -93,6 +93,13 @@ class BeyondPart(Part):
     evidence: float
 
 
+class UnfitPart(Part):
+    recording: str
+    start: float
+    end: float
+    misfit: float = Field(gt=0.0)
+
+
 class TrainPart(Part):
     before: float
     after: float
@@ -234,6 +241,7 @@ class AnswerFile(Part):
     detail: ConstancyPart | None
     undecided: UndecidedPart | None
     beyond_range: list[BeyondPart]
+    unfit_windows: list[UnfitPart]
     suspicions: list[SuspicionPart]
     base: dict[str, ParameterPart]
     screen: list[ScreenPart]
