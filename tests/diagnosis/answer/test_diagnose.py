@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from diagnosis import calibrate, diagnose
-from diagnosis.answer.diagnose import _screened
+from diagnosis.answer.assembly import _screened
 from diagnosis.answer.heldout import Shown
 from diagnosis.answer.result import Beyond, Diagnosis
 from diagnosis.fit.setup import measure
@@ -75,7 +75,7 @@ def test_an_answer_that_recordings_held_out_contradict_is_not_in_the_library(mon
         assert [r.name for r in held.measured.recordings] == ["test_1"]
         return 0.04, 0.07
 
-    monkeypatch.setattr(import_module("diagnosis.answer.diagnose"), "contradicted", worse)
+    monkeypatch.setattr(import_module("diagnosis.answer.verdict"), "contradicted", worse)
     found = diagnosed({"restitution": {"factor_on_housner": 0.93}})
     assert judged == [("restitution",)]
     assert found.verdict == "not_in_library" and found.contradicted == (0.04, 0.07)
@@ -90,7 +90,7 @@ def test_an_answer_that_needs_more_than_its_range_is_not_in_the_library(monkeypa
         judged.append(found.chosen.names)
         return (needs,)
 
-    monkeypatch.setattr(import_module("diagnosis.answer.diagnose"), "beyond_ranges", more)
+    monkeypatch.setattr(import_module("diagnosis.answer.verdict"), "beyond_ranges", more)
     found = diagnosed({"restitution": {"factor_on_housner": 0.93}})
     assert judged == [("restitution",)]
     assert found.verdict == "not_in_library" and found.beyond == (needs,)

@@ -18,7 +18,7 @@ SUPPORT = {"table_force": {"oscillator_motion": 0.25, "oscillator_frequency": 3.
 def test_a_support_that_moves_takes_the_place_of_what_was_named(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:  # fmt: skip
-    monkeypatch.setattr(import_module("diagnosis.answer.diagnose"), "contradicted", lambda found, held: (0.04, 0.07))
+    monkeypatch.setattr(import_module("diagnosis.answer.verdict"), "contradicted", lambda found, held: (0.04, 0.07))
     training = [recording("train_1", 1, SUPPORT), recording("train_2", 2, SUPPORT)]
     held = [recording("test_1", 3, SUPPORT)]
     found = diagnose(SPECIMEN, training, held)

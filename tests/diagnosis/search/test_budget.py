@@ -74,7 +74,7 @@ def test_other_sizes_are_left_out_once_the_work_of_an_answer_is_done(monkeypatch
 def test_an_answer_is_given_however_little_work_it_may_take(monkeypatch: pytest.MonkeyPatch) -> None:
     """And the law that it may lack in the first of several ways."""
     monkeypatch.setattr(chain, "SEARCH", 0.0)
-    monkeypatch.setattr(chain, "ANSWER", 0.0)
+    monkeypatch.setattr(import_module("diagnosis.answer.with_law"), "ANSWER", 0.0)
     answer = diagnose(SPECIMEN, [recording(f"train_{k}", k, {"viscous_damping": {"rate": 0.15}}) for k in (1, 2)])
     assert answer.finished and answer.verdict == "not_in_library" and not answer.effects
     assert answer.missing_force is not None
