@@ -111,7 +111,7 @@ def visited(measured: Measured, action: Action) -> Visited:
     inside[:, :-1] &= inside[:, 1:]
     inside[:, -1] = False
     amount, rate = action.amount.sum(axis=1), action.motion.rate
-    step = np.array([measured.recordings[w.recording].time_step for w in measured.windows])[:, None]
+    step = measured.time_steps[:, None]
     at, over, at_unit = action.motion.coordinate, lead.replace("_", " "), unit
     if action.kind == "error":
         what, value, of_value = (

@@ -68,7 +68,7 @@ def _curve(
     m = explanation.measured
     if len(m.identification.leads) > 1:
         return None
-    step = np.array([m.recordings[w.recording].time_step for w in m.windows])[:, None]
+    step = m.time_steps[:, None]
     inside = np.asarray(m.mask.any(axis=1))
     inside[:, :-1] &= inside[:, 1:]
     inside[:, -1] = False

@@ -73,7 +73,7 @@ def _words(shown: Shown, explained: bool) -> tuple[str, ...]:
 
 def _measured_motion(m: Measured) -> Motion:
     """The leading channel along the windows as measured."""
-    step = np.array([m.recordings[w.recording].time_step for w in m.windows])[:, None]
+    step = m.time_steps[:, None]
     coordinate = m.leading
     return Motion(coordinate, np.gradient(coordinate, axis=1) / step, m.base, float(np.max(np.abs(coordinate))))
 

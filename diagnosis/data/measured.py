@@ -168,11 +168,16 @@ class Measured:
         return np.array([w.first for w in self.windows], np.int64)
 
     @cached_property
+    def time_steps(self) -> FloatArray:
+        """Of each window's recording (W,), in s."""
+        return np.array([self.recordings[w.recording].time_step for w in self.windows], np.float64)
+
+    @cached_property
     def strides(self) -> NDArray[np.int64]:
         """Samples of each window (W,) that are averaged to one that is compared."""
         if self.stretches is not None:  # of means already
             return np.ones(len(self.windows), np.int64)
-        return np.array([stride(self.recordings[w.recording].time_step) for w in self.windows], np.int64)
+        return np.array([stride(step) for step in self.time_steps], np.int64)
 
     def averaged(self, values: FloatArray) -> FloatArray:
         """Samples (..., W, C, n) that are compared, of samples (..., W, C, N) as recorded."""

@@ -51,7 +51,7 @@ def jumps_at(along: Along, ports: Sequence[Port]) -> dict[str, dict[str, FloatAr
 def impulses(along: Along, ports: Sequence[Port]) -> Impulses:
     """Of every window, about a motion; a port whose impulses move nothing, as at a bonded joint, is left out."""
     m = along.predictor.measured
-    duration = max(w.samples * m.recordings[w.recording].time_step for w in m.windows)
+    duration = max(w.samples * step for w, step in zip(m.windows, m.time_steps, strict=True))
     offset = np.arange(0.0, duration, HALF_WIDTH)
     jumps = jumps_at(along, ports)
     found = {name: np.zeros((*m.values.shape, offset.size)) for name in jumps}

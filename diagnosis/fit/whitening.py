@@ -100,7 +100,7 @@ class Responses:
 def responses(predictor: Predictor, point: Point) -> Responses:
     """What small base accelerations would do to every window, by one run a pulse."""
     m = predictor.measured
-    duration = max(w.samples * m.recordings[w.recording].time_step for w in m.windows)
+    duration = max(w.samples * step for w, step in zip(m.windows, m.time_steps, strict=True))
     offset = np.arange(0.0, duration, HALF_WIDTH)
     height = [PROBE * max(float(np.max(np.abs(s.horizontal))), 1e-3) for s in m.shakings]
     plain = predictor.predict([point])[0]

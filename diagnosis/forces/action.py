@@ -58,7 +58,7 @@ def action(predictor: Predictor, point: Point, effect: str) -> Action:
     along = Along(predictor, point)
     states = along.states
     lead = states[m.identification.leads[0].channel]
-    step = np.array([m.recordings[w.recording].time_step for w in m.windows])[:, None]
+    step = m.time_steps[:, None]
     rates = [s for s in m.identification.states if s.rate]
     of_lead = next((states[s.name] for s in rates if s.channel == m.identification.leads[0].channel), None)
     rate = np.gradient(lead, axis=1) / step if of_lead is None else of_lead

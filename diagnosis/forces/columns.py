@@ -86,7 +86,7 @@ def _motions(along: Along) -> dict[str, Motion]:
 
 def _motion(along: Along, coordinate: FloatArray) -> Motion:
     m = along.predictor.measured
-    step = np.array([m.recordings[w.recording].time_step for w in m.windows])[:, None]
+    step = m.time_steps[:, None]
     reach = float(np.max(np.abs(coordinate) * m.mask[:, m.lead]))
     return Motion(coordinate, np.gradient(coordinate, axis=1) / step, m.base, reach)
 
@@ -96,7 +96,7 @@ def forces(fitted: Fitted) -> Forces:
     predictor, m = fitted.misfit.predictor, fitted.measured
     mask, along = m.mask[:, m.lead], Along(fitted.misfit.predictor, fitted.point)
     response = impulses(along, _ports(along))
-    step = np.array([m.recordings[w.recording].time_step for w in m.windows])[:, None]
+    step = m.time_steps[:, None]
     since = np.arange(m.values.shape[2])[None] * step
     pulses = np.maximum(0.0, 1.0 - np.abs(since[:, None, :] - response.offset[None, :, None]) / HALF_WIDTH)
     pulses = pulses * mask[:, None, :]
