@@ -30,6 +30,7 @@ def shown(where: tuple[int, ...], explained: bool) -> Any:
         windows=tuple(
             SimpleNamespace(recording=r, first=w * SAMPLES, samples=SAMPLES) for r in range(2) for w in range(WINDOWS)
         ),
+        time_steps=np.full(2 * WINDOWS, 0.01),
         recording_of=np.repeat(np.arange(2), WINDOWS),
         first=np.tile(np.arange(WINDOWS) * SAMPLES, 2),
         base=np.zeros((2 * WINDOWS, SAMPLES)),
