@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.signal import butter, lfilter, sosfilt
+from scipy.signal import butter, freqs, freqz, sosfilt
 
 from grids.instruments import INSTRUMENTS, moved, recorded
 from grids.instruments.base import Surroundings
-from grids.instruments.filter import discrete
+from grids.instruments.filter import REACH, Kind, discrete
 from grids.instruments.staged import recorded_in_stages
 from grids.instruments.windowed import read_at, recorded_in_windows
 from models.shaking import Shaking
@@ -159,17 +159,30 @@ def test_filter_is_butterworth(order: int, corner: float) -> None:
 
 
 @pytest.mark.parametrize("order", [1, 2, 3, 4])
-@pytest.mark.parametrize("share", [0.25, 0.75])
-def test_a_filter_read_between_samples_is_that_of_a_recording_as_fine(order: int, share: float) -> None:
-    """From rest, of any signal that is linear between samples."""
-    fine, samples = 4, 200
-    signal = np.cumsum(np.random.default_rng(order).normal(size=samples))
-    signal -= signal[0]
-    between = np.interp(np.arange(fine * (samples - 1) + 1) / fine, np.arange(samples), signal)
-    plain, read = discrete(9.0, order, "lowpass", STEP / fine), discrete(9.0, order, "lowpass", STEP, share)
-    told = lfilter(plain.numerator, plain.denominator, between)[round(share * fine) :: fine]
-    found = lfilter(read.numerator, read.denominator, signal)[read.late :]
-    np.testing.assert_allclose(found, told, atol=1e-8 * np.ptp(signal))
+@pytest.mark.parametrize("kind", ["lowpass", "highpass"])
+@pytest.mark.parametrize("share", [0.0, 0.25, 0.75])
+def test_a_filter_is_that_of_the_signal_between_the_samples(order: int, kind: Kind, share: float) -> None:
+    """At every frequency that a recording shows well, as the analogue filter has it; lines between samples take 8 %."""
+    step = 0.01
+    system = discrete(0.35 / step, order, kind, step, share)
+    poles = butter(order, 2.0 * np.pi * 0.35 / step, btype=kind, analog=True)
+    for of_rate, most in ((0.01, 1e-7), (0.05, 1e-5), (0.1, 3e-4), (0.15, 3e-3)):
+        frequency = of_rate / step
+        late = np.exp(2j * np.pi * of_rate * (REACH - share))
+        found = freqz(system.numerator, system.denominator, [2.0 * np.pi * of_rate])[1][0] * late
+        wanted = freqs(*poles, [2.0 * np.pi * frequency])[1][0]
+        assert abs(found - wanted) < most
+
+
+def test_a_filter_takes_the_motion_on_beyond_the_ends_of_a_window() -> None:
+    """A parabola passes whole: later by the filter's delay of slow signals, read earlier by as much."""
+    sensor, samples = INSTRUMENTS["filter"], 60
+    values = {**sensor.nulls, "corner_hz": 30.0, "order": 2.0}
+    time = 0.01 * np.arange(samples)
+    motion = 0.3 + 0.2 * time - 0.7 * time**2
+    seen = sensor.acts["windowed"]({"rotation_1": motion}, values, Surroundings(0.01, np.zeros(samples)))["rotation_1"]
+    bend = seen - motion  # of a parabola a low-pass leaves all but a constant
+    np.testing.assert_allclose(bend, bend[0], atol=1e-9)
 
 
 @pytest.mark.parametrize("order", [1, 2, 4])
@@ -189,6 +202,23 @@ def test_a_filter_in_windows_is_the_filter_of_the_record(order: int) -> None:
     around = Surroundings(STEP, np.zeros(400))
     seen = sensor.acts["windowed"](window, values, around)["rotation_1"]
     np.testing.assert_allclose(seen[:300], whole[recorded_peak : recorded_peak + 300], atol=0.01)
+
+
+@pytest.mark.parametrize("corner", [20.0, 32.0, 50.0])
+def test_a_filter_in_windows_of_few_samples_a_cycle_is_the_filter_of_the_record(corner: float) -> None:
+    """What came before a window is told by its first samples: by too many of them not at all."""
+    sensor, step, frequency = INSTRUMENTS["filter"], 0.01, 8.0
+    values = {**sensor.nulls, "corner_hz": corner, "order": 2.0}
+    lag = sensor.acts["lag"](values)
+    poles = butter(2, 2.0 * np.pi * corner, analog=True)
+    response = freqs(*poles, [2.0 * np.pi * frequency])[1][0]
+    time = step * np.arange(50)
+    for phase in np.linspace(0.0, 2.0 * np.pi, 7):
+        window = {"rotation_1": np.sin(2.0 * np.pi * frequency * (time - lag) + phase)}  # as the clock of a fit has it
+        seen = sensor.acts["windowed"](window, values, Surroundings(step, np.zeros(50)))["rotation_1"]
+        wanted = np.imag(response * np.exp(1j * (2.0 * np.pi * frequency * time + phase)))
+        np.testing.assert_allclose(seen[:47], wanted[:47], atol=0.06)
+        np.testing.assert_allclose(seen[4:47], wanted[4:47], atol=0.01)
 
 
 def test_a_filter_in_windows_passes_on_what_is_not_finite() -> None:
