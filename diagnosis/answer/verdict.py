@@ -69,7 +69,7 @@ def judge(task: Task, found: Search, climbed: Climbed | None) -> Judgement:
     beyond: tuple[Beyond, ...] = ()
     if found.best is not None and climbed is None and not constancy.flagged:
         beyond = stages.optional("whether effects go beyond their ranges", lambda: beyond_ranges(found), tuple)
-    far = () if unexplained else unfit(judging)
+    far = () if unexplained else stages.needed(lambda: unfit(judging))
     doubts = (constancy.flagged, errors.inadequacy.large, against is not None, beyond, far)
     verdict = verdict_of(found, near, any(map(bool, doubts)), not unexplained, task.finished)
     gains = [climbed.gain] if climbed else stages.needed(lambda: evidence(found))

@@ -45,7 +45,7 @@ def lines(pieces: Sequence[Piece], channels: int, theta: FloatArray, weights: Fl
 
 def _fastest(pieces: Sequence[Piece]) -> float:
     """Half the lowest sampling rate of the pieces (Hz), from which on another line makes the same samples."""
-    return 0.5 / max(float(np.diff(np.unique(piece.time))[:1].max(initial=1e-9)) for piece in pieces)
+    return 0.5 / max(float(np.diff(np.unique(piece.time)).min(initial=1.0)) for piece in pieces if piece.time.size > 1)
 
 
 def _score(

@@ -2,7 +2,7 @@
 
 The filter acts on the signal between its samples, where it is the polynomial of fifth degree through the six nearest
 ones, so that a corner above the Nyquist frequency of the recording keeps its meaning: straight lines would take 3 % of
-what moves at a tenth of the sampling rate and 8 % at .15 of it, these take .02 % and .2 %. In windows it is applied in
+what moves at a tenth of the sampling rate and 7 % at .15 of it, these take .02 % and .2 %. In windows it is applied in
 two parts: its delay of slow signals, as a clock error, and the filter read that much later, between samples too. So a
 window that starts at a recorded peak starts at the peak of the motion too. What came before its first sample and comes
 after its last one are parabolas through the samples there.
@@ -108,7 +108,7 @@ def run(system: Discrete, signal: FloatArray, time_step: float, later: int = 0, 
 
     Each is led in by its own parabola, through its first ``fitted`` samples.
 
-    Beyond its end, where the filter is read later than it reaches, a signal keeps its last value.
+    Beyond its end, where the filter is read later than it reaches, a signal keeps the value that it was continued to.
     """
     from scipy.signal import lfilter
 

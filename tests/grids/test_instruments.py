@@ -162,7 +162,7 @@ def test_filter_is_butterworth(order: int, corner: float) -> None:
 @pytest.mark.parametrize("kind", ["lowpass", "highpass"])
 @pytest.mark.parametrize("share", [0.0, 0.25, 0.75])
 def test_a_filter_is_that_of_the_signal_between_the_samples(order: int, kind: Kind, share: float) -> None:
-    """At every frequency that a recording shows well, as the analogue filter has it; lines between samples take 8 %."""
+    """At every frequency that a recording shows well, as the analogue filter has it; lines between samples take 7 %."""
     step = 0.01
     system = discrete(0.35 / step, order, kind, step, share)
     poles = butter(order, 2.0 * np.pi * 0.35 / step, btype=kind, analog=True)
