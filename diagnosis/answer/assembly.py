@@ -92,7 +92,7 @@ def assemble(task: Task, found: Search, climbed: Climbed | None) -> Diagnosis:
         errors=judged.errors,
         channels=stages.optional("what each channel adds", lambda: added_by_channels(final.fitted), dict),
         posterior=drawn,
-        not_tried={**absent(found.measured), **found.not_tried, **stages.failed},
+        not_tried={**absent(found.measured), **found.not_tried},
         reference_peak=true_peak(final),
         provenance=_provenance(task.specimen, found, judged.constancy, task.seed),
         finished=task.finished,
@@ -100,7 +100,7 @@ def assemble(task: Task, found: Search, climbed: Climbed | None) -> Diagnosis:
         unexplained=judged.unexplained,
         suspicions={r.name: r.suspicions for s in shown for r in s.measured.recordings if r.suspicions},
     )
-    return replace(answer, skipped=tuple(stages.skipped) if task.finished else ())
+    return replace(answer, skipped=tuple(stages.skipped) if task.finished else (), failed=dict(stages.failed))
 
 
 def _estimated(

@@ -99,7 +99,7 @@ def calibrate(
     compared = {window.recording for window in measured.windows}
     alone = [r for k, r in enumerate(recordings) if k in compared] if len(compared) > 1 else []
     weak = [
-        f"{r.name} never moves clearly beyond its noise: left out"
+        f"{r.name} holds no window that can be compared: it is not fitted alone"
         for k, r in enumerate(recordings)
         if k not in compared
     ]

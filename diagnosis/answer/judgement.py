@@ -11,15 +11,18 @@ from diagnosis.answer.result import Undecided, Unfit, Verdict
 from diagnosis.errors.adequacy import Inadequacy
 from diagnosis.forces.constancy import Constancy
 from diagnosis.search.candidates import Candidate
-from diagnosis.search.found import BADLY, MISSING, Near, Search, adjusted, by_window, price
+from diagnosis.search.found import MISSING, Near, Search, adjusted, by_window, price
 from diagnosis.search.left_out import WORSE
 from diagnosis.search.null import LEAST_P
 from diagnosis.search.refit import gain_by_window
 
 UNEXPLAINED = 0.5
 """Share of the squared motion in the windows that, left over by the best model, makes any name meaningless."""
-FEW = 2
-"""Windows far from the noise that make an answer inadequate; a single one may be an event that was misread."""
+FAR, FEW = 3.0, 2
+"""Misfit per sample of a window far from the noise, and how many make an answer inadequate: one may be misread.
+
+Of 100 windows with 20 independent samples two are as far with a chance of 3e-7.
+"""
 CHANCE = 0.05
 """p-value from which on the strongest suspect is no stronger than chance."""
 
@@ -54,7 +57,7 @@ def unfit(found: Search) -> tuple[Unfit, ...]:
         return ()
     fitted = found.chosen.measured
     each = by_window(found.chosen)
-    far = [k for k in np.argsort(-each) if each[k] > BADLY]
+    far = [k for k in np.argsort(-each) if each[k] > FAR]
     if len(far) < FEW:
         return ()
     of = [(fitted.recordings[w.recording], w, float(each[k])) for k in far for w in [fitted.windows[k]]]
@@ -62,7 +65,7 @@ def unfit(found: Search) -> tuple[Unfit, ...]:
 
 
 def verdict_of(found: Search, near: Sequence[Near], flagged: bool, explained: bool, finished: bool) -> Verdict:
-    """One of the four. ``near``: the rivals; ``flagged``: not constant, the model errs, or contradicted."""
+    """One of the four. ``near``: the rivals; ``flagged``: something speaks against what was found."""
     if not finished:  # what was not tried may explain it as well
         return "cannot_tell_apart"
     if flagged or not explained:

@@ -312,3 +312,5 @@ class Diagnosis:
     """Samples (n,) of what a study can vary, by name; none where another model is the answer."""
     skipped: tuple[str, ...] = ()
     """What a Ctrl-C after the search has left out."""
+    failed: Mapping[str, str] = field(default_factory=dict)
+    """By stage after the search that the answer can do without: why it could not be done."""

@@ -139,12 +139,11 @@ def _unfit(far: Sequence[Unfit]) -> list[str]:
     """That windows are left far from the noise, the worst of them."""
     if not far:
         return []
-    worst = [f"{one.start:.1f} to {one.end:.1f} s of {one.recording} ({one.misfit:.0f})" for one in far[:MOST_NAMED]]
-    more = "" if len(far) <= MOST_NAMED else f" and {len(far) - MOST_NAMED} more"
-    return [
-        "Windows remain that are far from the noise, with so many times the variance that is expected: "
-        f"{', '.join(worst)}{more}."
+    worst = [
+        f"{one.recording}, {one.start:.1f} to {one.end:.1f} s ({one.misfit:.0f} times)" for one in far[:MOST_NAMED]
     ]
+    more = "" if len(far) <= MOST_NAMED else f"; and {len(far) - MOST_NAMED} more"
+    return [f"In these windows the residual stays far above the variance that is expected: {'; '.join(worst)}{more}."]
 
 
 def _contradicted(found: Diagnosis) -> list[str]:
@@ -238,7 +237,8 @@ def _by_recording(gains: Mapping[str, float]) -> list[str]:
 
 
 def _skipped(found: Diagnosis) -> list[str]:
-    return [f"Stopped after the search; left out: {', '.join(found.skipped)}."] if found.skipped else []
+    said = [f"Stopped after the search; left out: {', '.join(found.skipped)}."] if found.skipped else []
+    return said + [f"Could not be done: {what} ({why})." for what, why in found.failed.items()]
 
 
 def _distinct(found: Sequence[Constancy]) -> list[Constancy]:

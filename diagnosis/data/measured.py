@@ -275,7 +275,7 @@ def arrange(
             if np.ptp(values) == 0.0:
                 raise InputError(
                     f"{channel} of {recording.name} reads {values[0]:g} throughout: a sensor that is dead, or nothing "
-                    "that moved; leave out the channel or the recording."
+                    "that moved; leave out the recording, or the channel where no window starts from it."
                 )
     leads = [lead.channel for lead in declared.leads]
     windows: list[Window] = []

@@ -98,7 +98,7 @@ class Errors:
     def expected(self, predictor: Predictor, point: Point) -> Whitening:
         """What is to be expected in windows of other recordings: sensors' errors, base noise and events that scatter.
 
-        The latter about the motion at ``point``.
+        The latter about the motion at ``point``; without drifts, which windows share.
         """
         base = base_columns(predictor, responses(predictor, point))
         scattered = self.scatter * kicks(predictor, point).columns

@@ -53,6 +53,7 @@ def as_mapping(diagnosis: Diagnosis) -> dict[str, Any]:
             "seen": list(diagnosis.seen),
             "finished": diagnosis.finished,
             "skipped": list(diagnosis.skipped),
+            "failed": dict(diagnosis.failed),
         },
     }
 

@@ -13,10 +13,11 @@ import pytest
 from diagnosis import calibrate, diagnose
 from diagnosis.answer.assembly import _screened
 from diagnosis.answer.heldout import Shown
-from diagnosis.answer.result import Beyond, Diagnosis
+from diagnosis.answer.result import Beyond, Diagnosis, Unfit
 from diagnosis.fit.setup import measure
 from diagnosis.search.candidates import candidates
 from diagnosis.search.found import MISSING, Search
+from diagnosis.search.null import LEAST_P
 from models.errors import InputError
 from tests.diagnosis.made import SPECIMEN, TRUE, recording
 
@@ -80,6 +81,29 @@ def test_an_answer_that_recordings_held_out_contradict_is_not_in_the_library(mon
     assert judged == [("restitution",)]
     assert found.verdict == "not_in_library" and found.contradicted == (0.04, 0.07)
     assert found.effects[0].name == "restitution" and "recordings held out" in found.statement
+
+
+@pytest.mark.parametrize("stage", ["far", "failed"])
+def test_windows_far_from_the_noise_and_what_could_not_be_done_are_told(
+    stage: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a block of which nothing else is missing: the verdict, its p-value and the reason."""
+
+    def refused(*_: Any) -> Any:
+        raise InputError("a run cannot be cut there")
+
+    if stage == "far":
+        far = (Unfit("train_1", 1.0, 1.6, 30.0), Unfit("train_1", 2.0, 2.5, 19.0))
+        monkeypatch.setattr(import_module("diagnosis.answer.verdict"), "unfit", lambda found: far)
+    else:
+        monkeypatch.setattr(import_module("diagnosis.answer.assembly"), "_horizons", refused)
+    found = diagnose(SPECIMEN, [recording("train_1", 1), recording("train_2", 2)])
+    if stage == "far":
+        assert found.verdict == "not_in_library" and found.p_value == LEAST_P
+        assert found.missing_force is not None or "train_1, 1.0 to 1.6 s (30 times)" in found.statement
+    else:
+        assert found.verdict == "nothing_missing" and not found.prediction_horizon
+        assert "Could not be done: prediction horizons (a run cannot be cut there)." in found.statement
 
 
 def test_an_answer_that_needs_more_than_its_range_is_not_in_the_library(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -189,7 +213,7 @@ def test_a_recording_that_never_moves_costs_no_calibration() -> None:
     weak = replace(runs[0], name="weak", channels={**runs[0].channels, "rotation_1": 1e-5 * noise})
     found = calibrate(SPECIMEN, [*runs, weak], profile=False)
     assert set(found.by_recording) == {"train_1", "train_2"}
-    assert any("weak never moves" in said for said in found.seen)
+    assert any("weak holds no window" in said for said in found.seen)
     assert not calibrate(SPECIMEN, [runs[0], weak], profile=False).by_recording
 
 
