@@ -18,6 +18,7 @@ FIGURES = (
 MORE = (
     "mismatch_alarm", "detected", "class_first_strict", "class_first_detected", "class_first_weak",
     "rivals_cover_detected", "pairs_one", "base_coverage", "open_detected", "seconds_most",
+    "processor_seconds_median", "processor_seconds_most",
 )  # fmt: skip
 
 OF_PLACES = ("instants_right", "overlap_mean")

@@ -152,7 +152,6 @@ def score(cases: Sequence[Scored], *, weak_too: bool = False) -> dict[str, Any]:
     def among(case: Scored) -> bool:
         return case.detected and bool(set(case.truth) & case.named)
 
-    seconds = [float(case.answer["seconds"]) for case in cases if "seconds" in case.answer]
     return {
         "cases": len(cases),
         "by_kind": dict(Counter(case.kind for case in cases)),
@@ -173,8 +172,17 @@ def score(cases: Sequence[Scored], *, weak_too: bool = False) -> dict[str, Any]:
         "open_recall": share(opens, lambda case: case.verdict == "not_in_library"),
         "open_detected": share(opens, lambda case: case.detected),
         "open_false": share(inside, lambda case: case.verdict == "not_in_library"),
-        "seconds_median": float(np.median(seconds)) if seconds else float("nan"),
-        "seconds_most": max(seconds, default=float("nan")),
+        **_times(cases, "seconds"),
+        **_times(cases, "processor_seconds"),
+    }
+
+
+def _times(cases: Sequence[Scored], name: str) -> dict[str, float]:
+    """Median and largest of the answers' time of that ``name``; nan of none."""
+    taken = [float(case.answer[name]) for case in cases if name in case.answer]
+    return {
+        f"{name}_median": float(np.median(taken)) if taken else float("nan"),
+        f"{name}_most": max(taken, default=float("nan")),
     }
 
 

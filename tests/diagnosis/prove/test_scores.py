@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import time
 from pathlib import Path
 
 import pytest
@@ -25,6 +26,7 @@ def said(verdict: str, effects=(), rivals=(), seconds: float = 1.0, **parameters
         "rivals": [{"name": n, "class": n, "evidence_gap": 4.0} for n in rivals],
         "base": {"width": {"low95": 0.2, "estimate": 0.25, "high95": 0.3}},
         "seconds": seconds,
+        "processor_seconds": 0.5 * seconds,
         "sources": "abc",
     }
 
@@ -77,6 +79,7 @@ def test_every_figure_by_hand() -> None:
     assert counts["open_detected"] == (2, 2)
     assert counts["open_false"] == (1, 9 + 1)
     assert found["seconds_median"] == 1.0 and found["seconds_most"] == 9.0
+    assert found["processor_seconds_median"] == 0.5 and found["processor_seconds_most"] == 4.5
 
 
 def test_a_failed_case_is_a_wrong_answer() -> None:
@@ -125,3 +128,12 @@ def test_answers_are_kept_and_failures_are_answers(tmp_path: Path) -> None:
     before = sha256(tmp_path / "a" / "1.json")
     again = answer(tmp_path, tmp_path / "a" / "1.json", lambda folder: {"verdict": "missing"})
     assert again == first and sha256(tmp_path / "a" / "1.json") == before
+
+
+def test_waiting_costs_time_by_the_clock_alone(tmp_path: Path) -> None:
+    def waiting(folder: Path) -> dict:
+        time.sleep(0.3)
+        return {"verdict": "missing"}
+
+    found = answer(tmp_path, tmp_path / "1.json", waiting)
+    assert found["seconds"] >= 0.3 and found["processor_seconds"] < 0.15
