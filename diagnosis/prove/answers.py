@@ -72,8 +72,8 @@ def plain(found: Diagnosis) -> dict[str, Any]:
 def answer(folder: Path, path: Path, answering: Answering = diagnosed) -> dict[str, Any]:
     """The answer to ``folder``, from ``path`` if it is there already; else found, timed and written.
 
-    A failure is an answer too: verdict ``failed`` and its traceback. ``seconds`` are by the clock, ``processor_seconds``
-    those in which the process had a core: what else the machine does adds to the first alone.
+    A failure is an answer too: verdict ``failed`` and its traceback. ``seconds`` are by the clock,
+    ``processor_seconds`` those in which the process had a core: other work on the machine adds to the first alone.
     """
     if path.is_file():
         return read_json(path)
