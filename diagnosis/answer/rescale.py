@@ -1,7 +1,7 @@
 """Levels of instruments over the true peak.
 
 During a fit a level or offset is given over the largest *measured* value of the leading channel in the first
-recording. The catalogue gives it over the one that the model reaches there without these instruments, so the
+recording that moves. The catalogue gives it over the one that the model reaches there without these instruments, so the
 estimates are converted at the end.
 """
 
@@ -24,18 +24,20 @@ def with_levels(candidate: Candidate) -> bool:
 
 
 def true_peak(explanation: Explanation) -> float | None:
-    """Peak (rad) of the first recording as the model gives it without its levels; None where it has none."""
+    """Peak (rad) of the first recording with a window, as the model gives it without its levels; None without any."""
     names = {c.name for c in explanation.candidates if with_levels(c)}
     if not names:
         return None
     m, fitted = explanation.measured, explanation.fitted
     without = {k: v for k, v in fitted.point.values.items() if k.partition(".")[0] not in names}
-    lead = m.lead
-    if m.identification.leads[0].channel in m.recordings[0].estimated:  # no rotation sensor whose level it could be
+    lead, moving = m.lead, m.windows[0].recording
+    if (
+        m.identification.leads[0].channel in m.recordings[moving].estimated
+    ):  # no rotation sensor whose level it could be
         return m.reference_peak
     motion = fitted.misfit.predictor.predict([Point(without, fitted.states)])[0][:, lead]
-    first = m.recording_of == 0
-    return float(np.max(np.abs(motion[first]) * m.mask[first, lead])) if first.any() else m.reference_peak
+    first = m.recording_of == moving
+    return float(np.max(np.abs(motion[first]) * m.mask[first, lead]))
 
 
 def over_peak(

@@ -11,6 +11,7 @@ from diagnosis.data.noise import response_noise
 from diagnosis.data.smoothing import smooth
 from diagnosis.data.windows import Window
 from grids.recordings.base import REQUIRED, FloatArray, Recording
+from models.errors import InputError
 from models.identification import Identification, Largest, State, WindowLengths
 
 RATE_WIDTH = 0.04
@@ -37,6 +38,18 @@ def gather(recordings: Sequence[Recording], windows: Sequence[Window], channels:
         last = min(window.first + longest, recording.time.size)
         base[w, : last - window.first] = recording.channels[REQUIRED][window.first : last]
     return {"values": values, "mask": mask, "sigma": sigma, "base": base}
+
+
+def refuse_dead(recordings: Sequence[Recording], channels: Sequence[str]) -> None:
+    """Raise InputError where a channel reads the same throughout."""
+    for recording in recordings:
+        for channel in dict.fromkeys(channels):
+            values = recording.channels[channel]
+            if np.ptp(values) == 0.0:
+                raise InputError(
+                    f"{channel} of {recording.name} reads {values[0]:g} throughout: a sensor that is dead, or nothing "
+                    "that moved; leave out the recording, or the channel where no window starts from it."
+                )
 
 
 def start_of(recordings: Sequence[Recording], windows: Sequence[Window], state: State) -> FloatArray:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.data.averaging import averaged, stride
-from diagnosis.data.gathered import gather, memories, smoothed, start_of
+from diagnosis.data.gathered import gather, memories, refuse_dead, smoothed, start_of
 from diagnosis.data.noise import base_noise, response_noise
 from diagnosis.data.windows import ABOVE_NOISE, Window, cut, over_noise
 from grids.recordings.base import SHARE, FloatArray, Recording
@@ -50,7 +50,8 @@ class Measured:
     ``values`` and ``mask`` (W, C, N); ``sigma`` (W, C); ``base`` (W, N), the measured base acceleration;
     ``states`` (W, S), the model's free states at the windows' starts as the measurement suggests, ``state_size`` (S,)
     their scatter; ``memory``: what happened before each window (W,), for laws with a memory.
-    ``reference_peak``: largest value of the leading channel of the first recording; ``lengths`` of windows in s.
+    ``reference_peak``: largest value of the leading channel of the first recording with a window; ``lengths`` of
+    windows in s.
     ``alike``: states that begin as another one where their channel is not recorded; ``bonded``: and stay so.
     """
 
@@ -269,14 +270,7 @@ def arrange(
                 f"{state.channel} is missing in {', '.join(lacking)}: model {model.name} cannot start a window "
                 "without it; record or map it."
             )
-    for recording in recordings:
-        for channel in dict.fromkeys((*channels, *(state.channel for state in declared.free))):
-            values = recording.channels[channel]
-            if np.ptp(values) == 0.0:
-                raise InputError(
-                    f"{channel} of {recording.name} reads {values[0]:g} throughout: a sensor that is dead, or nothing "
-                    "that moved; leave out the recording, or the channel where no window starts from it."
-                )
+    refuse_dead(recordings, [*channels, *(state.channel for state in declared.free)])
     leads = [lead.channel for lead in declared.leads]
     windows: list[Window] = []
     for k, recording in enumerate(recordings):
@@ -292,7 +286,8 @@ def arrange(
     with_vertical = vertical or all("base_acceleration_z" in r.channels for r in recordings)
     start = np.stack([start_of(recordings, windows, state) for state in declared.free], axis=1)
     if reference_peak is None:
-        reference_peak = float(np.max(np.abs(smoothed(recordings[0], leads[0], lengths))))
+        moving = recordings[windows[0].recording]
+        reference_peak = float(np.max(np.abs(smoothed(moving, leads[0], lengths))))
     return Measured(
         model=model,
         recordings=tuple(recordings),

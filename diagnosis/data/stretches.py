@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.data.gathered import gather
+from diagnosis.data.gathered import gather, refuse_dead
 from diagnosis.data.measured import Measured, identification_of
 from diagnosis.data.noise import base_noise, response_noise
 from diagnosis.data.windows import Window
@@ -56,6 +56,7 @@ def arrange_stretches(
             f"{lead} is missing in {', '.join(r.name for r in recordings)}: model {model.name} is compared by it; "
             "record or map it."
         )
+    refuse_dead(split, channels)
     runs = [_means(r, max(1, round(stretches.mean / (RUNS * r.time_step)))) for r in split]
     means = [_means(r, max(1, round(stretches.mean / r.time_step))) for r in runs]
     windows = tuple(w for k, r in enumerate(means) for w in _cut(k, r, stretches.length))

@@ -36,7 +36,7 @@ def measure(specimen: Specimen, recordings: Sequence[Recording], reference_peak:
     """The recordings cut in windows. Raises InputError when there is nothing to compare.
 
     ``reference_peak`` (rad): what levels of instruments are given over where the specimen does not say; default:
-    the largest value of the leading channel of the first recording.
+    the largest value of the leading channel of the first recording that moves.
     """
     if not recordings:
         raise InputError("no recording to learn from: name at least one.")

@@ -13,6 +13,8 @@ from diagnosis.fit.setup import measure
 from grids.recordings.base import Recording
 from grids.specimen import Specimen
 from models.errors import InputError
+from tests.diagnosis.buildings import SPECIMEN as BUILDING
+from tests.diagnosis.buildings import made as building
 from tests.diagnosis.made import SPECIMEN, recording
 
 RATE = 7.0
@@ -50,6 +52,22 @@ def test_a_sensor_that_is_dead_is_named(channel: str) -> None:
     dead = replace(whole, name="b", channels={**whole.channels, channel: np.zeros(whole.time.size)})
     with pytest.raises(InputError, match=rf"{channel} of b reads 0 throughout: a sensor that is dead"):
         measure(SPECIMEN, [whole, dead])
+
+
+def test_a_dead_sensor_of_a_building_is_named() -> None:
+    whole = building("small", 1.0, 1)
+    drawn = {**whole.channels, "level_displacement_x": np.zeros_like(whole.channels["level_displacement_x"])}
+    with pytest.raises(InputError, match=r"level_displacement_x_0 of dead reads 0 throughout: a sensor that is dead"):
+        measure(BUILDING, [whole, replace(whole, name="dead", channels=drawn)])
+
+
+def test_a_recording_that_never_moves_gives_no_reference_peak() -> None:
+    moving = recording("a", 1)
+    still = np.random.default_rng(5).normal(scale=1e-5, size=moving.time.size)
+    resting = replace(moving, name="rest", channels={**moving.channels, "rotation_1": still})
+    found = measure(SPECIMEN, [resting, moving])
+    assert set(found.recording_of) == {1}
+    assert found.reference_peak == measure(SPECIMEN, [moving]).reference_peak
 
 
 def test_what_a_window_needs_is_named_with_the_recordings_that_lack_it() -> None:

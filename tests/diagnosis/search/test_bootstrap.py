@@ -20,8 +20,8 @@ from diagnosis.search.found import Search
 from diagnosis.search.null import LEAST_P, null_distribution
 from diagnosis.search.refit import Explanation
 from diagnosis.search.screen import score
-from tests.diagnosis.answer.test_building import SPECIMEN as BUILDING
-from tests.diagnosis.answer.test_building import made
+from tests.diagnosis.buildings import SPECIMEN as BUILDING
+from tests.diagnosis.buildings import made
 from tests.diagnosis.made import SPECIMEN, recording
 
 

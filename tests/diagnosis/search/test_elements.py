@@ -15,7 +15,7 @@ from diagnosis.search.beside import seconds, split
 from diagnosis.search.candidates import Candidate, candidates, firsts
 from diagnosis.search.found import Search
 from diagnosis.search.refit import Explanation
-from tests.diagnosis.answer.test_building import SPECIMEN, made
+from tests.diagnosis.buildings import SPECIMEN, made
 
 FIRST = {"bouc_wen.post_yield_ratio": 0.25, "bouc_wen.yield_compression": 0.008, "bouc_wen.exponent": 1.0}
 

@@ -12,7 +12,7 @@ from diagnosis.fit.setup import measure
 from diagnosis.search.candidates import candidates
 from diagnosis.search.left_out import error_left_out, predicts_worse, within_the_others
 from diagnosis.search.refit import Explanation, again, best_of, extend, reshaped
-from tests.diagnosis.answer.test_building import SPECIMEN, made
+from tests.diagnosis.buildings import SPECIMEN, made
 
 TRUE = {"mullins.softening": 0.5, "mullins.strain": 0.4, "bouc_wen.post_yield_ratio": 0.6,
         "bouc_wen.yield_compression": 0.02, "bouc_wen.exponent": 1.0}  # fmt: skip
