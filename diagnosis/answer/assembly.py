@@ -87,7 +87,7 @@ def assemble(task: Task, found: Search, climbed: Climbed | None) -> Diagnosis:
         held_stages=judged.held.held_stages if judged.held else (),
         contradicted=judged.against,
         beyond=judged.beyond,
-        unfit=judged.far,
+        unfit=judged.unfit,
         other_model=other_model(climbed, final) if climbed else None,
         errors=judged.errors,
         channels=stages.optional("what each channel adds", lambda: added_by_channels(final.fitted), dict),

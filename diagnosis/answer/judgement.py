@@ -46,7 +46,7 @@ def contradicted(found: Search, held: Shown) -> tuple[float, float] | None:
     return (without, with_it) if with_it > WORSE * without else None
 
 
-def unfit(found: Search) -> tuple[Unfit, ...]:
+def unfit_windows(found: Search) -> tuple[Unfit, ...]:
     """The windows that what was found leaves far from the noise, the worst first; none where there are hardly any.
 
     The likelihood counts a window that cannot be explained by its logarithm only, so that one wrong event does not pass
@@ -91,16 +91,16 @@ def p_of_missing(
     gains: Sequence[float],
     left: Inadequacy,
     flagged: Sequence[Constancy],
-    far: Sequence[Unfit],
+    unfit: Sequence[Unfit],
     finished: bool,
 ) -> float | None:
     """p-value of "something is missing"; None if a search was stopped early.
 
     Of the strongest effect, else of the strongest suspect; of the model's own large error, of what is not the same
-    everywhere, or of windows ``far`` from the noise, if less.
+    everywhere, or of ``unfit`` windows, if less.
     """
     least = [max(left.p_value, LEAST_P)] if left.large else []
-    least += [LEAST_P] if far else []
+    least += [LEAST_P] if unfit else []
     least += [p_value(found, one.evidence) for one in flagged]
     if gains:
         return min([*p_of_effects(found, gains, found.chosen.candidates), *least])

@@ -135,14 +135,14 @@ def _beyond(one: Beyond) -> str:
     )
 
 
-def _unfit(far: Sequence[Unfit]) -> list[str]:
+def _unfit(windows: Sequence[Unfit]) -> list[str]:
     """That windows are left far from the noise, the worst of them."""
-    if not far:
+    if not windows:
         return []
     worst = [
-        f"{one.recording}, {one.start:.1f} to {one.end:.1f} s ({one.misfit:.0f} times)" for one in far[:MOST_NAMED]
+        f"{one.recording}, {one.start:.1f} to {one.end:.1f} s ({one.misfit:.0f} times)" for one in windows[:MOST_NAMED]
     ]
-    more = "" if len(far) <= MOST_NAMED else f"; and {len(far) - MOST_NAMED} more"
+    more = "" if len(windows) <= MOST_NAMED else f"; and {len(windows) - MOST_NAMED} more"
     return [f"In these windows the residual stays far above the variance that is expected: {'; '.join(worst)}{more}."]
 
 

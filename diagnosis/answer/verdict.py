@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from diagnosis.answer.constancy import Judged, judged
 from diagnosis.answer.heldout import Shown, compare
-from diagnosis.answer.judgement import contradicted, explains, p_of_missing, unfit, verdict_of
+from diagnosis.answer.judgement import contradicted, explains, p_of_missing, unfit_windows, verdict_of
 from diagnosis.answer.ranges import beyond_ranges
 from diagnosis.answer.result import Beyond, Unfit, Verdict
 from diagnosis.answer.task import Task
@@ -26,7 +26,7 @@ class Judgement:
 
     ``final``: the explanation that is told, a law in a table in the place of what is missing included; ``climbed``: the
     step to another base model; ``shown`` on the recordings learned from and ``held`` on those held out; ``near`` the
-    rivals and ``gains`` of the effects; ``against``, ``beyond``, ``far``: predictions that got worse, ranges that are
+    rivals and ``gains`` of the effects; ``against``, ``beyond``, ``unfit``: predictions that got worse, ranges that are
     too narrow, windows far from the noise; ``unexplained``: nothing explains more than it leaves.
     """
 
@@ -41,7 +41,7 @@ class Judgement:
     gains: Sequence[float]
     against: tuple[float, float] | None
     beyond: tuple[Beyond, ...]
-    far: tuple[Unfit, ...]
+    unfit: tuple[Unfit, ...]
     verdict: Verdict
     p_value: float | None
     unexplained: bool
@@ -69,11 +69,11 @@ def judge(task: Task, found: Search, climbed: Climbed | None) -> Judgement:
     beyond: tuple[Beyond, ...] = ()
     if found.best is not None and climbed is None and not constancy.flagged:
         beyond = stages.optional("whether effects go beyond their ranges", lambda: beyond_ranges(found), tuple)
-    far = () if unexplained else stages.needed(lambda: unfit(judging))
-    doubts = (constancy.flagged, errors.inadequacy.large, against is not None, beyond, far)
+    unfit = () if unexplained else stages.needed(lambda: unfit_windows(judging))
+    doubts = (constancy.flagged, errors.inadequacy.large, against is not None, beyond, unfit)
     verdict = verdict_of(found, near, any(map(bool, doubts)), not unexplained, task.finished)
     gains = [climbed.gain] if climbed else stages.needed(lambda: evidence(found))
-    p_value = p_of_missing(found, gains, errors.inadequacy, constancy.flagged, far, task.finished)
+    p_value = p_of_missing(found, gains, errors.inadequacy, constancy.flagged, unfit, task.finished)
     if task.draws and task.finished and climbed is None:
         score_p = p_value
         p_value = stages.optional(
@@ -82,8 +82,9 @@ def judge(task: Task, found: Search, climbed: Climbed | None) -> Judgement:
             lambda: score_p,
         )
     return Judgement(
-        found, chosen, climbed, shown, held, constancy, errors, near, gains, against, beyond, far, verdict, p_value,
-        unexplained,
+        found=found, final=chosen, climbed=climbed, shown=shown, held=held, constancy=constancy, errors=errors,
+        near=near, gains=gains, against=against, beyond=beyond, unfit=unfit, verdict=verdict, p_value=p_value,
+        unexplained=unexplained,
     )  # fmt: skip
 
 

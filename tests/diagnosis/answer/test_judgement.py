@@ -171,7 +171,7 @@ def test_more_than_one_window_far_from_the_noise_is_no_explanation(windows: int)
     """The likelihood counts them by their logarithm only; a single one may be an event that was misread."""
     measured = measure(SPECIMEN, [recording("a", 1)])
     fitted = base_fit(SPECIMEN, measured)
-    assert judgement.unfit(Search(Explanation((), fitted), (), NO_ERRORS)) == ()
+    assert judgement.unfit_windows(Search(Explanation((), fitted), (), NO_ERRORS)) == ()
     m = fitted.measured
     shaken = np.zeros(m.values.shape)
     for w in (2, 5)[:windows]:
@@ -179,7 +179,7 @@ def test_more_than_one_window_far_from_the_noise_is_no_explanation(windows: int)
         shaken[w, 0, :length] = 4.0 * (w + 1) * m.units[w, 0] * np.sin(np.linspace(0.0, 40.0, length))
     predictor = replace(fitted.misfit.predictor, measured=replace(m, values=m.values + shaken))
     disturbed = replace(fitted, misfit=replace(fitted.misfit, predictor=predictor))
-    found = judgement.unfit(Search(Explanation((), disturbed), (), NO_ERRORS))
+    found = judgement.unfit_windows(Search(Explanation((), disturbed), (), NO_ERRORS))
     assert len(found) == (windows if windows > 1 else 0)
     if found:
         assert found[0].misfit > found[1].misfit > 3.0 and found[0].recording == "a"

@@ -154,3 +154,9 @@ def test_page_says_what_each_channel_adds() -> None:
     section = page.partition("What each channel adds")[2].partition("</section>")[0]
     assert "×3.25" in section
     assert "not told" in section
+
+
+def test_page_says_what_was_not_tried_and_why() -> None:
+    assert "was not tried" not in render(diagnosis("missing"))
+    page = render(replace(diagnosis("missing"), not_tried={"table_pitch": "no channel that it shows in"}))
+    assert "table pitch: no channel that it shows in" in " ".join(outline(page).text)
