@@ -7,24 +7,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.signal import savgol_filter
 
 from models.runs import Prescribed
 from models.shaking import Shaking
+from tests.models.interface.carried import AHEAD, COUNT, HELD, MARKS, NOISE, STEP, WALL, recorded, seen
 from tests.models.interface.walls import MODEL
 
-STEP, COUNT, NOISE = 0.002, 3500, 0.01
-MARKS = np.arange(500, 3001, 250)
-AHEAD = 400
-"""Samples of a window."""
-WALL: dict[str, Any] = {
-    "wall_length": 0.72, "wall_height": 1.8, "wall_mass": 161.0, "top_mass": 5000.0, "top_length": 0.72,
-    "top_height": 0.6, "layer_thickness": 0.01, "base_stiffness": 4.0e7, "top_stiffness": 4.4e7, "base_damping": 8.7e5,
-    "top_damping": 4.0e5,
-}  # fmt: skip
 MAXWELL = {"maxwell.arm_stiffness_ratio": 0.6, "maxwell.relaxation_time": 0.1}
-RATES = ("rotation_rate_1", "rotation_rate_2")
-HELD = ("rotation_1", "rotation_2", *RATES)
 
 
 def shaking() -> Shaking:
@@ -46,10 +35,6 @@ def in_windows(values: dict[str, Any], channels: Any, carried: dict[str, np.ndar
     return np.stack([ran["rotation_1"], ran["rotation_2"]])
 
 
-def recorded(channels: Any) -> np.ndarray:
-    return np.array([[channels[name][k : k + AHEAD] for k in MARKS] for name in HELD[:2]])
-
-
 @pytest.mark.parametrize("law", [{}, MAXWELL])
 def test_windows_from_carried_states_are_parts_of_the_run(law: dict[str, float]) -> None:
     values = WALL | law
@@ -62,16 +47,6 @@ def test_windows_from_carried_states_are_parts_of_the_run(law: dict[str, float])
     assert np.max(np.abs(in_windows(values, channels, found) - recorded(channels))) < 1e-3 * peak
     relaxed = np.max(np.abs(in_windows(values, channels, {}) - recorded(channels)))
     assert relaxed > (0.02 if law else 1e-3) * peak
-
-
-def seen(channels: Any, kept: slice = slice(None)) -> dict[str, np.ndarray]:
-    """Rotations with noise, smoothed, and their rates; of the samples ``kept``."""
-    rng, motion = np.random.default_rng(1), {}
-    for name, rate in zip(HELD[:2], RATES, strict=True):
-        noisy = channels[name] + NOISE * np.max(np.abs(channels[name])) * rng.normal(size=COUNT)
-        motion[name] = savgol_filter(noisy, 31, 3)[None, kept]
-        motion[rate] = savgol_filter(noisy, 31, 3, deriv=1, delta=STEP)[None, kept]
-    return motion
 
 
 def test_noise_of_the_measured_motion_hardly_enters_what_is_carried() -> None:

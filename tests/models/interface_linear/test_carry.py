@@ -6,11 +6,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.signal import savgol_filter
 
 from models.runs import Prescribed
 from models.shaking import Shaking
-from tests.models.interface.test_carry import AHEAD, COUNT, HELD, MARKS, NOISE, RATES, STEP, WALL
+from tests.models.interface.carried import AHEAD, COUNT, HELD, MARKS, NOISE, STEP, WALL, recorded, seen
 from tests.models.interface_linear.walls import MODEL
 
 
@@ -41,10 +40,6 @@ def in_windows(values: dict[str, Any], base: Shaking, channels: Any, carried: di
     return np.stack([ran["rotation_1"], ran["rotation_2"]])
 
 
-def recorded(channels: Any) -> np.ndarray:
-    return np.array([[channels[name][k : k + AHEAD] for k in MARKS] for name in HELD[:2]])
-
-
 @pytest.mark.parametrize("vertical", [False, True])
 @pytest.mark.parametrize("law", [{}, {"pivot_inset.inset_over_half_width": 0.1}])
 def test_windows_from_carried_states_are_parts_of_the_run(law: dict[str, float], vertical: bool) -> None:
@@ -62,12 +57,8 @@ def test_windows_from_carried_states_are_parts_of_the_run(law: dict[str, float],
 
 def test_noise_of_the_measured_motion_hardly_enters_what_is_carried() -> None:
     base = shaking()
-    channels, rng, motion = moved(WALL, base), np.random.default_rng(1), {}
-    for name, rate in zip(HELD[:2], RATES, strict=True):
-        noisy = channels[name] + NOISE * np.max(np.abs(channels[name])) * rng.normal(size=COUNT)
-        motion[name] = savgol_filter(noisy, 31, 3)[None]
-        motion[rate] = savgol_filter(noisy, 31, 3, deriv=1, delta=STEP)[None]
-    wrong = in_windows(WALL, base, channels, carried(WALL, base, motion)) - recorded(channels)
+    channels = moved(WALL, base)
+    wrong = in_windows(WALL, base, channels, carried(WALL, base, seen(channels))) - recorded(channels)
     assert np.sqrt(np.mean(wrong**2)) < 0.2 * NOISE * np.max(np.abs(recorded(channels)))
 
 

@@ -13,7 +13,7 @@ from models.rubber.layer import Layer
 from models.shaking import Shaking
 from tests.models.isolated.buildings import BODY, chain
 from tests.models.requests import asked
-from tests.models.rubber.test_laws import alone, numbers
+from tests.models.rubber.laws import alone, numbers
 
 K = 6.21e7
 

@@ -13,7 +13,7 @@ from models.rubber import LAWS
 from models.shaking import Shaking
 from tests.models.interface.walls import SHORT, undamped, wall
 from tests.models.requests import asked, outputs_of
-from tests.models.rubber.test_laws import GIVEN, alone, laden
+from tests.models.rubber.laws import GIVEN, alone, laden
 from tests.models.strategies import random_motion
 
 HARD = Shaking(0.01, 6.0 * np.sin(2 * np.pi * 2.5 * 0.01 * np.arange(36)))

@@ -7,7 +7,7 @@ from models.interface.fibres import NODES, WEIGHTS, Fibres
 from models.interface.strip import strip
 from models.rubber import LAWS
 from tests.models.interface.walls import SHORT, wall
-from tests.models.rubber.test_laws import GIVEN, alone, numbers
+from tests.models.rubber.laws import GIVEN, alone, numbers
 
 B, K = 0.36, 6.21e7
 MEMORY = {

@@ -13,8 +13,7 @@ from models.stacked.model import MODEL
 from models.stacked.reference import run as reference
 from models.stacked.reference.choice import candidates, margin
 from models.stacked.reference.overturning import energy
-from tests.models.stacked.test_lanes import random_walls
-from tests.models.stacked.walls import LANES, A, B, G, random_stacks
+from tests.models.stacked.walls import LANES, A, B, G, random_stacks, random_walls
 from tests.models.strategies import random_motion
 
 DRY = "coulomb_damping.over_m_g_b"

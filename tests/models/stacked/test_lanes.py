@@ -3,31 +3,16 @@
 import numpy as np
 import pytest
 
-from models.base import FloatArray
 from models.runs import Request
 from models.shaking import Shaking
 from models.stacked.configuration import NAMES
 from models.stacked.lanes import run as lanes
 from models.stacked.model import MODEL
 from models.stacked.reference import run as reference
-from models.stacked.stack import Stack
-from tests.models.stacked.walls import B, random_wall
+from tests.models.stacked.walls import B, random_walls
 from tests.models.strategies import random_motion
 
 WALLS = 10
-
-
-def random_walls(seed: int, count: int) -> tuple[Stack, FloatArray]:
-    """Walls with their onset accelerations."""
-    rng = np.random.default_rng(seed)
-    walls = [random_wall(rng) for _ in range(count)]
-    values = {name: np.array([wall[name] for wall in walls]) for name in walls[0]}
-    values["pivot_inset.inset_over_half_width_top"] = rng.uniform(0.0, 0.2, count)
-    values["restitution.factor_on_housner_base"] = rng.uniform(0.8, 1.0, count)
-    values["eccentricity.offset_over_half_width"] = rng.uniform(-0.1, 0.1, count)
-    values["viscous_damping.rate"] = rng.uniform(0.0, 0.3, count)
-    onset = MODEL.derive(values)["onset_acceleration"]
-    return MODEL.build(values, vertical=True), onset * rng.uniform(1.2, 4.0, count)
 
 
 @pytest.mark.parametrize("dry", [0.0, 0.6])

@@ -6,6 +6,7 @@ import numpy as np
 
 from models.base import FloatArray
 from models.stacked.equation import motion
+from models.stacked.model import MODEL
 from models.stacked.reference.choice import Corners
 from models.stacked.stack import Stack
 
@@ -50,6 +51,19 @@ def random_wall(rng: np.random.Generator) -> dict[str, float]:
         "top_length": height * aspect * float(rng.uniform(0.3, 1.5)),
         "top_height": float(rng.uniform(0.1, 1.0)) * height,
     }
+
+
+def random_walls(seed: int, count: int) -> tuple[Stack, FloatArray]:
+    """Walls with their onset accelerations."""
+    rng = np.random.default_rng(seed)
+    walls = [random_wall(rng) for _ in range(count)]
+    values = {name: np.array([wall[name] for wall in walls]) for name in walls[0]}
+    values["pivot_inset.inset_over_half_width_top"] = rng.uniform(0.0, 0.2, count)
+    values["restitution.factor_on_housner_base"] = rng.uniform(0.8, 1.0, count)
+    values["eccentricity.offset_over_half_width"] = rng.uniform(-0.1, 0.1, count)
+    values["viscous_damping.rate"] = rng.uniform(0.0, 0.3, count)
+    onset = MODEL.derive(values)["onset_acceleration"]
+    return MODEL.build(values, vertical=True), onset * rng.uniform(1.2, 4.0, count)
 
 
 def at_rest(stack: Stack, a: float | FloatArray, gravity: float | FloatArray = G) -> Corners:
