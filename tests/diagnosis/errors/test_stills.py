@@ -14,8 +14,8 @@ from diagnosis.fit.setup import base_fit, measure
 from diagnosis.fit.solver import fit
 from grids.recordings.base import Recording
 from models.shaking import Shaking
-from tests.diagnosis.fit.test_walls import TRUE, WALL, misfit
 from tests.diagnosis.made import SPECIMEN, TIME_STEP, motion, recording
+from tests.diagnosis.walls import TRUE, WALL, misfit
 
 REST, SWAYS = 1.5, 3.0
 

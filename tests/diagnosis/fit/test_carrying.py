@@ -3,57 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 
-import models
 from diagnosis.data.measured import Measured
 from diagnosis.fit.carrying import Setting, _freed
 from diagnosis.fit.prediction import Point, Predictor
-from diagnosis.fit.setup import measure
-from grids.instruments import recorded as instrumented
-from grids.instruments.base import Surroundings, Switched
+from grids.instruments.base import Switched
 from grids.instruments.windowed import moved_in_windows
 from grids.recordings.base import Recording
-from grids.specimen import Specimen
 from grids.stages import Stage, first_sample
-from models.piecewise import Part, simulate
-from tests.diagnosis.made import TIME_STEP, motion
-
-TRUE = {
-    "wall_length": 0.72, "wall_height": 1.8, "wall_mass": 161.0, "top_mass": 5000.0, "top_length": 0.72,
-    "top_height": 0.6, "layer_thickness": 0.01, "base_stiffness": 4.0e7, "top_stiffness": 4.4e7, "base_damping": 8.7e5,
-    "top_damping": 4.0e5,
-}  # fmt: skip
-MAXWELL = {"maxwell.arm_stiffness_ratio": 0.6, "maxwell.relaxation_time": 0.1}
-HARDENING = {"hardening.beta2": 60.0}
-WALL = Specimen("wall on rubber", "interface", TRUE, tolerance={"wall_height": 0.005})
-MODEL = models.get("interface")
-PEAK = 0.005
-BASE = motion(1, pga=3.0)
-
-
-@cache
-def made(law: tuple[tuple[str, float], ...], begins: int = 0) -> Recording:
-    """A recording without noise of a wall with a law, from a sample on."""
-    parts = [Part(0, TRUE), Part(begins, {**TRUE, **dict(law)})] if begins else [Part(0, {**TRUE, **dict(law)})]
-    ran = simulate(MODEL, parts, BASE, duration=BASE.duration)
-    names = ("rotation_1", "rotation_2", "rotation_rate_1", "rotation_rate_2")
-    channels = {name: np.asarray(ran.channels[name]) for name in names}
-    return Recording("shake_1", TIME_STEP, BASE.time, {"base_acceleration_x": BASE.horizontal, **channels})
-
-
-def seen(recording: Recording, instruments: Switched) -> Recording:
-    """Without the rates, and as the instruments record it."""
-    true = {name: recording.channels[name] for name in ("rotation_1", "rotation_2")}
-    around = Surroundings(TIME_STEP, BASE.horizontal, PEAK)
-    channels = instrumented(true, instruments, around)
-    return replace(recording, channels={"base_acceleration_x": BASE.horizontal, **channels})
-
-
-def measured_of(recording: Recording) -> Measured:
-    return measure(WALL, [recording], PEAK)
+from models.piecewise import Part
+from tests.diagnosis.fit.carried import BASE, HARDENING, TRUE, made, measured_of, seen
+from tests.diagnosis.made import TIME_STEP
+from tests.diagnosis.walls import MAXWELL
 
 
 def true_states(recording: Recording, measured: Measured, late: int = 0) -> np.ndarray:

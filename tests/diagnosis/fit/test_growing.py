@@ -23,7 +23,7 @@ from diagnosis.fit.whitening import sensor_noise_only
 from grids.specimen import Specimen
 from models.base import FloatArray
 from tests.diagnosis.made import TIME_STEP
-from tests.diagnosis.search.test_ladder import ON_TOP, rocking_on_top
+from tests.diagnosis.stacks import ON_TOP, rocking_on_top
 
 FALLS = 7
 LENGTHS = ("wall_length", "wall_height", "top_length", "top_height")

@@ -21,7 +21,7 @@ from grids.specimen import Specimen
 from models.stacked.identification import IDENTIFICATION
 from models.stacked.model import MODEL
 from tests.diagnosis.made import SPECIMEN, recording
-from tests.diagnosis.search.test_ladder import ON_TOP, rocking_on_top
+from tests.diagnosis.stacks import ON_TOP, rocking_on_top
 
 STACK = Specimen("stack", "stacked", ON_TOP, {"wall_length": 0.005, "wall_height": 0.005})
 assert IDENTIFICATION.windows is not None

@@ -15,7 +15,7 @@ from diagnosis.fit.solver import fit, fit_together
 from diagnosis.fit.whitening import sensor_noise_only
 from grids.stages import Stage
 from models.base import FloatArray
-from tests.diagnosis.fit import test_carrying as wall
+from tests.diagnosis.fit import carried as wall
 from tests.diagnosis.made import SPECIMEN, TRUE, recording
 
 BLOCK = {"restitution.factor_on_housner": 0.9, "offset.offset_over_peak": 0.02, "delay.delay": 0.004}

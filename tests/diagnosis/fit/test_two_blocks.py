@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from functools import cache
-
 import numpy as np
 import pytest
 
@@ -13,36 +10,8 @@ from diagnosis import calibrate
 from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.setup import measure
 from diagnosis.search.candidates import candidates
-from grids.recordings.base import Recording
-from grids.specimen import Specimen
-from tests.diagnosis.made import TIME_STEP, motion
-
-REST = {"wall_mass": 800.0, "top_mass": 400.0, "top_length": 0.6, "top_height": 0.5}
-TRUE = {"wall_length": 0.602, "wall_height": 1.995, **REST}
-WALL = Specimen(
-    title="two blocks",
-    model="stacked",
-    parameters={"wall_length": 0.6, "wall_height": 2.0, **REST},
-    tolerance={"wall_length": 0.005, "wall_height": 0.005},
-)
-NOISE = 0.01
-
-
-def recording(seed: int, effect: Mapping[str, float]) -> Recording:
-    """Both rotations with white noise of 1 % of their peaks."""
-    base = motion(seed, pga=6.0)
-    ran = models.get("stacked").simulate({**TRUE, **effect}, base, duration=base.duration)
-    rng = np.random.default_rng(seed + 1000)  # not the one that made the motion: noise would go with it
-    channels = {"base_acceleration_x": base.horizontal}
-    for name in ("rotation_1", "rotation_2"):
-        true = ran.channels[name]
-        channels[name] = true + NOISE * np.max(np.abs(true)) * rng.normal(size=true.size)
-    return Recording(f"run_{seed}", TIME_STEP, base.time, channels)
-
-
-@cache
-def recorded(seed: int) -> Recording:
-    return recording(seed, {})
+from tests.diagnosis.made import TIME_STEP
+from tests.diagnosis.stacks import TRUE, WALL, recorded
 
 
 def test_the_wall_is_recovered_from_both_rotations() -> None:

@@ -3,66 +3,26 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 
 import models
 from diagnosis import calibrate
 from diagnosis.answer.experiment import unrecorded
-from diagnosis.data.measured import Measured
 from diagnosis.fit.along import Along
 from diagnosis.fit.intervals import QUANTILE, at_least, covariances, estimates
 from diagnosis.fit.linearisation import linearise_about
-from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.posterior import samples
 from diagnosis.fit.prediction import Predictor
 from diagnosis.fit.setup import measure
 from diagnosis.fit.solver import fit
 from diagnosis.fit.starts import start_of
-from diagnosis.fit.unknowns import fixed_values, of_specimen
-from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.forces.action import _one_step, action
 from diagnosis.search.candidates import candidates
 from diagnosis.search.refit import Explanation, extend, further, resized
 from diagnosis.search.screen import score
-from grids.recordings.base import CHANNELS, Recording
-from grids.specimen import Specimen
-from tests.diagnosis.made import TIME_STEP, motion
-
-KNOWN = {
-    "wall_length": 0.72, "wall_mass": 161.0, "top_mass": 5000.0, "top_length": 0.72, "top_height": 0.6,
-    "layer_thickness": 0.01,
-}  # fmt: skip
-LAYERS = {"base_stiffness": 4.0e7, "top_stiffness": 4.6e7, "base_damping": 6.0e5, "top_damping": 5.0e5}
-TRUE = {**KNOWN, **LAYERS, "wall_height": 1.806}
-WALL = Specimen(
-    title="wall on rubber",
-    model="interface",
-    parameters={**KNOWN, "wall_height": 1.8},
-    tolerance={"wall_height": 0.005},
-    calibrate={name: (value / 2.5, value * 2.5) for name, value in LAYERS.items()},
-)
-NOISE = 0.01
-MAXWELL = {"maxwell.arm_stiffness_ratio": 0.6, "maxwell.relaxation_time": 0.1}
-
-
-@cache
-def recorded(seed: int, law: tuple[tuple[str, float], ...] = ()) -> Recording:
-    base = motion(seed, pga=3.0)
-    ran = models.get("interface").simulate({**TRUE, **dict(law)}, base, duration=base.duration)
-    rng = np.random.default_rng(seed)
-    channels = {"base_acceleration_x": base.horizontal}
-    for name in ("rotation_1", "rotation_2"):
-        true = np.asarray(ran.channels[name])
-        channels[name] = true + NOISE * np.max(np.abs(true)) * rng.normal(size=true.size)
-    return Recording(f"run_{seed}", TIME_STEP, base.time, channels)
-
-
-def misfit(measured: Measured) -> Misfit:
-    unknowns = of_specimen(WALL, measured.model)
-    predictor = Predictor(measured, coordinates=("base_stiffness", "top_stiffness"))
-    return Misfit(predictor, sensor_noise_only(predictor), unknowns, fixed_values(WALL))
+from grids.recordings.base import CHANNELS
+from tests.diagnosis.walls import LAYERS, MAXWELL, TRUE, WALL, misfit, recorded
 
 
 def test_layers_are_recovered_from_both_rotations() -> None:

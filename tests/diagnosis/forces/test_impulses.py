@@ -15,8 +15,7 @@ from diagnosis.forces.columns import Forces, forces
 from models.interface.layered import FREE
 from models.interface.reference.equation import Equation
 from models.shaking import Shaking
-from tests.diagnosis.fit import test_two_blocks as stacks
-from tests.diagnosis.fit import test_walls as walls
+from tests.diagnosis import stacks, walls
 from tests.diagnosis.forces.test_scan import _fitted
 from tests.diagnosis.made import SPECIMEN, TRUE, recording
 

@@ -18,9 +18,9 @@ from diagnosis.search.grown import beside_in_grown_windows, grown
 from diagnosis.search.refit import Explanation
 from diagnosis.search.select import first_effect
 from grids.recordings.base import Recording
-from tests.diagnosis.fit.test_two_blocks import NOISE, TRUE, WALL
 from tests.diagnosis.made import TIME_STEP, motion
 from tests.diagnosis.search.recovered import simulated
+from tests.diagnosis.stacks import NOISE, TRUE, WALL
 
 FINE = 8
 """Steps of the program apart in a sample."""

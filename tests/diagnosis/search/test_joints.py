@@ -13,7 +13,7 @@ from diagnosis.search.candidates import candidates
 from diagnosis.search.found import Search, adequate
 from diagnosis.search.joints import at_other_joints
 from diagnosis.search.refit import QUICK, Explanation, extend
-from tests.diagnosis.fit.test_walls import MAXWELL, TRUE, WALL, misfit, recorded
+from tests.diagnosis.walls import MAXWELL, TRUE, WALL, misfit, recorded
 
 
 def test_the_arm_of_one_layer_leads_to_those_of_both(monkeypatch: pytest.MonkeyPatch) -> None:

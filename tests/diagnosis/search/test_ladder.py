@@ -29,6 +29,7 @@ from grids.write_specimen import specimen_text
 from models.shaking import Shaking
 from tests.diagnosis.made import TIME_STEP, motion
 from tests.diagnosis.report.example import diagnosis
+from tests.diagnosis.stacks import STILL, rocking_on_top
 
 PIER = Specimen(
     "pier", "housner", {"width": 0.5, "height": 2.3, "mass": 1380.0}, {"width": 0.005, "height": 0.005, "mass": 0.01}
@@ -39,14 +40,10 @@ MAT = {
 }  # fmt: skip
 
 
-REST = 1.5
-"""s, that tell sensors' noise from what a model gets wrong."""
-
-
 @cache
 def recorded(model: str, rotations: int) -> Recording:
     strong = motion(1, duration=6.0, pga=4.0).horizontal
-    base = Shaking(TIME_STEP, np.concatenate([np.zeros(round(REST / TIME_STEP)), strong]))
+    base = Shaking(TIME_STEP, np.concatenate([np.zeros(round(STILL / TIME_STEP)), strong]))
     values, options = (MAT, {"joints": "base"}) if model == "interface" else (PIER.parameters, {})
     ran = models.get(model).simulate(values, base, duration=base.duration, options=options)
     rng = np.random.default_rng(3)
@@ -145,29 +142,12 @@ def test_rungs_that_cannot_be_tried_say_why() -> None:
         assert fits in [(True, True), (True, False), (False, True)]
 
 
-ON_TOP = {
-    "wall_length": 0.354, "wall_height": 1.41, "wall_mass": 458.0, "top_mass": 200.0, "top_length": 0.236,
-    "top_height": 0.93,
-}  # fmt: skip
 AS_BLOCK = Specimen(
     "wall", "housner",
     {"width": 0.354, "height": 1.41, "mass": 455.0, "top_mass": 200.0, "top_mass_height": 0.465,
      "top_mass_inertia": 200.0 * (0.236**2 + 0.93**2) / 12.0},
     {"width": 0.005, "height": 0.005, "mass": 0.01},
 )  # fmt: skip
-
-
-@cache
-def rocking_on_top(seed: int, both: bool) -> Recording:
-    strong = motion(seed, duration=7.0, pga=4.5).horizontal
-    base = Shaking(TIME_STEP, np.concatenate([np.zeros(round(REST / TIME_STEP)), strong]))
-    ran = models.get("stacked").simulate(ON_TOP, base, duration=base.duration)
-    rng = np.random.default_rng(seed)
-    channels = {"base_acceleration_x": base.horizontal}
-    for name in ("rotation_1", "rotation_2")[: 1 + both]:
-        rotation = np.asarray(ran.channels[name])
-        channels[name] = rotation + 0.01 * np.max(np.abs(rotation)) * rng.normal(size=rotation.size)
-    return Recording(f"run_{seed}", TIME_STEP, base.time, channels)
 
 
 @pytest.mark.parametrize("both", [True, False])

@@ -17,7 +17,7 @@ from diagnosis.search.refit import Explanation
 from diagnosis.search.tables import Law, estimate
 from models.mechanisms.table_force import OF_WALL
 from models.tables import KNOTS, row
-from tests.diagnosis.fit.test_walls import TRUE, WALL, misfit, recorded
+from tests.diagnosis.walls import TRUE, WALL, misfit, recorded
 
 REACHES = {"reach_rotation_base": 0.02, "reach_rate_base": 0.3, "reach_velocity": 0.5}
 

@@ -17,7 +17,7 @@ from diagnosis.search.found import Search
 from diagnosis.search.refit import QUICK, Explanation, again, extend, over_ranges
 from models.runs import DONE
 from tests.diagnosis import made
-from tests.diagnosis.fit.test_walls import LAYERS, MAXWELL, TRUE, WALL, misfit, recorded
+from tests.diagnosis.walls import LAYERS, MAXWELL, TRUE, WALL, misfit, recorded
 
 ARM = {f"{name}{joint}": value for name, value in MAXWELL.items() for joint in ("", "_base", "_top")}
 

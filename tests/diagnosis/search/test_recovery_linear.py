@@ -16,9 +16,9 @@ from diagnosis.search.refit import Explanation
 from diagnosis.search.screen import score
 from grids.recordings.base import Recording
 from grids.specimen import Specimen
-from tests.diagnosis.fit.test_walls import KNOWN, LAYERS, NOISE, TRUE
 from tests.diagnosis.made import TIME_STEP, motion
 from tests.diagnosis.search.recovered import assert_recovered
+from tests.diagnosis.walls import KNOWN, LAYERS, NOISE, TRUE
 
 WALL = Specimen(
     title="wall on linear rubber",

@@ -11,7 +11,6 @@ from diagnosis.fit.setup import base_fit, measure
 from diagnosis.search.refit import Explanation
 from grids.instruments import INSTRUMENTS
 from grids.recordings.base import Recording
-from tests.diagnosis.fit.test_two_blocks import TRUE, WALL
 from tests.diagnosis.search.recovered import (
     SENSORS,
     assert_directions,
@@ -20,6 +19,7 @@ from tests.diagnosis.search.recovered import (
     simulated,
     true_value,
 )
+from tests.diagnosis.stacks import TRUE, WALL
 
 EFFECTS: dict[str, dict[str, float]] = {
     "vertical_acceleration": {"kappa": 1.0},

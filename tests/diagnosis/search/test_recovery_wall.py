@@ -16,7 +16,6 @@ from diagnosis.search.refit import Explanation
 from diagnosis.search.thresholds import from_measured, misfits, setting_in
 from grids.instruments import INSTRUMENTS
 from grids.recordings.base import Recording
-from tests.diagnosis.fit.test_walls import TRUE, WALL, misfit
 from tests.diagnosis.search.recovered import (
     SENSORS,
     assert_directions,
@@ -25,6 +24,7 @@ from tests.diagnosis.search.recovered import (
     simulated,
     true_value,
 )
+from tests.diagnosis.walls import TRUE, WALL, misfit
 
 EFFECTS: dict[str, dict[str, float]] = {
     "vertical_acceleration": {"kappa": 1.0},
