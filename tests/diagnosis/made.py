@@ -14,6 +14,12 @@ import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
 import models
+from diagnosis.data.measured import Measured
+from diagnosis.fit.misfit import Misfit
+from diagnosis.fit.prediction import Predictor
+from diagnosis.fit.solver import Fitted
+from diagnosis.fit.unknowns import of_specimen
+from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.progress import silent
 from diagnosis.search.found import Search
 from diagnosis.search.select import first_effect, further_effects
@@ -44,6 +50,21 @@ def searched(found: Search) -> Search:
         for stage in stages(found, silent):
             found = stage
     return found
+
+
+def misfit(measured: Measured) -> Misfit:
+    """Of the specimen, its mass known, against white noise of the sensors."""
+    predictor = Predictor(measured)
+    unknowns = of_specimen(SPECIMEN, measured.model)
+    return Misfit(predictor, sensor_noise_only(predictor), unknowns, {"mass": TRUE["mass"]})
+
+
+def at_truth(measured: Measured) -> Fitted:
+    """The base model at the true parameters and the measured states, not fitted."""
+    one = misfit(measured)
+    u = np.array([x.coordinate(TRUE[x.name]) for x in one.unknowns])
+    each = one.losses(one.residuals([one.point(u, measured.states)]))[0]
+    return Fitted(one, u, measured.states, each, float(each.sum()))
 
 
 def motion(seed: int, duration: float = 9.0, pga: float = 3.0) -> Shaking:

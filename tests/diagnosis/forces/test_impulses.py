@@ -16,8 +16,7 @@ from models.interface.layered import FREE
 from models.interface.reference.equation import Equation
 from models.shaking import Shaking
 from tests.diagnosis import stacks, walls
-from tests.diagnosis.forces.test_scan import _fitted
-from tests.diagnosis.made import SPECIMEN, TRUE, recording
+from tests.diagnosis.made import SPECIMEN, TRUE, at_truth, recording
 
 SMALL = {
     ("block", "viscous_damping"): "viscous_damping.rate",
@@ -41,7 +40,7 @@ def about(which: str) -> tuple[Forces, dict[str, float]]:
     """Forces along the motion at the truth, and its values."""
     if which == "block":
         measured = measure(SPECIMEN, [recording("a", 1)])
-        return forces(_fitted(measured, measured.values)), TRUE
+        return forces(at_truth(measured)), TRUE
     if which == "stack":
         measured = measure(stacks.WALL, [stacks.recorded(1)])
         fitted = base_fit(stacks.WALL, measured)

@@ -8,16 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.data.measured import Measured
-from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.setup import measure
-from diagnosis.fit.solver import Fitted
-from diagnosis.fit.unknowns import of_specimen
-from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.forces.columns import Forces, forces
 from diagnosis.forces.scan import missing
-from tests.diagnosis.made import SPECIMEN, TRUE, recording
+from tests.diagnosis.made import SPECIMEN, TRUE, at_truth, recording
 
 
 def about(effect: Mapping[str, float], there: slice, seed: int) -> Forces:
@@ -28,16 +23,7 @@ def about(effect: Mapping[str, float], there: slice, seed: int) -> Forces:
     noise = np.random.default_rng(seed).normal(size=plain.shape) * measured.sigma[..., None]
     values = plain + noise
     values[there] += (with_effect - plain)[there]
-    return forces(_fitted(measured, values))
-
-
-def _fitted(measured: Measured, values: np.ndarray) -> Fitted:
-    predictor = Predictor(replace(measured, values=values))
-    unknowns = of_specimen(SPECIMEN, measured.model)
-    misfit = Misfit(predictor, sensor_noise_only(predictor), unknowns, {"mass": TRUE["mass"]})
-    u = np.array([x.coordinate(TRUE[x.name]) for x in unknowns])
-    each = misfit.losses(misfit.residuals([misfit.point(u, measured.states)]))[0]
-    return Fitted(misfit, u, measured.states, each, float(each.sum()))
+    return forces(at_truth(replace(measured, values=values)))
 
 
 @pytest.mark.parametrize(

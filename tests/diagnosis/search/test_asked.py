@@ -17,7 +17,7 @@ from diagnosis.search.runs import runs
 from diagnosis.search.spells import of_windows
 from diagnosis.search.staged import refitted_in
 from tests.diagnosis.made import SPECIMEN
-from tests.diagnosis.search.test_beginnings import made
+from tests.diagnosis.search.changing import made
 
 INSTANT = 6.0
 

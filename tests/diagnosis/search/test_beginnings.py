@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
@@ -10,7 +9,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-import models
 from diagnosis.answer.when import may_change_again, stages_of, when_text
 from diagnosis.errors.model import calibrated
 from diagnosis.fit.linearisation import linearise_about
@@ -25,48 +23,8 @@ from diagnosis.search.refit import Explanation, again, extend
 from diagnosis.search.runs import InRuns
 from diagnosis.search.screen import score
 from diagnosis.search.spells import Spell
-from grids.recordings.base import Recording
-from models.piecewise import Part, simulate
-from tests.diagnosis.made import SPECIMEN, TIME_STEP, TRUE, motion
-
-MODEL = models.get("housner")
-FEW = ("restitution", "viscous_damping", "tilt", "gain", "offset")
-STILL = 1.5
-"""s of rest before and after the shaking, by which errors of the sensors are told from the model's."""
-
-
-def made(name: str, seed: int, changes: Sequence[tuple[float, Mapping[str, float]]], error: float = 0.0) -> Recording:
-    """A block whose mechanisms change at instants (s), the sensor off by ``error`` of the peak from the last on."""
-    plain = motion(seed)
-    rest = np.zeros(round(STILL / TIME_STEP))
-    shaking = replace(plain, horizontal=np.concatenate([rest, plain.horizontal, rest]))
-    parts = [Part(0, TRUE), *(Part(round(at / TIME_STEP), {**TRUE, **values}) for at, values in changes if values)]
-    rotation = np.ravel(simulate(MODEL, parts, shaking).channels["rotation_1"])
-    time = TIME_STEP * np.arange(rotation.size)
-    peak = float(np.max(np.abs(rotation)))
-    rng = np.random.default_rng(seed + 1000)
-    seen = rotation + 0.005 * peak * rng.normal(size=time.size)
-    seen += error * peak * (time >= (changes[-1][0] if changes else 0.0))
-    base = shaking.horizontal + 0.003 * shaking.pga * rng.normal(size=time.size)
-    return Recording(name, TIME_STEP, time, {"base_acceleration_x": base, "rotation_1": seen})
-
-
-def searched(recordings: Sequence[Recording], shortest: float | None = None) -> tuple[Search, list[Search]]:
-    """What an ordinary search that found nothing goes on with, and what the search for beginnings yields.
-
-    ``shortest`` (s): of a spell that is no blow.
-    """
-    measured = measure(SPECIMEN, recordings)
-    if shortest is not None:
-        assert measured.lengths is not None
-        measured = replace(measured, lengths=replace(measured.lengths, shortest=shortest))
-    fitted, errors = calibrated(SPECIMEN, measured)
-    some = tuple(c for c in candidates(measured, SPECIMEN) if c.name in FEW)
-    found = Search(Explanation((), fitted), some, errors)
-    opened = linearise_about(fitted)
-    found.scores = score(opened, some)
-    found.null = null_distribution(opened, found.scores)
-    return found, list(alone(found, silent))
+from tests.diagnosis.made import SPECIMEN
+from tests.diagnosis.search.changing import FEW, MODEL, made, searched
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from diagnosis.search.found import Search
 from diagnosis.search.law import missing_law
 from diagnosis.search.refit import Explanation
 from models.mechanisms.table_force import MECHANISM
-from tests.diagnosis.search.test_law import base, chi2, windows
+from tests.diagnosis.search.hidden_law import base, chi2, windows
 
 FOUNDATION = {"oscillator_motion": 0.25, "oscillator_frequency": 3.4, "oscillator_damping": 0.05}
 

@@ -21,7 +21,7 @@ from diagnosis.search.tables import Law
 from grids.stages import Stage
 from models.mechanisms.table_force import MECHANISM
 from models.tables import KNOTS, SIDES, row
-from tests.diagnosis.search.test_law import base, windows
+from tests.diagnosis.search.hidden_law import base, windows
 
 DASHPOT = MECHANISM.nulls | {row("damping", side, k): -1.2 for side in SIDES for k in range(KNOTS)}
 WHEN = {1: (2.0, 4.6), 2: (3.3, 6.0), 3: (4.25, 6.7)}

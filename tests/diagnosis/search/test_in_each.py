@@ -22,8 +22,7 @@ from diagnosis.search.refit import Explanation, extend
 from diagnosis.search.runs import runs_of
 from diagnosis.search.spells import ALWAYS, NEVER, InEach, Spell, holds, interval_of
 from grids.recordings.base import Recording
-from tests.diagnosis.search.test_beginnings import made, searched
-from tests.diagnosis.search.test_spells import opened, screened
+from tests.diagnosis.search.changing import made, opened, screened, searched
 
 WHEN = {1: (5.2, 8.0), 6: (5.0, 8.5)}
 """s, by the seed of a recording."""

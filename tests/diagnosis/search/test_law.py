@@ -2,62 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from diagnosis.data.measured import Measured
 from diagnosis.errors.model import disturbance_about, refitted
-from diagnosis.fit.misfit import Misfit
-from diagnosis.fit.prediction import Point, Predictor
-from diagnosis.fit.setup import measure
-from diagnosis.fit.solver import fit
-from diagnosis.fit.unknowns import of_specimen
-from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.search import law as law_of
 from diagnosis.search.candidates import candidates
 from diagnosis.search.law import missing_law
 from diagnosis.search.refit import Explanation, extend
 from diagnosis.search.tables import Law, _bends, estimate
-from grids.stages import Stage
 from models.mechanisms.table_force import MECHANISM
 from models.tables import KNOTS, SIDES, row
-from tests.diagnosis.made import SPECIMEN, TRUE, recording
+from tests.diagnosis.made import SPECIMEN
+from tests.diagnosis.search.hidden_law import base, chi2, windows
 
 RATE = 0.6
 """s-1, of a dashpot that works for rotations above zero only."""
 HIDDEN = MECHANISM.nulls | {row("damping", "above", k): -RATE for k in range(KNOTS)}
-
-
-def windows(
-    seeds: Sequence[int], law: Mapping[str, float], noise: int, stages: Mapping[str, Sequence[Stage]] | None = None
-) -> Measured:
-    """Recordings cut in windows, in which the model with ``law`` was measured with noise."""
-    measured = measure(SPECIMEN, [recording(f"run_{seed}", seed) for seed in seeds])
-    values = {**TRUE, **{f"table_force.{name}": value for name, value in law.items()}}
-    true = Predictor(measured, stages=stages or {}).predict([Point(values, measured.states)])[0]
-    return replace(
-        measured, values=true + np.random.default_rng(noise).normal(size=true.shape) * measured.sigma[..., None]
-    )
-
-
-def base(measured: Measured) -> Explanation:
-    predictor = Predictor(measured)
-    unknowns = of_specimen(SPECIMEN, measured.model)
-    misfit = Misfit(predictor, sensor_noise_only(predictor), unknowns, {"mass": TRUE["mass"]})
-    u = np.array([x.coordinate(TRUE[x.name]) for x in unknowns])
-    return Explanation((), fit(misfit, u, measured.states))
-
-
-def chi2(explanation: Explanation, measured: Measured, law: Law | None = None) -> float:
-    """Squared misfit a sample on other windows, parameters frozen, states refitted."""
-    predictor = Predictor(measured)
-    fitted = (law.explanation if law else explanation).fitted
-    misfit = Misfit(predictor, sensor_noise_only(predictor), (), {**fitted.misfit.fixed, **fitted.values})
-    found = fit(misfit, np.zeros(0), measured.states)
-    return float(np.sum(misfit.residuals([found.point])[0] ** 2) / measured.count.sum())
 
 
 def test_a_one_sided_dashpot_is_found_and_predicts() -> None:

@@ -3,37 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from diagnosis.data.measured import Measured
-from diagnosis.fit.linearisation import Linearisation, linearise_about
-from diagnosis.fit.setup import base_fit, measure
-from diagnosis.search.candidates import candidates
 from diagnosis.search.runs import FEWEST, chance, in_runs, largest_run, runs
-from diagnosis.search.screen import Score, score
+from diagnosis.search.screen import score
 from diagnosis.search.spells import Spell, of_windows
 from grids.stages import intervals
-from tests.diagnosis.made import SPECIMEN, recording
+from tests.diagnosis.search.changing import opened, screened
 
 NAMES = ("a", "b", "c")
-MECHANISMS = ("restitution", "tilt", "gain", "viscous_damping")
-
-
-@cache
-def opened() -> tuple[Measured, Linearisation]:
-    """The base model linearised about two recordings of a plain block."""
-    measured = measure(SPECIMEN, [recording("a", 1), recording("b", 2)])
-    return measured, linearise_about(base_fit(SPECIMEN, measured))
-
-
-@cache
-def screened() -> tuple[Score, ...]:
-    measured, screen = opened()
-    return tuple(score(screen, [c for c in candidates(measured, SPECIMEN) if c.name in MECHANISMS]))
 
 
 @pytest.mark.parametrize(
