@@ -9,22 +9,9 @@ from pathlib import Path
 import pytest
 
 import models
+from tests.sources import FILES, ORDER, ROOT, imported_modules
 
-ROOT = Path(__file__).resolve().parent.parent
-ORDER = ("models", "grids", "study", "diagnosis", "rocking")
-FILES = sorted(path for room in ORDER for path in (ROOT / room).rglob("*.py"))
 LONGEST = 400
-
-
-def imported_modules(path: Path) -> set[str]:
-    found: set[str] = set()
-    for node in ast.walk(ast.parse(path.read_text())):
-        if isinstance(node, ast.Import):
-            found.update(alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
-            assert node.level == 0, f"{path.relative_to(ROOT)}: relative import"
-            found.add(node.module or "")
-    return found
 
 
 def imported_rooms(path: Path) -> set[str]:

@@ -12,8 +12,8 @@ from diagnosis.report.page import environment
 from grids.netcdf_file import _Reader
 from grids.plan import parse_plan
 from models.errors import InputError
+from tests.sources import FILES, ROOT
 from tests.study.plans import plan_text
-from tests.test_layers import FILES, ROOT
 
 EXECUTES = {
     "eval", "exec", "compile", "__import__", "pickle.load", "pickle.loads", "marshal.load", "marshal.loads",

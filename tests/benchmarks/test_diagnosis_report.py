@@ -10,7 +10,7 @@ import pytest
 from benchmarks.diagnosis import report
 from benchmarks.diagnosis.weak_form import _test_function
 from diagnosis.prove.scores import Scored
-from tests.diagnosis.prove.test_scores import CASES, FIRST, key, said
+from tests.diagnosis.prove.answered import CASES, FIRST, key, said
 
 
 def test_groups_carry_their_suffix_and_models() -> None:

@@ -13,29 +13,7 @@ from hypothesis import strategies as st
 from grids.axes import Axis
 from grids.grid import Grid, Rectangle
 from models.errors import InputError
-
-SHAPES = st.lists(st.integers(1, 7), min_size=1, max_size=5)
-
-
-def make_grid(shape: list[int], apart: frozenset[str] = frozenset()) -> Grid:
-    return Grid(tuple(Axis(f"a{d}", 0.1 * np.arange(n), "1", "") for d, n in enumerate(shape)), apart)
-
-
-def flat_indices(grid: Grid, rectangle: Rectangle) -> np.ndarray:
-    """Cells of a rectangle, counted with the last axis fastest."""
-    if not grid.axes:
-        return np.zeros(1, dtype=int)
-    mesh = np.meshgrid(*grid.positions(rectangle), indexing="ij")
-    return np.ravel_multi_index([index.ravel() for index in mesh], grid.shape)
-
-
-def cover(grid: Grid, rectangles: list[Rectangle]) -> np.ndarray:
-    counts = np.zeros(grid.size, dtype=int)
-    for rectangle in rectangles:
-        flat = flat_indices(grid, rectangle)
-        assert flat.size == rectangle.size
-        np.add.at(counts, flat, 1)
-    return counts
+from tests.grids.shapes import SHAPES, cover, flat_indices, make_grid
 
 
 @given(SHAPES, st.integers(1, 3000), st.sets(st.integers(0, 4)))

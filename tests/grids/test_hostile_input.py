@@ -28,8 +28,8 @@ from models.errors import InputError
 from study.export import export
 from study.open import open_study
 from study.run import run
+from tests.study.cubes import EXAMPLE
 from tests.study.plans import small_plan
-from tests.study.test_example_cube import EXAMPLE
 
 
 @pytest.mark.parametrize(

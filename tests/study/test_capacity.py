@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from models.errors import InputError
 from study.run import run
-from tests.grids.test_grid import SHAPES, make_grid
+from tests.grids.shapes import SHAPES, make_grid
 from tests.study.plans import small_plan
 
 

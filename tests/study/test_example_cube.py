@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 
-EXAMPLE = Path(__file__).resolve().parents[2] / "results" / "example.nc"
+from tests.study.cubes import EXAMPLE
 
 
 def test_the_committed_cube_opens_and_maps() -> None:
