@@ -80,7 +80,7 @@ def _environment() -> dict[str, str]:
     return {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
 
 
-class _Reader:
+class Reader:
     """The process that reads, and the pipes to it."""
 
     def __init__(self) -> None:
@@ -154,14 +154,14 @@ class _Reader:
 
 
 _LOCK = threading.Lock()
-_READERS: list[_Reader] = []
+_READERS: list[Reader] = []
 
 
-def _reader() -> _Reader:
+def _reader() -> Reader:
     """The running process, or a new one."""
     if _READERS and not _READERS[0].usable:
         _READERS.pop().stop()
     if not _READERS:
-        _READERS.append(_Reader())
+        _READERS.append(Reader())
         atexit.register(_READERS[0].stop)
     return _READERS[0]

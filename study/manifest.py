@@ -65,7 +65,7 @@ class Manifest:
             "description": self.description,
             "blocks": {key: block.as_json() for key, block in self.blocks.items()},
         }
-        record["sha256"] = _checksum(record)
+        record["sha256"] = checksum(record)
         write_text(folder / "manifest.json", as_json(record) + "\n")
 
     @classmethod
@@ -76,7 +76,7 @@ class Manifest:
             return None
         try:
             record = json.loads(path.read_text("utf-8"))
-            if record.pop("sha256") != _checksum(record) or record["format"] != FORMAT:
+            if record.pop("sha256") != checksum(record) or record["format"] != FORMAT:
                 raise ValueError("its checksum or format is another")
             blocks = {key: Rectangle.from_json(block) for key, block in record["blocks"].items()}
             return cls(record["description"], blocks, record["plan_folder"])
@@ -103,8 +103,8 @@ def _keyed(plan: Plan, blocks: Iterable[Rectangle]) -> dict[str, Rectangle]:
     return {block_key(plan, setting, block): block for block in blocks}
 
 
-def _checksum(record: Mapping[str, Any]) -> str:
-    """Of a manifest's content, by its keys in order."""
+def checksum(record: Mapping[str, Any]) -> str:
+    """The sha256 of a manifest's content, by its keys in order."""
     return sha256(as_json(record, sort_keys=True))
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from diagnosis.report.page import environment
-from grids.netcdf_file import _Reader
+from grids.netcdf_file import Reader
 from grids.plan import parse_plan
 from models.errors import InputError
 from tests.sources import FILES, ROOT
@@ -60,7 +60,7 @@ def test_a_module_beside_the_data_is_not_imported(module: str, tmp_path: Path, m
     """A folder of recordings may hold a file that is called like a library."""
     (tmp_path / f"{module}.py").write_text("import pathlib; pathlib.Path('executed').touch()\n")
     monkeypatch.chdir(tmp_path)
-    reader = _Reader()
+    reader = Reader()
     reader.stop()
     assert not (tmp_path / "executed").exists()
 

@@ -136,7 +136,7 @@ def _rows(specimen: Specimen, recording: Recording) -> tuple[FloatArray, dict[st
         columns["vertical"] = vertical * sign
     errors, rows, base = [], [], []
     for first, last in _pieces(smooth, step, 8.0 * sigma):
-        test, curve = _test_function(last - first, step)
+        test, curve = weights(last - first, step)
         cut = slice(first, last)
         spread = sigma * step * math.sqrt(float(curve @ curve))
         errors.append(step * float(curve @ theta[cut] - test @ model[cut]) / spread)
@@ -162,8 +162,8 @@ def _pieces(theta: FloatArray, step: float, least: float) -> list[tuple[int, int
     return found
 
 
-def _test_function(count: int, step: float) -> tuple[FloatArray, FloatArray]:
-    """phi and phi'' at ``count`` samples."""
+def weights(count: int, step: float) -> tuple[FloatArray, FloatArray]:
+    """The test function phi and phi'' at ``count`` samples, a ``step`` (s) apart."""
     x = np.linspace(-1.0, 1.0, count)
     stretch = 2.0 / ((count - 1) * step)
     test = (1.0 - x**2) ** 4

@@ -58,11 +58,12 @@ def _lines(model: str) -> Iterator[Line]:
     from study.verify import bearings, fingerprint, one_block, rubber, two_blocks
 
     for family in (one_block, two_blocks, rubber, bearings):
-        yield from (_line(oracle) for oracle in family.oracles() if oracle.model == model)
+        yield from (line_of(oracle) for oracle in family.oracles() if oracle.model == model)
     yield from fingerprint.lines(model)
 
 
-def _line(oracle: Oracle) -> Line:
+def line_of(oracle: Oracle) -> Line:
+    """How many digits of an oracle are found again; none, and why, where it finds no number."""
     try:
         digits, error = agreeing_digits(oracle.find(), oracle.expected), ""
     except (ArithmeticError, LookupError, InputError) as wrong:

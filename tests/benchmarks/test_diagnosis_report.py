@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from benchmarks.diagnosis import report
-from benchmarks.diagnosis.weak_form import _test_function
+from benchmarks.diagnosis.weak_form import weights
 from diagnosis.prove.scores import Scored
 from tests.diagnosis.prove.answered import CASES, FIRST, key, said
 
@@ -26,7 +26,7 @@ def test_groups_carry_their_suffix_and_models() -> None:
 
 def test_weights_of_the_weak_form_integrate_by_parts() -> None:
     step, time = 1e-3, 1e-3 * np.arange(201)
-    test, curve = _test_function(201, step)
+    test, curve = weights(201, step)
     theta = np.sin(9.0 * time)
     assert step * curve @ theta == pytest.approx(step * test @ (-81.0 * theta), rel=1e-4)
 

@@ -99,7 +99,7 @@ def test_no_flipped_bit_passes(finished: tuple[Path, xr.Dataset], folder: Path) 
 
 def swap_keys(folder: Path, sealed: bool) -> None:
     """Two keys exchanged in the manifest; ``sealed``: by somebody who mends its checksum too."""
-    from study.manifest import _checksum
+    from study.manifest import checksum
 
     path = folder / "manifest.json"
     record = json.loads(path.read_text())
@@ -107,7 +107,7 @@ def swap_keys(folder: Path, sealed: bool) -> None:
     record["blocks"][one], record["blocks"][other] = record["blocks"][other], record["blocks"][one]
     if sealed:
         del record["sha256"]
-        record["sha256"] = _checksum(record)
+        record["sha256"] = checksum(record)
     path.write_text(json.dumps(record))
 
 

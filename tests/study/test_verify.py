@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 import models
 from rocking.commands import app
-from study.verify import _line, fingerprint, one_block, rubber, two_blocks
+from study.verify import fingerprint, line_of, one_block, rubber, two_blocks
 from study.verify.base import Line, agreeing_digits
 
 
@@ -35,16 +35,16 @@ def test_oracles_hold_and_fail_for_another_number() -> None:
     """Those that need the kernel of one block, or none."""
     found = [*one_block.oracles()[:4], *two_blocks.oracles()[:6], *rubber.oracles()[:16]]
     for oracle in found:
-        assert _line(oracle).passed, oracle
+        assert line_of(oracle).passed, oracle
         wrong = oracle.expected * (1.0 + 3.0 * 10.0**-oracle.digits)
-        assert not _line(replace(oracle, expected=wrong)).passed, oracle
+        assert not line_of(replace(oracle, expected=wrong)).passed, oracle
 
 
 def test_what_raises_fails_its_line() -> None:
     def nothing() -> float:
         raise ArithmeticError("no threshold")
 
-    line = _line(replace(one_block.oracles()[0], find=nothing))
+    line = line_of(replace(one_block.oracles()[0], find=nothing))
     assert not line.passed and "no threshold" in str(line)
 
 
