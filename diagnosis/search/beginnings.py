@@ -197,10 +197,10 @@ def _needed(found: Search, start: Explanation, single: Explanation) -> bool:
         always = min(always, found.best, key=adjusted)
     if adjusted(always) - adjusted(single) < least(found, always):
         return False
-    return survives(always, single) or _had_not_begun(always, single, candidate.spell)
+    return survives(always, single) or had_not_begun(always, single, candidate.spell)
 
 
-def _had_not_begun(always: Explanation, single: Explanation, spell: When | None) -> bool:
+def had_not_begun(always: Explanation, single: Explanation, spell: When | None) -> bool:
     """Whether one window says that an effect does not always act, which others have: it had not begun there, or ended.
 
     The effect does not act in all of that window, which fits to the noise so, and badly with the effect acting always.
@@ -292,7 +292,7 @@ def _weighed(found: Search, fits: Sequence[Explanation]) -> Search | None:
         rest = without(trial.best, candidate)
         if rest.in_spell and adjusted(rest) - adjusted(trial.best) < MISSING:
             trial.best = rest
-    for simpler in _in_the_spell(trial.best):
+    for simpler in others_in_the_spell(trial.best):
         if adjusted(simpler) - adjusted(trial.best) < MISSING:
             trial.best = simpler
             break
@@ -300,8 +300,8 @@ def _weighed(found: Search, fits: Sequence[Explanation]) -> Search | None:
     return trial
 
 
-def _in_the_spell(best: Explanation) -> Iterator[Explanation]:
-    """Each effect that always acts, in the spell of the one beside it and alone.
+def others_in_the_spell(best: Explanation) -> Iterator[Explanation]:
+    """Yields each effect that always acts in the spell of the one beside it, and alone.
 
     Where it is the one that begins, always acting it takes too little, and another one makes up for the rest.
     """

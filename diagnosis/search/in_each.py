@@ -63,12 +63,12 @@ def in_each(
     best = thorough(leader)
     if not _in_each(best) or adjusted(best) >= bar:
         return []
-    best = _without_idle(best, cost)
+    best = without_idle(best, cost)
     others = [again(in_its_spell) for one in others[:MOST] if (in_its_spell := _as(one, best)) is not None]
     return sorted((one for one in (best, *others) if _in_each(one) and adjusted(one) < bar), key=adjusted)
 
 
-def _without_idle(single: Explanation, cost: float) -> Explanation:
+def without_idle(single: Explanation, cost: float) -> Explanation:
     """Without the instants of recordings that do not clearly ask for them: where it might as well act always or never.
 
     Where only one recording asks, it is a spell of the sequence.
@@ -82,12 +82,12 @@ def _without_idle(single: Explanation, cost: float) -> Explanation:
         cheaper = replace(single, candidates=(*others, replace(candidate, price=candidate.price - cost)))
         whole = [InEach((*intervals[:r], one, *intervals[r + 1 :])) for one in (ALWAYS, NEVER)]
         simpler = [again(refitted_in(cheaper, spell)) for spell in whole]
-        if not all(_asks(single, one) for one in simpler):
+        if not all(asks_for_instants(single, one) for one in simpler):
             single = min(simpler, key=adjusted)
     return single
 
 
-def _asks(single: Explanation, simpler: Explanation) -> bool:
+def asks_for_instants(single: Explanation, simpler: Explanation) -> bool:
     """Whether more than one window speaks for the instants, or one that fits to the noise with them, badly without."""
     largest = float(gain_by_window(simpler, single).max())
     gain = adjusted(simpler) - adjusted(single)
@@ -110,7 +110,7 @@ def _from_known(known: Sequence[Explanation], price: float) -> Iterator[Explanat
     """
     for single in _of_one_name_each(known)[:MOST]:
         candidate = single.candidates[-1]
-        for one in (single, _plain(single)) if len(candidate.unknowns) > 1 else (single,):
+        for one in (single, without_shape(single)) if len(candidate.unknowns) > 1 else (single,):
             asked = asked_for(_everywhere(one, price))
             if isinstance(asked, InEach) and not asked.is_spell:
                 try:
@@ -127,7 +127,7 @@ def _of_one_name_each(known: Sequence[Explanation]) -> list[Explanation]:
     return list(by_name.values())
 
 
-def _plain(single: Explanation) -> Explanation:
+def without_shape(single: Explanation) -> Explanation:
     """The same with the shape of its last mechanism as it is without one."""
     candidate, u = single.candidates[-1], single.fitted.u.copy()
     names = [x.name for x in single.fitted.misfit.unknowns]

@@ -58,7 +58,7 @@ def first_effect(found: Search, progress: Progress) -> Iterator[Search]:
     """Yields the growing search after each stage, up to the best single mechanism under its own errors."""
     yield found
     progress("screening the mechanisms", 0.1)
-    _singles(found, progress)
+    refit_singles(found, progress)
     yield found
     if not found.singles:
         return
@@ -108,7 +108,11 @@ def take_best_single(found: Search) -> None:
             return
 
 
-def _singles(found: Search, progress: Progress) -> None:
+def refit_singles(found: Search, progress: Progress) -> None:
+    """Screen the mechanisms and refit the strongest alone: ``scores``, ``null`` and ``singles``, the likeliest first.
+
+    The leader is taken further: over its ranges, to other joints, and against what the budget left untried.
+    """
     opened = linearise_about(found.base.fitted)
     found.scores = score(opened, firsts(found.candidates), found.not_tried)
     found.null = null_distribution(opened, found.scores)
@@ -117,11 +121,11 @@ def _singles(found: Search, progress: Progress) -> None:
     late: list[Candidate] = []
     if found.measured.stretches is None:
         white, scores = against_white_noise(found, found.base, firsts(found.candidates))
-        wanted += _hidden_by_errors(scores, {entry.candidate for entry in wanted}, fewest)
+        wanted += hidden_by_errors(scores, {entry.candidate for entry in wanted}, fewest)
         if misfits(white.fitted):
             late = setting_in(found.base, [entry.candidate for entry in found.scores])
     left = []
-    wanted = _in_turn(wanted, [entry for entry in found.scores if entry.candidate in late])
+    wanted = in_turn(wanted, [entry for entry in found.scores if entry.candidate in late])
     for k, entry in enumerate(wanted):
         if not found.affordable(entry.candidate.name):
             left.append(entry)
@@ -157,7 +161,7 @@ def _singles(found: Search, progress: Progress) -> None:
     found.tried += found.singles
 
 
-def _in_turn(wanted: Sequence[Score], late: Sequence[Score]) -> list[Score]:
+def in_turn(wanted: Sequence[Score], late: Sequence[Score]) -> list[Score]:
     """The strongest of a screen, then what has no slope at its null, then the others: a budget may end on the way.
 
     The strongest variant of every mechanism comes before its others: laws at other joints, other orders.
@@ -190,7 +194,7 @@ def led_by(found: Search, leader: Explanation) -> bool:
     return True
 
 
-def _hidden_by_errors(white: Sequence[Score], tried: Collection[Candidate], fewest: int) -> list[Score]:
+def hidden_by_errors(white: Sequence[Score], tried: Collection[Candidate], fewest: int) -> list[Score]:
     """The strongest of a screen against white noise that were not tried.
 
     Errors about the base model hold part of what is missing: scatter of events much of a wrong law of them. Such a

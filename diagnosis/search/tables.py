@@ -119,7 +119,7 @@ def estimate(explanation: Explanation, errors: Errors | None = None) -> Law | No
     if model.check(on, fitted.misfit.predictor.options):
         return None
     base = replace(fitted.misfit, fixed={**fitted.misfit.fixed, **off})
-    bends = {term: _bends(one.variable in tables.jumps) for term, one in tables.terms.items()}
+    bends = {term: prior_rows(one.variable in tables.jumps) for term, one in tables.terms.items()}
     chosen = _choose(base, fitted, unknowns, bends)
     beside = {f"{form.name}.{name}" for name in tables.oscillator} & {x.name for x in base.unknowns}
     if not chosen and not beside:
@@ -165,7 +165,7 @@ def _unknowns(form: Mechanism, term: str, motion: Motion, fitted: Fitted) -> tup
     return tuple(Unknown(f"{form.name}.{name}", unit, -reach, reach, 0.0, scale) for name in names)
 
 
-def _bends(jumps: bool) -> FloatArray:
+def prior_rows(jumps: bool) -> FloatArray:
     """Rows R of the prior R c ~ N(0, 1/lambda) on a table's values: bends, the jump at zero, and a little on all."""
     below, above = np.arange(KNOTS)[::-1], KNOTS + np.arange(KNOTS)
     rows = []

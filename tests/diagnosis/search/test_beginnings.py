@@ -15,7 +15,7 @@ from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.setup import measure
 from diagnosis.progress import silent
 from diagnosis.search import beginnings
-from diagnosis.search.beginnings import _had_not_begun, _in_the_spell, alone
+from diagnosis.search.beginnings import alone, had_not_begun, others_in_the_spell
 from diagnosis.search.candidates import candidates
 from diagnosis.search.found import BADLY, MISSING, Search, adjusted, by_window
 from diagnosis.search.null import null_distribution
@@ -157,9 +157,9 @@ def test_one_window_may_say_that_an_effect_had_not_begun_and_not_that_it_acts(
     monkeypatch.setattr(beginnings, "gain_by_window", lambda *_: np.array([300.0, 1.0, 2.0, 0.0]))
     monkeypatch.setattr(beginnings, "adjusted", lambda e: 303.0 if e is always else 0.0)
     monkeypatch.setattr(beginnings, "settles", lambda *_: True)
-    assert _had_not_begun(always, single, spell) is counts
+    assert had_not_begun(always, single, spell) is counts
     monkeypatch.setattr(beginnings, "settles", lambda *_: False)
-    assert not _had_not_begun(always, single, spell)
+    assert not had_not_begun(always, single, spell)
 
 
 def test_what_may_change_again_is_told_from_what_stays_or_is_gone() -> None:
@@ -179,7 +179,7 @@ def test_what_takes_too_little_always_is_tried_in_the_spell_of_what_makes_up_for
     dashpot, drag = known["viscous_damping"], replace(known["quadratic_damping"], spell=Spell(0, None, 0, None))
     always = extend(Explanation((), fitted), dashpot, np.array([dashpot.unknowns[0].coordinate(0.15)]))
     both = extend(always, drag, np.array([drag.unknowns[0].coordinate(1.0)]))
-    (simpler,) = _in_the_spell(both)
+    (simpler,) = others_in_the_spell(both)
     assert simpler.names == ("viscous_damping",) and simpler.candidates[0].spell == drag.spell
     assert adjusted(simpler) < adjusted(both) + MISSING < adjusted(always)
 

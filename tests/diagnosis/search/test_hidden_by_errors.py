@@ -7,7 +7,7 @@ from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.setup import measure
 from diagnosis.search.candidates import candidates
 from diagnosis.search.screen import score
-from diagnosis.search.select import _hidden_by_errors
+from diagnosis.search.select import hidden_by_errors
 from diagnosis.search.weighing import as_white_noise
 from tests.diagnosis.made import SPECIMEN, recording
 
@@ -22,7 +22,7 @@ def test_a_mechanism_that_the_errors_hold_is_found_by_a_screen_against_white_noi
     scores = {one.candidate.name: one for one in score(linearise_about(fitted), some)}
     held, other = scores["restitution"], scores["velocity_restitution"]
     white = score(linearise_about(as_white_noise(fitted, errors)), some)
-    (hidden,) = _hidden_by_errors(white, {other.candidate}, 1)
+    (hidden,) = hidden_by_errors(white, {other.candidate}, 1)
     assert hidden.candidate.name == "restitution"
     assert hidden.statistic > 10.0 * held.statistic  # scatter of impacts under these errors
-    assert _hidden_by_errors(white, {hidden.candidate}, 1) == []
+    assert hidden_by_errors(white, {hidden.candidate}, 1) == []

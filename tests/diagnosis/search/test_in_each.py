@@ -17,7 +17,7 @@ from diagnosis.search import beginnings, in_each
 from diagnosis.search.asked import asked_for
 from diagnosis.search.budget import ENDED
 from diagnosis.search.found import MISSING, Search, adjusted
-from diagnosis.search.in_each import _asks, _plain, _without_idle, in_own_runs
+from diagnosis.search.in_each import asks_for_instants, in_own_runs, without_idle, without_shape
 from diagnosis.search.refit import Explanation, extend
 from diagnosis.search.runs import runs_of
 from diagnosis.search.spells import ALWAYS, NEVER, InEach, Spell, holds, interval_of
@@ -78,7 +78,7 @@ def test_what_acts_for_a_moment_in_every_test_is_a_blow() -> None:
 def test_recordings_that_ask_for_their_instants_keep_them(dashpot: tuple[Search, list[Search]]) -> None:
     best = dashpot[1][-1].best
     assert best is not None
-    kept = _without_idle(best, best.candidates[0].price / 2)
+    kept = without_idle(best, best.candidates[0].price / 2)
     assert kept.candidates[0].spell == best.candidates[0].spell and adjusted(kept) <= adjusted(best) + 1e-6
 
 
@@ -99,7 +99,7 @@ def test_one_window_asks_only_where_it_fits_with_the_instants_and_badly_without(
     monkeypatch.setattr(in_each, "gain_by_window", lambda *_: np.array(gains))
     monkeypatch.setattr(in_each, "adjusted", lambda e: e.loss)
     monkeypatch.setattr(in_each, "settles", lambda *_: fits_in_it)
-    assert _asks(single, simpler) is asks
+    assert asks_for_instants(single, simpler) is asks
 
 
 def test_instants_that_hardly_count_are_taken_off(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -115,8 +115,8 @@ def test_instants_that_hardly_count_are_taken_off(monkeypatch: pytest.MonkeyPatc
 
     monkeypatch.setattr(in_each, "refitted_in", refitted)
     monkeypatch.setattr(in_each, "again", lambda one: one)
-    monkeypatch.setattr(in_each, "_asks", lambda one, other: other.loss - one.loss > 15.0)
-    left = _without_idle(single, 6.0).candidates[0]
+    monkeypatch.setattr(in_each, "asks_for_instants", lambda one, other: other.loss - one.loss > 15.0)
+    left = without_idle(single, 6.0).candidates[0]
     assert isinstance(left.spell, InEach) and left.spell.intervals == ((2.0, 4.0), ALWAYS)
     assert left.spell.is_spell and left.price == 6.0
 
@@ -203,7 +203,7 @@ def test_a_shape_that_stands_for_an_interval_is_taken_off() -> None:
     [spring] = [c for c in candidates(measured, SPECIMEN) if c.name == "added_stiffness"]
     assert len(spring.unknowns) == 2
     fitted = extend(Explanation((), base_fit(SPECIMEN, measured)), spring, spring.null + np.array([0.1, 0.02]), 0)
-    plain = _plain(fitted)
+    plain = without_shape(fitted)
     assert plain.part(spring)[1] == spring.null[1] and plain.part(spring)[0] == fitted.part(spring)[0]
 
 

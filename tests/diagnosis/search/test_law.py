@@ -12,7 +12,7 @@ from diagnosis.search import law as law_of
 from diagnosis.search.candidates import candidates
 from diagnosis.search.law import missing_law
 from diagnosis.search.refit import Explanation, extend
-from diagnosis.search.tables import Law, _bends, estimate
+from diagnosis.search.tables import Law, estimate, prior_rows
 from models.mechanisms.table_force import MECHANISM
 from models.tables import KNOTS, SIDES, row
 from tests.diagnosis.made import SPECIMEN
@@ -127,7 +127,7 @@ def test_what_was_named_rightly_does_not_give_way_to_a_law() -> None:
 
 def test_beyond_what_the_motion_tells_a_table_bends_towards_holding_its_value() -> None:
     """The likeliest continuation, under the prior alone, of a table that rises from 0 to 1 between its first rows."""
-    rows = _bends(jumps=True)[:, KNOTS:]
+    rows = prior_rows(jumps=True)[:, KNOTS:]
     known = np.array([0.0, 1.0])
     rest = np.linalg.lstsq(rows[:, 2:], -rows[:, :2] @ known, rcond=None)[0]
     assert np.all(np.diff(rest) > 0.0) and np.all(np.diff(rest, 2) < 0.0)

@@ -15,7 +15,7 @@ from diagnosis.progress import silent
 from diagnosis.search.candidates import candidates
 from diagnosis.search.found import Search
 from diagnosis.search.refit import Explanation, extend, with_memory
-from diagnosis.search.select import _in_turn, _singles, led_by
+from diagnosis.search.select import in_turn, led_by, refit_singles
 from diagnosis.search.weighing import evidence, reweighed
 from tests.diagnosis.made import SPECIMEN, recording
 
@@ -79,7 +79,7 @@ def test_every_law_with_a_memory_counts_events_along_its_own_motion() -> None:
     fitted = replace(fitted, misfit=replace(fitted.misfit, predictor=predictor))
     some = tuple(one for one in candidates(measured, SPECIMEN) if one.name in ("restitution", "degradation"))
     found = Search(Explanation((), fitted), some, errors)
-    _singles(found, silent)
+    refit_singles(found, silent)
     assert [single.names[0] for single in found.singles] == ["restitution", "degradation"]
     worn = found.singles[1]
     assert with_memory(worn).loss > worn.loss - 0.5
@@ -94,7 +94,7 @@ def test_the_strongest_of_the_screen_come_before_what_has_no_slope_there() -> No
 
     ordered = [Law("maxwell", "both"), Law("maxwell", "base"), *(Law(x) for x in ("bouc_wen", "gain", "locking"))]
     entries: dict[Law, Any] = {one: SimpleNamespace(candidate=one) for one in (*ordered, Law("sliding"))}
-    found = _in_turn([entries[one] for one in ordered], [entries[Law("locking")], entries[Law("sliding")]])
+    found = in_turn([entries[one] for one in ordered], [entries[Law("locking")], entries[Law("sliding")]])
     names = [(entry.candidate.name, entry.candidate.joints) for entry in found]
     first = [("maxwell", "both"), ("bouc_wen", ""), ("locking", ""), ("sliding", ""), ("gain", "")]
     assert names == [*first, ("maxwell", "base")]
