@@ -71,7 +71,7 @@ def assemble(task: Task, found: Search, climbed: Climbed | None) -> Diagnosis:
         train=fit_figures(judged.shown, missing),
         holdout=fit_figures(judged.held, missing) if judged.held else None,
         base=base,
-        screen=_screened(climbed.before if climbed else found),
+        screen=screened(climbed.before if climbed else found),
         null_band=found.null.band if found.null else 0.0,
         p_value=judged.p_value,
         next_experiment=experiment,
@@ -143,9 +143,10 @@ def _samples(task: Task, judged: Judgement, effects: Sequence[Effect]) -> Mappin
     return posterior(judged.final.fitted, judged.found.measured.model, ended, task.seed)
 
 
-def _screened(found: Search) -> tuple[Screened, ...]:
-    """The screen and its refits, all under the errors of the base model: later singles are those near the answer.
+def screened(found: Search) -> tuple[Screened, ...]:
+    """The lines of the screen with the gains of its refits, the strongest first.
 
+    All under the errors of the base model: later singles are those near the answer.
     A refit that explains less than the base model stayed in a valley that the base has left, and tells nothing.
     """
     found = found if found.shorter is None else found.shorter

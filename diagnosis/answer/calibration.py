@@ -114,7 +114,7 @@ def calibrate(
     by_recording = {name: estimates(one) for name, one in each.items()}
     found = _summary(fitted, errors, fitted.measured.undisturbed, profile, by_recording, steps)
     instruments = {name: values for name, values in specimen.mechanisms.items() if name not in given}
-    drifts = _drifts(by_recording, list(each.values()))
+    drifts = drifts_of(by_recording, list(each.values()))
     return replace(found, drifts=drifts, seen=(*map(str, seen), *weak), instruments=instruments)
 
 
@@ -142,8 +142,11 @@ def specimen_at(specimen: Specimen, found: Calibration, exposure: str, level: fl
     return replace(whole, title=title, parameters={**whole.parameters, **values})
 
 
-def _drifts(by_recording: Mapping[str, Mapping[str, Estimate]], each: Sequence[Fitted]) -> tuple[Drift, ...]:
-    """Of the parameters that the model says may change from test to test."""
+def drifts_of(by_recording: Mapping[str, Mapping[str, Estimate]], each: Sequence[Fitted]) -> tuple[Drift, ...]:
+    """How the parameters that the model says may change do so from test to test; empty where it says so of none.
+
+    ``by_recording``: estimates from each recording alone; ``each``: the fits that gave them, in the same order.
+    """
     if not each:
         return ()
     exposures = each[0].measured.identification.exposures

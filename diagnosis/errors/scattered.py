@@ -109,7 +109,7 @@ def shortened(misfit: Misfit, scatter: float, now: Events, aim: Events) -> Event
     def height(events: Events) -> float:
         known = AsItWas(events.pulses(m), np.zeros(m.values.shape))
         about = replace(misfit, predictor=replace(misfit.predictor, measured=replace(m, as_it_was=known)))
-        return _least_loss(about, events) + float(np.sum((events.changes / scatter) ** 2))
+        return least_loss(about, events) + float(np.sum((events.changes / scatter) ** 2))
 
     trials = [now.towards(aim, share) for share in STEPS]
     trials = [replace(one, u=clip(misfit.unknowns, one.u)) for one in trials]
@@ -118,7 +118,7 @@ def shortened(misfit: Misfit, scatter: float, now: Events, aim: Events) -> Event
     return trials[best] if heights[best] < height(now) else None
 
 
-def _least_loss(misfit: Misfit, events: Events) -> float:
+def least_loss(misfit: Misfit, events: Events) -> float:
     """The loss at the level of the errors that windows share at which it is least: it is linear in that."""
     shared = misfit.whitening.shared
     if shared is None:

@@ -191,7 +191,7 @@ def _slope(state: State, recording: Recording) -> bool:
 
 def _smoothed(measured: Measured, recording: Recording, setting: Setting) -> dict[str, FloatArray]:
     """The free states (samples,) by name; per sample of the recording: the clock of the responses may run otherwise."""
-    channels = _freed(measured, recording, setting)
+    channels = freed(measured, recording, setting)
     width = measured.lengths.carrying if measured.lengths else NARROWEST
     quicker = recording.time_step / setting.shaking.time_step
     found = {}
@@ -204,8 +204,8 @@ def _smoothed(measured: Measured, recording: Recording, setting: Setting) -> dic
     return found
 
 
-def _freed(measured: Measured, recording: Recording, setting: Setting) -> dict[str, FloatArray]:
-    """The channels of the free states (samples,) without what the instruments add, their clock left as it is."""
+def freed(measured: Measured, recording: Recording, setting: Setting) -> dict[str, FloatArray]:
+    """The channels of the free states (samples,) by name, without what the instruments add; their clock stays."""
     free = measured.identification.free
     names = dict.fromkeys(n for state in free for n in (state.channel, state.name) if n in recording.channels)
     seen = {name: recording.channels[name][None] for name in names}

@@ -80,7 +80,7 @@ def in_proportion(fitted: Fitted, longer: Misfit) -> NDArray[np.intp]:
     Changes along the principal axes of each window's states and of the parameters, the states going with them.
     """
     m = longer.measured
-    predicted = longer.predictor.predict([fitted.misfit.point(fitted.u, fitted.states), *_changes(fitted)])
+    predicted = longer.predictor.predict([fitted.misfit.point(fitted.u, fitted.states), *changed_points(fitted)])
     bend = (0.5 * (predicted[1::2] + predicted[2::2]) - predicted[0]) / m.units[:, :, None]
     squares = np.where(m.mask & np.isfinite(bend), bend**2, np.where(m.mask, np.inf, 0.0))
     bent = np.any(np.cumsum(np.sum(squares, axis=2), axis=2) > DEVIATIONS**2, axis=0)
@@ -102,8 +102,8 @@ def _cut(plain: Misfit, lengths: Sequence[float] | NDArray[np.generic]) -> Misfi
     return cut_again(plain, [replace(w, samples=n) for w, n in zip(windows, samples, strict=True)])
 
 
-def _changes(fitted: Fitted) -> list[Point]:
-    """Points by `DEVIATIONS` up and down along every axis."""
+def changed_points(fitted: Fitted) -> list[Point]:
+    """Points by `DEVIATIONS` up and down along every axis, those of the states first, then those of the parameters."""
     misfit, u, states = fitted.misfit, fitted.u, fitted.states
     linear = misfit.linearise(u, states)
     by_state = linear.by_state

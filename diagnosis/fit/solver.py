@@ -124,7 +124,7 @@ def scatter(found: Fitted, seed: int) -> FloatArray | None:
 
 
 @dataclass(frozen=True)
-class _Place:
+class Place:
     """Where a fit stands, and what is ahead if all were linear there."""
 
     misfit: Misfit
@@ -135,7 +135,7 @@ class _Place:
     loss: float
 
     @classmethod
-    def at(cls, misfit: Misfit, u: FloatArray, states: FloatArray) -> Asking[_Place]:
+    def at(cls, misfit: Misfit, u: FloatArray, states: FloatArray) -> Asking[Place]:
         linear = yield from misfit.linearising(u, states, one_sided=True)
         window = misfit.losses(linear.residual)
         return cls(misfit, u, states, linear, window, float(window.sum()) + misfit.prior(u))
@@ -216,7 +216,7 @@ def _fitting(misfit: Misfit, u: FloatArray, states: FloatArray, iterations: int)
         predicted = yield [misfit.point(u, states)]
         window = misfit.losses(misfit.whitened(predicted))[0]
         return Fitted(misfit, u, states, window, float(window.sum()) + misfit.prior(u))
-    place = yield from _Place.at(misfit, u, states)
+    place = yield from Place.at(misfit, u, states)
     damping, small, bold = 1.0, 0, True
     for _ in range(iterations):
         if place.gain < TOLERANCE:
@@ -241,15 +241,15 @@ def _fitting(misfit: Misfit, u: FloatArray, states: FloatArray, iterations: int)
     return Fitted(place.misfit, place.u, place.states, place.window, place.loss)
 
 
-def _whole(place: _Place) -> Asking[_Place | None]:
+def _whole(place: Place) -> Asking[Place | None]:
     """The undamped step, if it gains what it should."""
     change = place.change(0.0)
     misfit, states = place.misfit.at_level(place.level(change)), place.states + place.shift(change)
-    further = yield from _Place.at(misfit, place.moved(change), states)
+    further = yield from Place.at(misfit, place.moved(change), states)
     return further if place.loss - further.loss > GOOD * place.gain else None
 
 
-def _search(place: _Place, damping: float) -> Asking[tuple[int, _Place | None]]:
+def _search(place: Place, damping: float) -> Asking[tuple[int, Place | None]]:
     """The best of some dampings, with the best step of the states in each window; None where nothing is gained."""
     misfit, states, residual = place.misfit, place.states, place.linear.residual
     shared = place.linear.by_unknown.shape[-1] > 0  # without, no damping changes anything
@@ -274,7 +274,7 @@ def _search(place: _Place, damping: float) -> Asking[tuple[int, _Place | None]]:
     if totals[best] >= place.loss:
         return best, None
     chosen = np.stack(moved[best])[pick[best], np.arange(states.shape[0])]
-    further = yield from _Place.at(levels[best], steps[best], chosen)
+    further = yield from Place.at(levels[best], steps[best], chosen)
     return best, further
 
 

@@ -68,7 +68,7 @@ def action(predictor: Predictor, point: Point, effect: str) -> Action:
         return Action(effect, "error", _errors(predictor, point, effect, states), _events(predictor, motion), motion)
     amount = np.zeros(m.values.shape)
     # from the same states both: those that a model carries are not quite those of its run through the window
-    ahead, less = (_one_step(at, along) for at in (point, _without(predictor, point, effect)))
+    ahead, less = (one_step(at, along) for at in (point, _without(predictor, point, effect)))
     both = inside[:, :-1] & inside[:, 1:]
     for state in rates:
         lacking = np.where(both, ahead[state.name] - less[state.name], 0.0)
@@ -85,7 +85,7 @@ def _without(predictor: Predictor, point: Point, effect: str) -> Point:
     return Point(values, point.states)
 
 
-def _one_step(point: Point, along: Along) -> dict[str, FloatArray]:
+def one_step(point: Point, along: Along) -> dict[str, FloatArray]:
     """The states (W, N - 1) one sample after each sample of a motion, by the model at ``point``."""
     ran_from = Along(along.predictor, point)
     m = along.predictor.measured

@@ -74,15 +74,15 @@ def _stripped(text: str) -> str:
     text = re.sub(r"font-family: [^;\"]*;? ?", "", text)
     text = re.sub(r' (?:d|x|y|transform)="[^"]*"', lambda found: _tenths_only(found[0]), text)
     text = re.sub(r"\s*\n\s*", "\n", text)
-    return re.sub(r'\bd="([MLz\s\d.-]+)"', lambda found: f'd="{_relative(found[1])}"', text)
+    return re.sub(r'\bd="([MLz\s\d.-]+)"', lambda found: f'd="{relative(found[1])}"', text)
 
 
 def _tenths_only(attribute: str) -> str:
     return re.sub(r"(\d+\.\d)\d+", r"\1", attribute)
 
 
-def _relative(path: str) -> str:
-    """Straight lines as steps from point to point, in tenths without drift: two thirds of the length."""
+def relative(path: str) -> str:
+    """A path of straight lines as steps from point to point, in tenths without drift: two thirds of its length."""
     parts = []
     x, y = 0, 0
     for command, rest in re.findall(r"([MLz])([^MLz]*)", path):

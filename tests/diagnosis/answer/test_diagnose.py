@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from diagnosis import calibrate, diagnose
-from diagnosis.answer.assembly import _screened
+from diagnosis.answer.assembly import screened
 from diagnosis.answer.heldout import Shown
 from diagnosis.answer.result import Beyond, Diagnosis, Unfit
 from diagnosis.fit.setup import measure
@@ -162,9 +162,9 @@ def test_every_refit_of_the_screen_is_told_though_later_ones_are_of_several_effe
         scores=[SimpleNamespace(candidate=one, statistic=30.0) for one in (tilt, gain)],
         at_null=SimpleNamespace(singles=[alone, stuck], base=SimpleNamespace(loss=100.0)),
     )  # fmt: skip
-    assert {line.name: line.gain for line in _screened(found)} == {"tilt": 40.0, "gain": None}
+    assert {line.name: line.gain for line in screened(found)} == {"tilt": 40.0, "gain": None}
     longer: Any = SimpleNamespace(scores=[], singles=[], at_null=None, shorter=found)
-    assert _screened(longer) == _screened(found)
+    assert screened(longer) == screened(found)
 
 
 def test_priors_hold_what_the_recordings_do_not_tell() -> None:

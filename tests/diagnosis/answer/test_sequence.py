@@ -9,7 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 import models
-from diagnosis.answer.calibration import Calibration, _drifts, specimen_at, specimen_of
+from diagnosis.answer.calibration import Calibration, drifts_of, specimen_at, specimen_of
 from diagnosis.fit.intervals import Estimate
 from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.prediction import Predictor
@@ -60,7 +60,7 @@ def around(value: float) -> Estimate:
 @pytest.fixture(scope="module")
 def found() -> Calibration:
     by_recording = {name: {"base_stiffness": around(value)} for name, value in STIFFNESS.items()}
-    drifts = _drifts(by_recording, [fitted(name) for name in STIFFNESS])
+    drifts = drifts_of(by_recording, [fitted(name) for name in STIFFNESS])
     joint = {"base_stiffness": around(4.6e7)}
     return Calibration(joint, np.eye(1), 0.1, 0.01, 1.0, 20, by_recording=by_recording, drifts=drifts)
 

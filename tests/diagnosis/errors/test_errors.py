@@ -16,7 +16,7 @@ from diagnosis.errors.comparison import deviance
 from diagnosis.errors.likelihood import Piece, climbed, maximise, whitened
 from diagnosis.errors.lines import lines
 from diagnosis.errors.model import Errors, calibrated, disturbance_about, estimate, refitted
-from diagnosis.errors.scattered import Events, _least_loss
+from diagnosis.errors.scattered import Events, least_loss
 from diagnosis.errors.summary import summary
 from diagnosis.errors.words import error_lines
 from diagnosis.fit.linearisation import linearise_about
@@ -84,7 +84,7 @@ def test_steps_towards_scattered_impacts_are_judged_at_the_drift_that_they_leave
     _, base, errors = about("drift")
     misfit, fitted = errors.repeating(base.fitted.misfit), base.fitted
     now = Events(fitted.u, fitted.states, errors.kicks, np.zeros(errors.kicks.window.size))
-    least = _least_loss(misfit, now)
+    least = least_loss(misfit, now)
     best = minimize(lambda level: misfit.at_level(level).loss(fitted.u, fitted.states), np.zeros(misfit.level.size))
     assert least == pytest.approx(best.fun, abs=1e-3) and least < misfit.loss(fitted.u, fitted.states) - 1.0
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from diagnosis.data.measured import Measured
-from diagnosis.fit.carrying import Setting, _freed
+from diagnosis.fit.carrying import Setting, freed
 from diagnosis.fit.prediction import Point, Predictor
 from grids.instruments.base import Switched
 from grids.instruments.windowed import moved_in_windows
@@ -37,10 +37,10 @@ def test_the_measured_motion_is_freed_of_what_sensors_read_of_the_base_as_it_mov
     names = ("rotation_1", "rotation_2")
     leaking = {name: true.channels[name] + 0.002 * 1.1 * BASE.horizontal for name in names}
     recording = replace(true, channels={"base_acceleration_x": BASE.horizontal, **leaking})
-    freed = _freed(measured_of(recording), recording, Setting(base, [Part(0, TRUE)], [(0, instruments)]))
-    assert set(freed) == set(names)
+    found = freed(measured_of(recording), recording, Setting(base, [Part(0, TRUE)], [(0, instruments)]))
+    assert set(found) == set(names)
     for name in names:
-        np.testing.assert_allclose(freed[name], true.channels[name], atol=1e-12)
+        np.testing.assert_allclose(found[name], true.channels[name], atol=1e-12)
 
 
 def test_only_what_is_recorded_is_free_and_the_rest_is_right_at_the_true_parameters() -> None:

@@ -12,7 +12,7 @@ import pytest
 from diagnosis.answer.diagnose import diagnose
 from diagnosis.answer.heldout import as_far_as_followed
 from diagnosis.data.measured import Measured
-from diagnosis.fit.growing import DEVIATIONS, FIRST, SHORTEST, _changes, cut_again, in_proportion
+from diagnosis.fit.growing import DEVIATIONS, FIRST, SHORTEST, changed_points, cut_again, in_proportion
 from diagnosis.fit.intervals import covariances
 from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.prediction import Predictor
@@ -53,7 +53,8 @@ def test_a_parameter_that_changes_nothing_is_no_obstacle() -> None:
     fitted = stack(5, 6)
     idle = Unknown("nothing", "1", 0.0, 2.0, 1.0, 1.0)
     misfit = replace(fitted.misfit, unknowns=(*fitted.misfit.unknowns, idle))
-    moved = [point.values["nothing"] for point in _changes(replace(fitted, misfit=misfit, u=np.append(fitted.u, 1.0)))]
+    wider = replace(fitted, misfit=misfit, u=np.append(fitted.u, 1.0))
+    moved = [point.values["nothing"] for point in changed_points(wider)]
     assert moved and np.all(np.isfinite(moved)) and np.ptp(moved) < 1e-6
 
 
@@ -129,7 +130,7 @@ def test_states_go_along_with_a_change_of_the_parameters() -> None:
     found = stack(5, 6)
     linear = found.misfit.linearise(found.u, found.states)
     basis = np.linalg.qr(linear.by_state)[0]
-    points = _changes(found)[2 * found.states.shape[1] :]
+    points = changed_points(found)[2 * found.states.shape[1] :]
     left = found.misfit.residuals(points)
     changes = left[0::2] - left[1::2]
     along = np.linalg.norm(np.einsum("wms,pwm->pws", basis, changes), axis=2) / np.linalg.norm(changes, axis=2)

@@ -11,7 +11,7 @@ from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.misfit import Misfit, answered, reduce
 from diagnosis.fit.prediction import Predictor
 from diagnosis.fit.setup import base_fit, measure
-from diagnosis.fit.solver import TOLERANCE, _Place, fit
+from diagnosis.fit.solver import TOLERANCE, Place, fit
 from diagnosis.fit.starts import start_of
 from diagnosis.fit.unknowns import fixed_values, of_specimen
 from diagnosis.fit.whitening import (
@@ -54,7 +54,7 @@ def test_eliminating_the_states_is_the_full_least_squares(problem) -> None:
 def test_states_that_a_window_tells_take_their_best_step_and_others_stay_together(problem) -> None:
     """Where two states act alike, only what the window tells of them moves: their sum, not each of them."""
     _measured, fitted = problem
-    place = answered(_Place.at(fitted.misfit, fitted.u + 0.3, fitted.states), fitted.misfit.predictor)
+    place = answered(Place.at(fitted.misfit, fitted.u + 0.3, fitted.states), fitted.misfit.predictor)
     change = place.change(0.0)
     ahead = place.linear.residual + place.linear.by_unknown @ change
     wanted = [-np.linalg.lstsq(b, r, rcond=None)[0] for b, r in zip(place.linear.by_state, ahead, strict=True)]

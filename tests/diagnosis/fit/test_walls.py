@@ -17,7 +17,7 @@ from diagnosis.fit.prediction import Predictor
 from diagnosis.fit.setup import measure
 from diagnosis.fit.solver import fit
 from diagnosis.fit.starts import start_of
-from diagnosis.forces.action import _one_step, action
+from diagnosis.forces.action import action, one_step
 from diagnosis.search.candidates import candidates
 from diagnosis.search.refit import Explanation, extend, further, resized
 from diagnosis.search.screen import score
@@ -91,7 +91,7 @@ def test_what_a_law_does_along_the_motion_starts_from_what_the_layers_remember_t
     assert np.all(nothing.amount == 0.0)  # what is not there does nothing
     # the run to the next sample is that of the motion itself: nothing was lost on the way
     along = Along(one.predictor, point)
-    states, ahead = along.states, _one_step(point, along)
+    states, ahead = along.states, one_step(point, along)
     for rate in ("rotation_rate_1", "rotation_rate_2"):
         lost = np.where(measured.mask[:, 0, 1:], ahead[rate] - states[rate][:, 1:], 0.0)
         assert np.max(np.abs(lost)) < 0.02 * np.max(np.abs(acting.amount))

@@ -24,7 +24,7 @@ from diagnosis.report.figures.curve import MOST_POINTS, thin
 from diagnosis.report.figures.levels import BORDERS, DEPTHS, level_of
 from diagnosis.report.figures.phase_plane import noise_of_trace
 from diagnosis.report.figures.suspects import MOST
-from diagnosis.report.svg import _relative, picture
+from diagnosis.report.svg import picture, relative
 from tests.diagnosis.report.example import FORCE, SIGMA, diagnosis, specimen
 
 
@@ -108,7 +108,7 @@ points = st.lists(st.tuples(st.integers(-9999, 9999), st.integers(-9999, 9999)),
 @given(points)
 def test_steps_lead_where_the_points_were(chosen: list[tuple[int, int]]) -> None:
     path = "M " + "\nL ".join(f"{x / 10} {y / 10}" for x, y in chosen)
-    short = _relative(path)
+    short = relative(path)
     head, _, rest = short.removeprefix("M").partition("l")
     at, steps = _numbers(head), _numbers(rest).reshape(-1, 2)
     reached = np.vstack([at, at + np.cumsum(steps, axis=0)])
