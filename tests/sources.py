@@ -1,13 +1,15 @@
-"""The files of the program, and what they import."""
+"""The files of the program and of its tests, and what they import."""
 
 from __future__ import annotations
 
 import ast
+from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 ORDER = ("models", "grids", "study", "diagnosis", "rocking")
 FILES = sorted(path for room in ORDER for path in (ROOT / room).rglob("*.py"))
+TESTS = sorted((ROOT / "tests").rglob("*.py"))
 
 
 def imported_modules(path: Path) -> set[str]:
@@ -20,3 +22,11 @@ def imported_modules(path: Path) -> set[str]:
             assert node.level == 0, f"{path.relative_to(ROOT)}: relative import"
             found.add(node.module or "")
     return found
+
+
+def imported_names(path: Path) -> Iterator[str]:
+    """All that a file imports, by dotted names."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            module = f"{node.module}." if isinstance(node, ast.ImportFrom) else ""
+            yield from (module + alias.name for alias in node.names)

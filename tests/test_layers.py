@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import models
-from tests.sources import FILES, ORDER, ROOT, imported_modules
+from tests.sources import FILES, ORDER, ROOT, TESTS, imported_modules, imported_names
 
 LONGEST = 400
 
@@ -28,6 +28,16 @@ def test_a_room_imports_only_rooms_below_it(path: Path) -> None:
 @pytest.mark.parametrize("path", FILES, ids=lambda p: p.relative_to(ROOT).as_posix())
 def test_no_file_is_too_long(path: Path) -> None:
     assert len(path.read_text().splitlines()) <= LONGEST
+
+
+@pytest.mark.parametrize("path", TESTS, ids=lambda p: p.relative_to(ROOT).as_posix())
+def test_a_test_imports_no_other_test_and_no_private_name(path: Path) -> None:
+    """What tests share is in modules that are no tests; what they hold to account is public."""
+    for name in imported_names(path):
+        room, *parts = name.split(".")
+        if room in (*ORDER, "benchmarks", "tests"):
+            assert not any(part.startswith("_") and not part.startswith("__") for part in parts), name
+            assert room != "tests" or not any(part.startswith("test_") for part in parts), name
 
 
 FOLDERS = ("data", "fit", "errors", "forces", "search", "answer", "report", "outcomes", "prove")
