@@ -14,7 +14,7 @@ from diagnosis.data.gathered import gather, memories, refuse_dead, smoothed, sta
 from diagnosis.data.noise import base_noise, response_noise
 from diagnosis.data.windows import ABOVE_NOISE, Window, cut, over_noise
 from grids.recordings.base import SHARE, FloatArray, Recording
-from grids.recordings.levels import stem
+from grids.recordings.levels import level_by_level, stem
 from grids.recordings.zero import Zeros, zeros
 from models import MODELS, get
 from models.errors import InputError
@@ -329,9 +329,14 @@ def for_model(measured: Measured, model: Model, alike: Mapping[str, str], bonded
 
 
 def left_out(recordings: Sequence[Recording]) -> dict[str, tuple[str, ...]]:
-    """Responses that only some recordings hold, so that none is compared by them; with those that lack them."""
-    held = dict.fromkeys(c for r in recordings for c in r.responses if r.channel(c).unit != SHARE)
-    lacking = {c: tuple(r.name for r in recordings if c not in r.channels) for c in held}
+    """Responses that only some recordings hold, so that none is compared by them; with those that lack them.
+
+    Those of levels one by one.
+    """
+    compared = [{c for c in r.responses if r.channel(c).unit != SHARE} for r in recordings]
+    split = [level_by_level(r) for r in recordings]
+    held = dict.fromkeys(c for r, names in zip(split, compared, strict=True) for c in r.channels if stem(c) in names)
+    lacking = {c: tuple(r.name for r in split if c not in r.channels) for c in held}
     return {c: names for c, names in lacking.items() if names}
 
 

@@ -17,7 +17,7 @@ from diagnosis.data.measured import Measured, identification_of
 from diagnosis.data.noise import base_noise, response_noise
 from diagnosis.data.windows import Window
 from grids.recordings.base import SHARE, FloatArray, Recording
-from grids.recordings.levels import level_by_level, stem
+from grids.recordings.levels import level_by_level, level_of, stem
 from models.errors import InputError
 from models.identification import Stretches
 from models.model import Model
@@ -43,6 +43,8 @@ def arrange_stretches(
     """
     declared = identification_of(model)
     split = [level_by_level(r) for r in recordings]
+    for recording in split:
+        _refuse_beyond(model, recording, points)
     channels = tuple(
         name
         for quantity in model.observables
@@ -52,10 +54,13 @@ def arrange_stretches(
     )
     lead = declared.leads[0].channel
     if not any(stem(name) == lead for name in channels):
-        raise InputError(
-            f"{lead} is missing in {', '.join(r.name for r in recordings)}: model {model.name} is compared by it; "
-            "record or map it."
+        lacking = [r.name for r in recordings if lead not in r.channels]
+        why = (
+            f"is missing in {', '.join(lacking)}"
+            if lacking
+            else f"is of no level that all of {', '.join(r.name for r in recordings)} hold"
         )
+        raise InputError(f"{lead} {why}: model {model.name} is compared by it; record or map it.")
     refuse_dead(split, channels)
     runs = [_means(r, max(1, round(stretches.mean / (RUNS * r.time_step)))) for r in split]
     means = [_means(r, max(1, round(stretches.mean / r.time_step))) for r in runs]
@@ -85,6 +90,17 @@ def arrange_stretches(
         stretches=stretches,
         assumed=np.broadcast_to(LEAST * of_channel, (len(windows), len(channels))),
     )
+
+
+def _refuse_beyond(model: Model, recording: Recording, points: Mapping[str, int]) -> None:
+    """Raise InputError where a channel is of a level that the model has not."""
+    for name in recording.channels:
+        level, count = level_of(name), points.get(stem(name), 0)
+        if level is not None and level >= count:
+            raise InputError(
+                f"{name} of {recording.name} is of level {level}, and model {model.name} has {count} here, numbered "
+                "from 0: correct the number of the level, or that of levels in the specimen."
+            )
 
 
 def _names(quantity: str, points: Mapping[str, int]) -> Sequence[str]:

@@ -13,7 +13,7 @@ from diagnosis.data.measured import Measured
 from diagnosis.data.stretches import averages
 from grids.instruments.base import Surroundings
 from grids.instruments.staged import Sets, recorded_in_stages
-from grids.recordings.levels import stem
+from grids.recordings.levels import level_of, stem
 from models.base import FloatArray
 from models.piecewise import Part, trajectories
 from models.shaking import Shaking
@@ -81,6 +81,6 @@ def _alike(sets: Sequence[Sets], lanes: Iterable[int]) -> list[list[int]]:
 
 
 def _of_point(values: FloatArray, channel: str) -> FloatArray:
-    """An observable (..., samples), or of one by level (..., levels, samples) the row that a channel's number names."""
-    point = channel.removeprefix(stem(channel)).removeprefix("_")
-    return values[..., int(point), :] if point else values
+    """An observable (..., samples), or of one by level (..., levels, samples) the level that the channel is of."""
+    level = level_of(channel)
+    return values if level is None else values[..., level, :]

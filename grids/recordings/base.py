@@ -49,11 +49,11 @@ SHARE = "1"
 class Recording:
     """Channels ``(n_times,)``, or ``(n_levels, n_times)`` over ``levels``, at a uniform ``time_step``.
 
-    ``places``: what channels measure that are no standard ones. ``estimated``: channels that were not recorded but
-    follow from those that were. ``band_limited``: the base motion is smooth between samples, as a logger's is; else
-    linear, as a simulation's (`models.shaking.Shaking`). ``time`` (n_times,) starts at 0 s. ``notes`` say what was
-    done while reading, ``suspicions`` what looks wrong with the data but may be right; ``source``: the file and what
-    it says of itself.
+    ``levels``: the number of each row's level. ``places``: what channels measure that are no standard ones.
+    ``estimated``: channels that were not recorded but follow from those that were. ``band_limited``: the base motion is
+    smooth between samples, as a logger's is; else linear, as a simulation's (`models.shaking.Shaking`). ``time``
+    (n_times,) starts at 0 s. ``notes`` say what was done while reading, ``suspicions`` what looks wrong with the data
+    but may be right; ``source``: the file and what it says of itself.
     """
 
     name: str

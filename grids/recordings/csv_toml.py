@@ -4,7 +4,7 @@ time = { column = "t", unit = "ms" }          # or time_step = "0.005 s"
 [columns]
 base_acceleration_x = { column = "acc table", unit = "g" }
 rotation_1 = { column = "inclinometer", unit = "mrad", sign = -1 }
-level_acceleration_x_0 = { column = "slab", unit = "g" }      # levels end in _0, _1 ...
+level_acceleration_x_0 = { column = "slab", unit = "g" }      # ends in the level's number, 0 above the bearings
 lvdt_left = { column = "W3", unit = "mm" }    # any other name has a table that says what it measures
 [channels.lvdt_left]
 quantity = "displacement"                     # ... (see `grids.recordings.placed`)
@@ -18,7 +18,7 @@ import numpy as np
 
 from grids.columns import read_columns, read_layout
 from grids.recordings.base import CHANNELS, FloatArray, Raw, unknown_channel
-from grids.recordings.levels import BY_LEVEL, stem
+from grids.recordings.levels import BY_LEVEL, numbered, stem
 from grids.recordings.placed import read_places
 from grids.units import factor_to_si
 from models.errors import InputError, nearest
@@ -54,7 +54,7 @@ def read(path: Path) -> Raw:
         members = sorted((int(n[len(channel) + 1 :]), n) for n in table.values if stem(n) == channel)
         if not members:
             continue
-        found = tuple(str(level) for level, _ in members)
+        found = numbered([str(level) for level, _ in members])
         if levels and found != levels:
             raise InputError(
                 f"{channel} has levels {', '.join(found)}, {BY_LEVEL[0]} {', '.join(levels)}; map the same ones."

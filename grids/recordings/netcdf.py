@@ -12,6 +12,7 @@ import numpy as np
 
 from grids.netcdf_file import Variable, read_netcdf
 from grids.recordings.base import CHANNELS, REQUIRED, FloatArray, Raw, unknown_channel
+from grids.recordings.levels import numbered
 from grids.recordings.placed import KEYS, read_places
 from grids.sampling import uniform_step
 from grids.units import factor_to_si
@@ -73,8 +74,8 @@ def _levels(stored: Variable | None, count: int) -> tuple[str, ...]:
     if stored is None:
         return tuple(str(level) for level in range(count))
     if stored.text is not None:
-        return stored.text
-    return tuple(f"{level:g}" for level in ([] if stored.values is None else stored.values.tolist()))
+        return numbered(stored.text)
+    return numbered([f"{level:g}" for level in ([] if stored.values is None else stored.values.tolist())])
 
 
 def _si(variable: Variable, name: str, unit: str, wanted: tuple[str, ...]) -> FloatArray:

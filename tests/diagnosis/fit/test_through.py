@@ -9,6 +9,7 @@ import pytest
 
 import models
 from diagnosis.answer.calibration import calibrate
+from diagnosis.data.measured import left_out
 from diagnosis.data.stretches import averages
 from diagnosis.errors.own import AS_MOTION, own_error
 from diagnosis.fit.misfit import Misfit
@@ -64,6 +65,39 @@ def test_stretches_are_cut_from_one_run_and_means_of_it(integrated: bool) -> Non
     shown = [m.channels.index(c) for c in channels]
     error = np.where(m.mask, found - m.values, 0.0)[:, shown]
     assert np.sqrt(np.mean(error**2)) < 0.01 * np.sqrt(np.mean(m.values[:, shown] ** 2))
+
+
+def held(recording: Recording, *levels: int) -> Recording:
+    """The recording of some levels alone, in that order."""
+    rows = {name: x[list(levels)] if x.ndim == 2 else x for name, x in recording.channels.items()}
+    return replace(recording, channels=rows, levels=tuple(map(str, levels)))
+
+
+def test_the_roof_alone_is_fitted_to_its_noise() -> None:
+    found = calibrate(SPECIMEN, [held(made(0.01, integrated=True), 1)], profile=False)
+    assert found.misfit < 0.04
+    for name, true in BEARINGS.items():
+        estimate, rounding = found.parameters[name], 1e-3 * true  # of runs on means
+        assert estimate.low95 - rounding < true < estimate.high95 + rounding, (name, estimate)
+
+
+def test_recordings_are_compared_by_the_levels_that_all_of_them_hold() -> None:
+    whole = made(0.0, integrated=True)
+    turned, roof = replace(held(whole, 1, 0), name="turned"), replace(held(whole, 1), name="roof")
+    both, one = measure(SPECIMEN, [whole, turned]), measure(SPECIMEN, [turned, roof])
+    assert one.channels == tuple(c for c in both.channels if c.endswith("_1"))
+    for m in (both, one):
+        of = [m.values[m.recording_of == r] for r in range(2)]
+        np.testing.assert_array_equal(of[0], of[1])
+    assert left_out([turned, roof]) == {f"level_{what}_x_0": ("roof",) for what in ("displacement", "acceleration")}
+
+
+def test_levels_that_the_model_or_another_recording_has_not_are_refused() -> None:
+    whole = made(0.0, integrated=True)
+    with pytest.raises(InputError, match=r"level_displacement_x_2 of made is of level 2, .* isolated has 2 here"):
+        measure(SPECIMEN, [replace(whole, levels=("1", "2"))])
+    with pytest.raises(InputError, match=r"level_displacement_x is of no level that all of made, roof hold"):
+        measure(SPECIMEN, [held(whole, 0), replace(held(whole, 1), name="roof")])
 
 
 def test_means_are_those_of_the_samples() -> None:
