@@ -111,12 +111,14 @@ def _shaking(specimen: Specimen, motion: Motion | Recording | str | Path, compon
 def is_recording(path: Path) -> bool:
     """Whether a file holds the measured base motion under its standard name."""
     from grids.netcdf_file import read_netcdf
+    from grids.recordings import csv_toml, netcdf
     from grids.recordings.base import REQUIRED
 
-    if path.suffix in (".csv", ".toml"):
+    ending = path.suffix.lower()
+    if ending in (*csv_toml.SUFFIXES, ".toml"):
         beside = path.with_suffix(".toml")
         return beside.is_file() and REQUIRED in beside.read_text("utf-8")
-    if path.suffix != ".nc" or not path.is_file():
+    if ending not in netcdf.SUFFIXES or not path.is_file():
         return False
     try:
         return REQUIRED in read_netcdf(path).variables

@@ -1,0 +1,48 @@
+"""Simulations under the measured base motion of a recording, whatever the ending of its file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray
+
+import rocking
+from grids.specimen import parse_specimen
+
+SPECIMEN = parse_specimen(
+    'title = "block"\nmodel = "housner"\n[parameters]\nwidth = 0.25\nheight = 1.1\nmass = 120.0\n'
+)
+TIME = 0.01 * np.arange(60)
+BASE = np.sin(20.0 * TIME)
+COLUMNS = """
+time_step = "0.01 s"
+[columns]
+base_acceleration_x = { column = "a", unit = "m/s2" }
+inclino = { column = "r", unit = "rad" }
+[channels.inclino]
+quantity = "rotation"
+"""
+
+
+def stored(path: Path) -> Path:
+    """A recording of a placed rotation."""
+    if path.suffix.lower() in (".csv", ".txt"):
+        path.with_suffix(".toml").write_text(COLUMNS)
+        path.write_text("a,r\n" + "".join(f"{a},{0.01 * a}\n" for a in BASE))
+        return path
+    channels = {
+        "base_acceleration_x": ("time", BASE, {"units": "m s-2"}),
+        "inclino": ("time", 0.01 * BASE, {"units": "rad", "quantity": "rotation"}),
+    }
+    data = xarray.Dataset(channels, coords={"time": ("time", TIME, {"units": "s"})})
+    data.to_netcdf(path, engine="netcdf4")
+    return path
+
+
+@pytest.mark.parametrize("name", ["run.nc", "run.nc4", "run.NC", "run.cdf", "run.csv", "run.CSV", "run.txt"])
+def test_a_recording_is_one_by_what_it_holds(name: str, tmp_path: Path) -> None:
+    found = rocking.simulate(SPECIMEN, stored(tmp_path / name), duration=0.3)
+    assert found["inclino"].attrs["quantity"] == "rotation"
+    assert found["base_acceleration_x"].attrs["between_samples"] == "band_limited"
