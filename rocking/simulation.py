@@ -110,6 +110,7 @@ def _shaking(specimen: Specimen, motion: Motion | Recording | str | Path, compon
 
 def is_recording(path: Path) -> bool:
     """Whether a file holds the measured base motion under its standard name."""
+    from grids.files import read_text
     from grids.netcdf_file import read_netcdf
     from grids.recordings import csv_toml, netcdf
     from grids.recordings.base import REQUIRED
@@ -117,7 +118,7 @@ def is_recording(path: Path) -> bool:
     ending = path.suffix.lower()
     if ending in (*csv_toml.SUFFIXES, ".toml"):
         beside = path.with_suffix(".toml")
-        return beside.is_file() and REQUIRED in beside.read_text("utf-8")
+        return beside.is_file() and REQUIRED in read_text(beside, "the description of the columns")
     if ending not in netcdf.SUFFIXES or not path.is_file():
         return False
     try:

@@ -73,9 +73,13 @@ def _plain(attribute: str) -> str | float:
 def _levels(stored: Variable | None, count: int) -> tuple[str, ...]:
     if stored is None:
         return tuple(str(level) for level in range(count))
+    if stored.dimensions != ("level",):
+        raise InputError(f"level is over {stored.dimensions}; it belongs over ('level',).")
     if stored.text is not None:
         return numbered(stored.text)
-    return numbered([f"{level:g}" for level in ([] if stored.values is None else stored.values.tolist())])
+    if stored.values is None:
+        raise InputError(f"level holds {stored.type}, not numbers; number the levels from 0.")
+    return numbered([f"{level:g}" for level in stored.values.tolist()])
 
 
 def _si(variable: Variable, name: str, unit: str, wanted: tuple[str, ...]) -> FloatArray:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+import netCDF4
 import numpy as np
 import pytest
 import xarray
@@ -61,6 +62,23 @@ def test_levels_without_a_number_of_their_own_are_refused(
 ) -> None:
     with pytest.raises(InputError, match=f"recording run.nc: {said}"):
         read_recording(stored(tmp_path, levels))
+
+
+@pytest.mark.parametrize("over", [(), ("time",)])
+def test_levels_over_another_dimension_are_refused(over: tuple[str, ...], tmp_path: Path) -> None:
+    path = stored(tmp_path, None)
+    with netCDF4.Dataset(path, "a") as data:
+        data.createVariable("level", "f8", over)[...] = 3.0
+    with pytest.raises(InputError, match=r"recording run.nc: level is over .*; it belongs over \('level',\)"):
+        read_recording(path)
+
+
+def test_levels_of_another_type_are_refused(tmp_path: Path) -> None:
+    path = stored(tmp_path, None)
+    with netCDF4.Dataset(path, "a") as data:
+        data.createVariable("level", "S1", ("level",))[:] = np.array([b"0", b"1"])
+    with pytest.raises(InputError, match=r"level holds .*, not numbers; number the levels from 0"):
+        read_recording(path)
 
 
 def mapped(written: Callable[[str, str], Path], *levels: str) -> Path:

@@ -10,6 +10,7 @@ import xarray
 
 import rocking
 from grids.specimen import parse_specimen
+from models.errors import InputError
 
 SPECIMEN = parse_specimen(
     'title = "block"\nmodel = "housner"\n[parameters]\nwidth = 0.25\nheight = 1.1\nmass = 120.0\n'
@@ -46,3 +47,11 @@ def test_a_recording_is_one_by_what_it_holds(name: str, tmp_path: Path) -> None:
     found = rocking.simulate(SPECIMEN, stored(tmp_path / name), duration=0.3)
     assert found["inclino"].attrs["quantity"] == "rotation"
     assert found["base_acceleration_x"].attrs["between_samples"] == "band_limited"
+
+
+@pytest.mark.parametrize("name", ["run.csv", "run.toml"])
+def test_a_description_that_is_not_utf_8_is_named(name: str, tmp_path: Path) -> None:
+    stored(tmp_path / "run.csv")
+    (tmp_path / "run.toml").write_bytes('title = "Größe"'.encode("latin-1") + COLUMNS.encode())
+    with pytest.raises(InputError, match=r"run.toml is not UTF-8 text; save it as UTF-8"):
+        rocking.simulate(SPECIMEN, tmp_path / name)
