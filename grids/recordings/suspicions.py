@@ -48,7 +48,8 @@ OFF_ZERO = 5.0
 class Rocking:
     """The regression above: ``p2`` (s-2) with its significance, ``alpha`` (rad), share explained.
 
-    ``independent`` counts the samples that smoothing leaves independent.
+    ``alpha`` is infinite where the base has no share at all. ``independent`` counts the samples that smoothing leaves
+    independent.
     """
 
     p2: float
@@ -152,7 +153,7 @@ def fit_rocking(rotation: FloatArray, base: FloatArray, time_step: float) -> Roc
         return None
     (of_sign, _, of_base), errors, explained = solved
     p2 = -float(of_base) * GRAVITY
-    alpha = float(of_sign / of_base) / GRAVITY
+    alpha = float(of_sign / of_base) / GRAVITY if of_base else np.inf
     return Rocking(p2, abs(float(of_base / errors[2])), alpha, explained, float(up.sum()) / width)
 
 
