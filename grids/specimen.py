@@ -250,6 +250,8 @@ def _range(name: str, entry: object, targets: Targets) -> tuple[float, float]:
     target = targets.find(name, where)
     if target.words:
         raise InputError(f"{where}: an option cannot be calibrated; put it in [options].")
+    if target.whole:
+        raise InputError(f"{where}: a whole number cannot be calibrated; give it a value in [mechanisms].")
     if not isinstance(entry, list) or len(entry) != 2:
         raise InputError(f"{where} = {entry!r}: give the range [low, high].")
     low, high = (target.number(end, where) for end in entry)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from grids.instruments import INSTRUMENTS
+from grids.instruments.base import Whole
 from grids.units import to_si, with_unit
 from models.base import Mechanism, MechanismParameter, Parameter
 from models.errors import InputError, nearest
@@ -42,6 +43,7 @@ class Target:
     low_open: bool = False
     null: float | None = None
     words: tuple[str, ...] = ()
+    whole: bool = False
 
     def number(self, value: object, where: str) -> float:
         """The value in SI, inside the bounds; raises InputError."""
@@ -55,6 +57,10 @@ class Target:
             raise InputError(
                 f"{where} = {with_unit(number, self.unit)} ({self.meaning}): it must be {self._allowed(number)}"
                 f"{self._per_cent(number)}."
+            )
+        if self.whole and not number.is_integer():
+            raise InputError(
+                f"{where} = {number:g} ({self.meaning}): give a whole number from {self.low:g} to {self.high:g}."
             )
         return number
 
@@ -86,7 +92,10 @@ class Target:
 
 def _of(parameter: Parameter, name: str) -> Target:
     null = parameter.null if isinstance(parameter, MechanismParameter) else None
-    return Target(name, parameter.unit, parameter.meaning, parameter.low, parameter.high, parameter.low_open, null)
+    return Target(
+        name, parameter.unit, parameter.meaning, parameter.low, parameter.high, parameter.low_open, null,
+        whole=isinstance(parameter, Whole),
+    )  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -65,6 +65,10 @@ class Level(MechanismParameter):
     """A parameter given over the reference peak of the recordings (`Surroundings.reference_peak`)."""
 
 
+class Whole(MechanismParameter):
+    """A parameter that is a whole number, from ``low`` to ``high``."""
+
+
 def is_displacement(channel: str) -> bool:
     """Whether a channel is the displacement of a body or a level as a laboratory records it, and not its state."""
     return channel.startswith(("displacement_", "level_displacement_")) and "_z" not in channel

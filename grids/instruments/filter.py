@@ -17,7 +17,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from grids.instruments.base import Channels, Surroundings
+from grids.instruments.base import Channels, Surroundings, Whole
 from models.base import FloatArray, Mechanism, MechanismParameter, Values
 
 Kind = Literal["lowpass", "highpass"]
@@ -94,7 +94,7 @@ def backwards(few: int, count: int) -> NDArray[np.float64]:
 
 
 def stages(values: Values) -> list[tuple[float, int, Kind]]:
-    order = round(float(values["order"]))
+    order = int(values["order"])
     found: list[tuple[float, int, Kind]] = []
     if np.isfinite(values["corner_hz"]):
         found.append((float(values["corner_hz"]), order, "lowpass"))
@@ -161,7 +161,7 @@ MECHANISM = Mechanism(
             "corner_hz", "f_c", "Hz", "corner of the low-pass of the response channels", 0.5, 60.0,
             null=np.inf, fit_inverse=True,
         ),
-        MechanismParameter("order", "n_f", "1", "order of the Butterworth filter", 1.0, 4.0, null=2.0, shape=True),
+        Whole("order", "n_f", "1", "order of the Butterworth filter", 1.0, 4.0, null=2.0, shape=True),
         MechanismParameter(
             "high_pass_hz", "f_h", "Hz", "corner of a high-pass of the response channels", 0.0, 5.0, shape=True
         ),

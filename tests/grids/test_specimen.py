@@ -85,6 +85,12 @@ BAD: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "empty mechanism": ("gain = 0.05", "", ("[mechanisms.gain]", "empty")),
     "unknown mechanism parameter": ("gain = 0.05", "gian = 0.05", ("'gian'", "did you mean 'gain'")),
     "beyond the range": ("gain = 0.05", "gain = 0.5", ("gain = 0.5", "at most 0.12")),
+    "half an order": ("gain]\ngain = 0.05", "filter]\norder = 2.5", ("order = 2.5", "whole number", "from 1 to 4")),
+    "a whole number with a range": (
+        "[calibrate]",
+        '[calibrate]\n"filter.order" = [1, 4]',
+        ("[calibrate] filter.order", "whole number", "give it a value"),
+    ),
     "a mechanism among parameters": (
         "height = 1.8",
         'height = 1.8\n"slip.friction" = 0.3',
