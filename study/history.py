@@ -81,7 +81,7 @@ def simulate_specimen(
     read_off = {name: one.read(history.channels, read.time_step, (along[0], along[1])) for name, one in placed.items()}
     observed = {quantity.name: history.channels[quantity.name] for quantity in model.observables}
     history = replace(history, channels={**observed, **read_off})
-    channels = _recorded(model, history, moved, ways, specimen.reference_peak)
+    channels = _recorded(model, history, moved, ways, specimen.reference_peak, placed)
     dataset = _label(model, replace(history, channels=channels), read, placed)
     dataset.attrs = {
         "Conventions": "CF-1.11",
@@ -141,11 +141,11 @@ def _parts(specimen: Specimen, ways: Ways) -> list[Part]:
 
 
 def _recorded(
-    model: Model, history: History, base: Shaking, ways: Ways, reference_peak: float | None
+    model: Model, history: History, base: Shaking, ways: Ways, peak: float | None, placed: Mapping[str, Place]
 ) -> dict[str, FloatArray]:
     """The channels as the instruments record them; shares of contact stay as they are."""
     units = {quantity.name: quantity.unit for quantity in model.observables}
-    around = Surroundings(base.time_step, _at(history, base, base.horizontal), reference_peak)
+    around = Surroundings(base.time_step, _at(history, base, base.horizontal), peak, places=placed)
     signals = {name: x for name, x in history.channels.items() if units.get(name) != SHARE}
     return {**history.channels, **recorded_in_stages(signals, ways, around)}
 

@@ -93,5 +93,5 @@ def sensed_run(
         c: np.ravel(places[c].read(seen, shaking.time_step, (ground[0][0], ground[1][0])) if c in places else seen[c])
         for c in channels
     }
-    around = Surroundings(shaking.time_step, moved.horizontal, measured.reference_peak)
+    around = Surroundings(shaking.time_step, moved.horizontal, measured.reference_peak, places=places)
     return dict(recorded_in_stages(found, sets, around))

@@ -13,6 +13,7 @@ from diagnosis.data.averaging import averaged, stride
 from diagnosis.data.gathered import gather, memories, refuse_dead, smoothed, start_of
 from diagnosis.data.noise import base_noise, response_noise
 from diagnosis.data.windows import ABOVE_NOISE, Window, cut, over_noise
+from grids.instruments.base import Surroundings
 from grids.recordings.base import SHARE, FloatArray, Recording
 from grids.recordings.levels import level_by_level, stem
 from grids.recordings.zero import Zeros, zeros
@@ -132,6 +133,10 @@ class Measured:
         """The compared channels before any instrument, of a run's observables and poses (..., samples)."""
         seen, places = self.identification.seen(ran), self.places
         return {c: places[c].read(seen, time_step, ground) if c in places else seen[c] for c in self.channels}
+
+    def around(self, time_step: float, base: FloatArray, start: FloatArray | float = 0.0) -> Surroundings:
+        """What instruments need beside the compared channels; ``base`` and ``start``: see `Surroundings`."""
+        return Surroundings(time_step, base, self.reference_peak, start, places=self.places)
 
     def unit_of(self, channel: str) -> str:
         """SI unit of a compared channel."""

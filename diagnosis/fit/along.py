@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.unknowns import instruments_of
-from grids.instruments.base import Surroundings
 from grids.instruments.staged import moved_in_stages, recorded_in_stages
 from grids.instruments.windowed import moved_in_windows, recorded_in_windows
 from models.base import FloatArray
@@ -115,7 +114,7 @@ class Along:
         ground = moved_in_stages(m.shakings[r], sets, moved_in_windows)
         start = np.asarray(recording.time_step * first[:, None], np.float64)
         base = ground_along(ground, first, m.values.shape[2])
-        around = Surroundings(recording.time_step, base[0], m.reference_peak, start)
+        around = m.around(recording.time_step, base[0], start)
         held = Observed({c: partial(_spliced, self.plain[r], ran, c, rows, sample) for c in ran})
         channels = m.sensed(held, ground.time_step, base)
         found = recorded_in_stages(channels, sets, around, recorded_in_windows)

@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 
 from diagnosis.data.measured import Measured
 from diagnosis.data.smoothing import smooth
-from grids.instruments.base import Surroundings
 from grids.instruments.staged import Sets, recorded_in_stages
 from grids.instruments.windowed import recorded_in_windows
 from grids.recordings.base import Recording
@@ -212,7 +211,7 @@ def freed(measured: Measured, recording: Recording, setting: Setting) -> dict[st
     if not any(switched for _, switched in setting.sets):
         return {name: x[0] for name, x in seen.items()}
     base = setting.shaking.horizontal[None]
-    around = Surroundings(recording.time_step, base, measured.reference_peak, np.zeros((1, 1)))
+    around = measured.around(recording.time_step, base, np.zeros((1, 1)))
     true = seen
     for _ in range(ROUNDS):
         again = recorded_in_stages(true, setting.sets, around, recorded_in_windows)

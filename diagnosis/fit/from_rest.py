@@ -15,7 +15,6 @@ from diagnosis.data.smoothing import smooth
 from diagnosis.data.windows import ABOVE_NOISE
 from diagnosis.fit.prediction import Point, Predictor, held
 from diagnosis.fit.unknowns import instruments_of
-from grids.instruments.base import Surroundings
 from grids.instruments.staged import moved_in_stages, recorded_in_stages
 from grids.instruments.windowed import seconds_ahead
 from models.base import FloatArray
@@ -62,6 +61,6 @@ def from_rest(predictor: Predictor, point: Point, recording: int, samples: int) 
     seen = Observed({name: partial(held, ran, name, (1, 1, run), np.array([run - 1])) for name in ran})
     along = ground_along(shaking, first, run)
     true = m.sensed(seen, shaking.time_step, along)
-    around = Surroundings(taken.time_step, along[0], m.reference_peak, np.zeros((1, 1)))
+    around = m.around(taken.time_step, along[0], np.zeros((1, 1)))
     recorded = recorded_in_stages({c: true[c] for c in m.channels}, sets, around)
     return np.stack([np.ravel(recorded[c])[:samples] for c in m.channels])

@@ -19,7 +19,7 @@ from diagnosis.data.measured import Measured
 from diagnosis.fit.carrying import Asked, Carrying, Setting
 from diagnosis.fit.through import run_through
 from diagnosis.fit.unknowns import instruments_of, without_instruments
-from grids.instruments.base import Surroundings, Switched
+from grids.instruments.base import Switched
 from grids.instruments.staged import Sets, moved_in_stages, recorded_in_stages
 from grids.instruments.windowed import moved_in_windows, recorded_in_windows, same_base, seconds_ahead
 from grids.recordings.base import Recording
@@ -247,7 +247,7 @@ class Predictor:
         along = ground_along(ground, m.first[windows], samples)
         found = m.sensed(seen, shaking.time_step, along)
         start = np.asarray(time_step * m.first[windows, None], float)
-        around = Surroundings(time_step, along[0], m.reference_peak, start)
+        around = m.around(time_step, along[0], start)
         for alike in _alike([instruments[p] for p in members]):
             true = {c: found[c][alike] for c in m.channels}
             leader = members[alike[0]]

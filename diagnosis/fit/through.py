@@ -11,7 +11,6 @@ import numpy as np
 
 from diagnosis.data.measured import Measured
 from diagnosis.data.stretches import averages
-from grids.instruments.base import Surroundings
 from grids.instruments.staged import Sets, recorded_in_stages
 from grids.recordings.levels import level_of, stem
 from models.base import FloatArray
@@ -37,7 +36,7 @@ def run_through(
     samples = m.shakings[recording].horizontal.size
     size = round(m.recordings[recording].time_step / m.shakings[recording].time_step)
     found = np.zeros((len(parts), len(m.channels), samples // size))
-    around = Surroundings(shaking.time_step, shaking.horizontal, m.reference_peak)
+    around = m.around(shaking.time_step, shaking.horizontal)
     peaks = {c: float(np.max(np.abs(m.recordings[recording].channels[c]))) for c in m.channels}
     # of all levels together: the channel of one may be dead
     largest = {c: max(peak for other, peak in peaks.items() if stem(other) == stem(c)) for c in m.channels}

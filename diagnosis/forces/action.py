@@ -24,7 +24,6 @@ from diagnosis.fit.along import Along
 from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.unknowns import instruments_of, library
 from grids.instruments import INSTRUMENTS
-from grids.instruments.base import Surroundings
 from grids.instruments.staged import moved_in_stages, recorded_in_stages
 from grids.instruments.windowed import moved_in_windows, recorded_in_windows
 from grids.stages import intervals
@@ -127,7 +126,7 @@ def _errors(predictor: Predictor, point: Point, effect: str, states: Mapping[str
         start = np.asarray(recording.time_step * m.first[own, None], float)
         ground = moved_in_stages(m.shakings[r], predictor.sets(instruments, recording), moved_in_windows)
         base, _ = ground_along(ground, m.first[own], m.values.shape[2])
-        around = Surroundings(recording.time_step, base, m.reference_peak, start)
+        around = m.around(recording.time_step, base, start)
         true = {channel: states[channel][own] for channel in m.channels}
         seen, plain = (
             recorded_in_stages(true, predictor.sets(switched, recording), around, recorded_in_windows)

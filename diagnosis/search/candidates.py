@@ -112,7 +112,7 @@ def reads(mechanism: Mechanism, measured: Measured) -> bool:
     count = 512
     signals = {c: np.sin(np.arange(count) / 5.0) for c in measured.channels}
     values = {p.name: p.low if p.high == p.null else p.high for p in mechanism.parameters}
-    around = Surroundings(0.01, np.cos(np.arange(count) / 5.0), 1.0)
+    around = Surroundings(0.01, np.cos(np.arange(count) / 5.0), 1.0, places=measured.places)
     found = mechanism.acts["whole" if whole else "response"](signals, values, around)
     return any(not np.array_equal(found[c], signals[c]) for c in signals)
 

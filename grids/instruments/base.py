@@ -19,9 +19,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from models.base import FloatArray, MechanismParameter
+from models.kinematics import Place
 
 Channels = Mapping[str, FloatArray]
-"""Response channels ``(..., samples)`` by standard name."""
+"""Response channels ``(..., samples)`` by name."""
 
 
 Switched = Mapping[str, Mapping[str, float]]
@@ -36,7 +37,8 @@ class Surroundings:
     their clock, in m s-2.
     ``reference_peak``: the rotation (rad) over which levels are given; None: the largest of the run itself.
     ``start`` (..., 1): time (s) of the first sample since the start of the recording. ``began``: the time (s) at which
-    an instrument by its name began to act, where that is within the recording.
+    an instrument by its name began to act, where that is within the recording. ``places``: what channels measure that
+    are no standard ones.
     """
 
     time_step: float
@@ -44,6 +46,7 @@ class Surroundings:
     reference_peak: float | None = None
     start: FloatArray | float = 0.0
     began: Mapping[str, float] = field(default_factory=dict)
+    places: Mapping[str, Place] = field(default_factory=dict)
 
     @property
     def time(self) -> FloatArray:
@@ -58,7 +61,19 @@ class Surroundings:
         """The rotation (rad) over which levels are given; without one, the largest of the first rotation channel."""
         if self.reference_peak is not None:
             return self.reference_peak
-        return next((float(abs(x).max()) for name, x in channels.items() if is_rotation(name)), 0.0)
+        return next((float(abs(x).max()) for name, x in channels.items() if self.is_rotation(name)), 0.0)
+
+    def is_rotation(self, channel: str) -> bool:
+        """Whether a channel is a rotation (not its rate)."""
+        if channel in self.places:
+            return self.places[channel].quantity == "rotation"
+        return channel.startswith("rotation_") and "rate" not in channel
+
+    def is_displacement(self, channel: str) -> bool:
+        """Whether a channel is a displacement of a body or a level as a laboratory records it, and not its state."""
+        if channel in self.places:
+            return self.places[channel].quantity == "displacement"
+        return channel.startswith(("displacement_", "level_displacement_")) and "_z" not in channel
 
 
 class Level(MechanismParameter):
@@ -67,13 +82,3 @@ class Level(MechanismParameter):
 
 class Whole(MechanismParameter):
     """A parameter that is a whole number, from ``low`` to ``high``."""
-
-
-def is_displacement(channel: str) -> bool:
-    """Whether a channel is the displacement of a body or a level as a laboratory records it, and not its state."""
-    return channel.startswith(("displacement_", "level_displacement_")) and "_z" not in channel
-
-
-def is_rotation(channel: str) -> bool:
-    """Whether a channel is a rotation (not its rate)."""
-    return channel.startswith("rotation_") and "rate" not in channel

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from grids.instruments.base import Channels, Surroundings, is_rotation
+from grids.instruments.base import Channels, Surroundings
 from models.base import Mechanism, MechanismParameter, Values
 
 
 def respond(channels: Channels, values: Values, around: Surroundings) -> Channels:
     leak = values["rotation_per_acceleration"] * around.base_acceleration
-    return {name: x + leak if is_rotation(name) else x for name, x in channels.items()}
+    return {name: x + leak if around.is_rotation(name) else x for name, x in channels.items()}
 
 
 MECHANISM = Mechanism(

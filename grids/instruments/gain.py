@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from grids.instruments.base import Channels, Surroundings, is_rotation
+from grids.instruments.base import Channels, Surroundings
 from models.base import Mechanism, MechanismParameter, Values
 
 
-def respond(channels: Channels, values: Values, _: Surroundings) -> Channels:
+def respond(channels: Channels, values: Values, around: Surroundings) -> Channels:
     factor = 1.0 + values["gain"]
-    return {name: x * factor if is_rotation(name) else x for name, x in channels.items()}
+    return {name: x * factor if around.is_rotation(name) else x for name, x in channels.items()}
 
 
 MECHANISM = Mechanism(

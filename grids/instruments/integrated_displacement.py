@@ -16,7 +16,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from grids.instruments.base import Channels, Surroundings, is_displacement
+from grids.instruments.base import Channels, Surroundings
 from models.base import FloatArray, Mechanism, MechanismParameter, Values
 
 ORDER = 4
@@ -39,7 +39,7 @@ def _sections(corner_hz: float, time_step: float) -> FloatArray:
 def respond(channels: Channels, values: Values, around: Surroundings) -> Channels:
     corner, step = float(values["high_pass_hz"]), around.time_step
     return {
-        name: high_passed(high_passed(x, corner, step), corner, step) if is_displacement(name) else x
+        name: high_passed(high_passed(x, corner, step), corner, step) if around.is_displacement(name) else x
         for name, x in channels.items()
     }
 

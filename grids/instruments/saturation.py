@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from grids.instruments.base import Channels, Level, Surroundings, is_rotation
+from grids.instruments.base import Channels, Level, Surroundings
 from models.base import Mechanism, Values
 
 
 def respond(channels: Channels, values: Values, around: Surroundings) -> Channels:
     level = values["level_over_peak"] * around.peak(channels)
-    return {name: np.clip(x, -level, level) if is_rotation(name) else x for name, x in channels.items()}
+    return {name: np.clip(x, -level, level) if around.is_rotation(name) else x for name, x in channels.items()}
 
 
 MECHANISM = Mechanism(

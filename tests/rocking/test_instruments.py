@@ -55,6 +55,46 @@ def test_gain_and_offset_act_on_rotations_only(tmp_path: Path, motion: Motion) -
     np.testing.assert_array_equal(read["contact_1"].values, true["contact_1"].values)
 
 
+PLACED = """
+[channels.inclino]
+quantity = "rotation"
+[channels.string]
+quantity = "displacement"
+position_z = 1.0
+[channels.gauge]
+quantity = "uplift"
+position_x = 0.1
+"""
+
+
+@pytest.mark.parametrize(
+    "sensor",
+    [
+        "gain]\ngain = 0.05", "offset]\noffset_over_peak = 0.1", "drift]\nrate = 0.001",
+        "saturation]\nlevel_over_peak = 0.5", "cross_axis]\nrotation_per_acceleration = 0.001",
+    ],
+)  # fmt: skip
+def test_a_rotation_by_its_place_is_read_as_one_by_its_name(sensor: str, tmp_path: Path, motion: Motion) -> None:
+    true = rocking.simulate(block(tmp_path, PLACED), motion, duration=4.0)
+    read = rocking.simulate(block(tmp_path, f"{PLACED}[mechanisms.{sensor}\n"), motion, duration=4.0)
+    assert np.max(np.abs(read["inclino"] - true["inclino"])) > 1e-4
+    np.testing.assert_array_equal(read["inclino"], read["rotation_1"])
+    for other in ("string", "gauge"):
+        np.testing.assert_array_equal(read[other], true[other])
+
+
+def test_a_displacement_by_its_place_is_integrated_as_one_by_its_name(tmp_path: Path, motion: Motion) -> None:
+    integrated = "[mechanisms.integrated_displacement]\nhigh_pass_hz = 0.3\n"
+    places = PLACED.replace("position_z = 1.0", "position_z = 0.55")  # the centre of the block
+    true = rocking.simulate(block(tmp_path, places), motion, duration=4.0)
+    read = rocking.simulate(block(tmp_path, places + integrated), motion, duration=4.0)
+    np.testing.assert_allclose(true["string"], true["displacement_1_x"], atol=1e-12)
+    np.testing.assert_allclose(read["string"], read["displacement_1_x"], atol=1e-9)
+    assert np.max(np.abs(read["string"] - true["string"])) > 1e-3
+    for other in ("inclino", "gauge"):
+        np.testing.assert_array_equal(read[other], true[other])
+
+
 def test_a_level_is_over_the_reference_peak_of_the_specimen(tmp_path: Path, motion: Motion) -> None:
     true = rocking.simulate(block(tmp_path), motion, duration=4.0)["rotation_1"].values
     level = "[instruments]\nreference_peak = 0.02\n[mechanisms.saturation]\nlevel_over_peak = 0.5\n"

@@ -10,7 +10,11 @@ import pytest
 
 import models
 from diagnosis.answer.calibration import Calibration, calibrate
+from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.setup import measure
+from diagnosis.fit.unknowns import fixed_values
+from diagnosis.search.candidates import reads
+from grids.instruments import INSTRUMENTS
 from grids.recordings.base import Recording
 from models.errors import InputError
 from models.kinematics import Place
@@ -22,6 +26,7 @@ PLACES = {
     "string": Place("displacement", 1, 0.0, 1.5, "x"),
     "top": Place("acceleration", 1, 0.0, 1.8, "across", "absolute"),
     "load": Place("force", 1, direction="x"),
+    "inclino": Place("rotation"),
 }
 UNKNOWN = replace(SPECIMEN, calibrate={"restitution": (0.8, 1.0)})
 SHARE = 1.0 - 1.5 * TRUE["width"] ** 2 / (TRUE["width"] ** 2 + TRUE["height"] ** 2)
@@ -73,6 +78,19 @@ def test_a_calibration_by_rotation_agrees_with_it(by_gauges: Calibration) -> Non
     for name, one in by_gauges.parameters.items():
         assert one.low95 < rotation[name].high95
         assert rotation[name].low95 < one.high95
+
+
+def test_instruments_act_on_a_rotation_by_its_place() -> None:
+    measured = measure(UNKNOWN, [recorded(("inclino", "string"))])
+    plain = {**fixed_values(UNKNOWN), "restitution": SHARE}
+    true, read = Predictor(measured).predict(
+        [Point(values, measured.states) for values in (plain, {**plain, "gain.gain": 0.05})]
+    )
+    k, other = (measured.channels.index(name) for name in ("inclino", "string"))
+    np.testing.assert_allclose(read[:, k], 1.05 * true[:, k], rtol=1e-12)
+    np.testing.assert_array_equal(read[:, other], true[:, other])
+    assert reads(INSTRUMENTS["gain"], measured)
+    assert not reads(INSTRUMENTS["gain"], measure(UNKNOWN, [recorded(("string",))]))
 
 
 @pytest.mark.parametrize(("names", "said"), ((("lvdt_left",), "on both sides"), (("top",), "rotation_1 is missing")))
