@@ -58,6 +58,10 @@ class Reduced:
     basis: FloatArray
     """Orthonormal (W, M, S) directions that the states can reach."""
 
+    def at(self, residual: FloatArray) -> Reduced:
+        """Where the residual is another and the derivatives are the same."""
+        return replace(self, residual=project(self.basis, residual[..., None])[..., 0])
+
 
 @dataclass(frozen=True)
 class Misfit:
@@ -217,9 +221,7 @@ def reduce(linear: Linear) -> Reduced:
     if not linear.by_state.shape[-1]:
         return Reduced(linear.residual, linear.by_unknown, linear.by_state)
     q = np.linalg.qr(linear.by_state)[0]
-    along = np.einsum("wms,wm->ws", q, linear.residual)
-    residual = linear.residual - np.einsum("wms,ws->wm", q, along)
-    return Reduced(residual, project(q, linear.by_unknown), q)
+    return Reduced(linear.residual, project(q, linear.by_unknown), q).at(linear.residual)
 
 
 def project(basis: FloatArray, columns: FloatArray) -> FloatArray:

@@ -131,18 +131,26 @@ class Place:
     u: FloatArray
     states: FloatArray
     linear: Linear
+    reduced: Reduced
     window: FloatArray
     loss: float
+    fresh: bool = True
+    """Whether the derivatives were taken here."""
 
     @classmethod
     def at(cls, misfit: Misfit, u: FloatArray, states: FloatArray) -> Asking[Place]:
         linear = yield from misfit.linearising(u, states, one_sided=True)
         window = misfit.losses(linear.residual)
-        return cls(misfit, u, states, linear, window, float(window.sum()) + misfit.prior(u))
+        return cls(misfit, u, states, linear, reduce(linear), window, float(window.sum()) + misfit.prior(u))
 
-    @cached_property
-    def reduced(self) -> Reduced:
-        return reduce(self.linear)
+    def followed(self, misfit: Misfit, u: FloatArray, states: FloatArray) -> Asking[Place]:
+        """Another place near this one, its derivatives taken to be the same."""
+        predicted = yield [misfit.point(u, states)]
+        residual = misfit.whitened(predicted)[0]
+        window = misfit.losses(residual)
+        linear, reduced = replace(self.linear, residual=residual), self.reduced.at(residual)
+        loss = float(window.sum()) + misfit.prior(u)
+        return Place(misfit, u, states, linear, reduced, window, loss, fresh=False)
 
     @cached_property
     def normals(self) -> tuple[FloatArray, FloatArray]:
@@ -219,6 +227,8 @@ def _fitting(misfit: Misfit, u: FloatArray, states: FloatArray, iterations: int)
     place = yield from Place.at(misfit, u, states)
     damping, small, bold = 1.0, 0, True
     for _ in range(iterations):
+        if place.gain >= TOLERANCE and not place.fresh:
+            place = yield from Place.at(place.misfit, place.u, place.states)
         if place.gain < TOLERANCE:
             break
         best, further = 0, None
@@ -242,11 +252,16 @@ def _fitting(misfit: Misfit, u: FloatArray, states: FloatArray, iterations: int)
 
 
 def _whole(place: Place) -> Asking[Place | None]:
-    """The undamped step, if it gains what it should."""
-    change = place.change(0.0)
-    misfit, states = place.misfit.at_level(place.level(change)), place.states + place.shift(change)
-    further = yield from Place.at(misfit, place.moved(change), states)
-    return further if place.loss - further.loss > GOOD * place.gain else None
+    """Undamped steps with the derivatives of ``place`` as long as each gains what it should; None if none does."""
+    here = place
+    while here.gain >= TOLERANCE:
+        change = here.change(0.0)
+        misfit, states = here.misfit.at_level(here.level(change)), here.states + here.shift(change)
+        further = yield from here.followed(misfit, here.moved(change), states)
+        if here.loss - further.loss <= GOOD * here.gain:
+            break
+        here = further
+    return None if here is place else here
 
 
 def _search(place: Place, damping: float) -> Asking[tuple[int, Place | None]]:

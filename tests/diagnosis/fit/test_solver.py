@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 from diagnosis.data.measured import arrange
+from diagnosis.fit import solver
 from diagnosis.fit.growing import fit_from
 from diagnosis.fit.misfit import Misfit
-from diagnosis.fit.prediction import Predictor
+from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.setup import base_fit, measure, with_noise_of_the_base
 from diagnosis.fit.solver import Fitted, fit, fit_thoroughly
 from diagnosis.fit.starts import nominal
@@ -62,3 +63,28 @@ def test_windows_of_two_bodies_come_back_from_most_states() -> None:
     above = [fit_thoroughly(best.misfit, best.u, states).loss - best.loss for states in starts]
     assert min(fit(best.misfit, best.u, states).loss for states in starts) > best.loss + 1e4
     assert np.median(above) < 100.0
+
+
+def test_a_fit_near_its_minimum_goes_on_with_the_derivatives_that_it_has(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Near the minimum derivatives hardly change; each set of them takes a run for every parameter and state."""
+    best = base_fit(SPECIMEN, measure(SPECIMEN, [recording("a", 1)]))
+    start = best.u + 0.3
+
+    def asked() -> tuple[float, int]:
+        """Loss of the fit, and the runs of all windows that it asked for."""
+        runs: list[int] = []
+
+        def counted(predictor: Predictor, points: list[Point], **more: object) -> np.ndarray:
+            runs.append(len(points))
+            return predict(predictor, points, **more)
+
+        predict = Predictor.predict
+        with monkeypatch.context() as patch:
+            patch.setattr(Predictor, "predict", counted)
+            return fit(best.misfit, start, best.states).loss, sum(runs)
+
+    loss, fewer = asked()
+    monkeypatch.setattr(solver, "GOOD", np.inf)  # no step gains so much: each has derivatives of its own
+    other, more = asked()
+    assert fewer < 0.7 * more
+    assert loss < best.loss + 0.05 and other < best.loss + 0.05
