@@ -117,6 +117,13 @@ class LayeredWall:
             self._kept[make] = make(self) if one is self else _of_lanes(one.once(make), lanes)
         return cast(T, self._kept[make])
 
+    def of_distinct(self, make: Callable[[LayeredWall], T]) -> tuple[T, NDArray[np.intp]]:
+        """What ``make`` finds for the `distinct` walls, found once, and where each of the n lies among them (n,)."""
+        one, lanes = self.distinct
+        if make not in one._kept:
+            one._kept[make] = make(one)
+        return cast(T, one._kept[make]), lanes
+
     @cached_property
     def distinct(self) -> tuple[LayeredWall, NDArray[np.intp]]:
         """The walls without those that are as the one before, and where each of the n lies among them (n,).

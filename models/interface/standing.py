@@ -14,8 +14,8 @@ Unable = tuple[NDArray[np.bool_], str]
 
 def cannot_stand(wall: LayeredWall) -> list[Unable]:
     """The walls that a layer cannot carry, that creep without end, that tip over, or that crush a layer at rest."""
-    one, lanes = wall.distinct
-    return [(unable[lanes], said) for unable, said in _cannot_stand(one)]
+    found, lanes = wall.of_distinct(_cannot_stand)
+    return [(unable[lanes], said) for unable, said in found]
 
 
 def _cannot_stand(wall: LayeredWall) -> list[Unable]:
