@@ -160,9 +160,12 @@ def estimate(fitted: Fitted, base: FloatArray, start: Errors | None = None) -> E
     components = _components(scene) if start is None else start.components
     own = fitted.measured.stretches is not None
     quiet = stills(scene, components)
+    known = None if start is None else start.theta
     if not quiet and not own:
-        components = tuple(c for c in components if c.kind != "inadequacy")
-    theta = _start(components) if start is None else np.maximum(start.theta, 1e-4 * _start(components))
+        kept = np.array([c.kind != "inadequacy" for c in components])
+        components = tuple(c for c, keep in zip(components, kept, strict=True) if keep)
+        known = None if known is None else known[kept]
+    theta = _start(components) if known is None else np.maximum(known, 1e-4 * _start(components))
     pieces = (*windows(scene, components), *quiet)
     prior = prior_of(scene, components)
     moving = len(fitted.measured.windows)

@@ -40,8 +40,8 @@ def asking(m: Measured, r: int, gained: FloatArray, least: float) -> Interval:
 
 def exact(misfit: Misfit, mechanism: str, states: FloatArray, r: int, interval: Interval) -> Interval:
     """An interval of recording ``r`` with its instants found within the windows; nothing is unknown in ``misfit``."""
-    if interval == NEVER:
-        return NEVER
+    if interval == NEVER or not np.any(misfit.measured.recording_of == r):  # without a window nothing tells it
+        return interval
     begins, ends = interval
     spell = Spell(r, begins if begins > 0.0 else None, r, ends if np.isfinite(ends) else None)
     found = ends_within(misfit, states, mechanism, spell).spell

@@ -11,6 +11,7 @@ import pytest
 from scipy.optimize import minimize
 from scipy.signal import lfilter
 
+from diagnosis.errors import model
 from diagnosis.errors.adequacy import inadequacy, repeatability
 from diagnosis.errors.comparison import deviance
 from diagnosis.errors.likelihood import Piece, climbed, maximise, whitened
@@ -205,3 +206,13 @@ def test_windows_shorter_than_the_lags_of_the_figure_are_summed_too(monkeypatch:
     monkeypatch.setattr("diagnosis.errors.summary.LAGS", lags)
     correlation = summary(errors, on.measured).channels[0].spectrum.correlation
     assert len(correlation) == lags and np.all(np.isfinite(correlation))
+
+
+def test_errors_are_estimated_anew_where_nothing_is_still_any_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is still depends on the fit; without it the model's own error cannot be told from the sensors'."""
+    fitted = base_fit(SPECIMEN, measure(SPECIMEN, [scattered("a", 6)]))
+    first = estimate(fitted, disturbance_about(fitted))
+    monkeypatch.setattr(model, "stills", lambda *_: ())
+    again = estimate(fitted, first.base, first)
+    kinds = {c.kind for c in first.components} - {c.kind for c in again.components}
+    assert kinds == {"inadequacy"} and again.theta.size == len(again.components)

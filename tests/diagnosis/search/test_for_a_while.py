@@ -13,7 +13,7 @@ from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.prediction import Predictor
 from diagnosis.fit.solver import fit
 from diagnosis.fit.whitening import sensor_noise_only
-from diagnosis.search.for_a_while import asking
+from diagnosis.search.for_a_while import asking, exact
 from diagnosis.search.law import for_a_while, missing_law
 from diagnosis.search.refit import Explanation
 from diagnosis.search.spells import LASTS, NEVER, InEach, in_spell
@@ -94,3 +94,11 @@ def test_what_always_acts_does_not_come_and_go() -> None:
     _, errors = refitted(plain.fitted, disturbance_about(plain.fitted))
     law = for_a_while(plain, errors)
     assert law is not None and law.stages == ()
+
+
+def test_a_recording_without_a_window_keeps_its_interval(law: Law) -> None:
+    """Nothing in it tells an instant; it ended in an index out of bounds."""
+    fitted = law.explanation.fitted
+    first = fitted.misfit.of_windows(np.flatnonzero(fitted.measured.recording_of == 0))
+    interval = (1.0, 6.0)
+    assert exact(first.undisturbed, law.mechanism.name, fitted.states[:0], 1, interval) == interval
