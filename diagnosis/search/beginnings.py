@@ -28,7 +28,7 @@ from diagnosis.forces.constancy import BLOW, FOR_A_WHILE, Constancy
 from diagnosis.progress import Progress
 from diagnosis.search.asked import asked_for
 from diagnosis.search.beside import seconds
-from diagnosis.search.budget import RESERVED
+from diagnosis.search.budget import RESERVED, SHARED
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.details import least
 from diagnosis.search.found import ALONE, MISSING, Search, adjusted, explains_all, price, settles, survives
@@ -60,10 +60,11 @@ def alone(found: Search, progress: Progress) -> Iterator[Search]:
     if found.null is None or _settled(found):
         return
     progress("looking for an effect that begins or ends", 0.48)
-    with found.work_of_its_own(RESERVED):
+    with found.work_of_its_own(min(RESERVED, SHARED * found.left)):
         found.begun = _begun(found, found.base)
-    if found.begun is not None and found.begun.best is not None and explains_all(found.begun.best):
-        yield found.begun
+    begun = found.begun
+    if begun is not None and begun.best is not None and explains_all(begun.best) and not begun.incomplete:
+        yield begun
 
 
 def beside(found: Search, progress: Progress) -> Iterator[Search]:
@@ -81,6 +82,12 @@ def beside(found: Search, progress: Progress) -> Iterator[Search]:
             begun = _begun(found, found.best)
         if begun is not None:
             yield begun
+    elif found.best is not None and len(found.best.candidates) > 1:
+        progress("looking for effects that begin or end", 0.82)
+        with found.work_of_its_own(RESERVED):
+            begun = _one_of_several(found, found.best)
+        if begun is not None:
+            yield begun
 
 
 def _begun(found: Search, start: Explanation) -> Search | None:
@@ -95,8 +102,32 @@ def _begun(found: Search, start: Explanation) -> Search | None:
     whole = [one for one in found.singles if found.gain(one) >= MISSING] if start is found.base else []
     if found.affordable("effects that come and go in every recording"):
         fits += in_each(found, start, screened.both, [*fits, *whole], screened.cost)
-    fits = sorted((single for single in fits if _needed(found, start, single)), key=adjusted)
-    weighed = _weighed(found, fits) if fits else None
+    return _taken(found, [single for single in fits if _needed(found, start, single)])
+
+
+def _one_of_several(found: Search, best: Explanation) -> Search | None:
+    """The search with one of several effects in a spell, where what they leave is not the same everywhere."""
+    through = found.measured.stretches is not None
+    if through or len(found.measured.windows) < FEWEST_WINDOWS or not found.measured.identification.forces:
+        return None
+    if not found.tested(best).flags(least(found, best)):
+        return None
+    screen, scores = linearise_about(best.fitted), seconds(found, best)
+    cost = _price(screen, scores, runs(len(found.measured.windows)))
+    fits = []
+    for candidate in best.candidates:
+        others = tuple(one for one in best.candidates if one is not candidate)
+        if not found.affordable(at_an_instant(candidate.name)):
+            continue
+        part = _in_part(replace(best, candidates=(*others, candidate)), cost)
+        if part is not None and _needed(found, without(best, candidate), single := thorough(part)):
+            fits.append(single)
+    return _taken(found, fits)
+
+
+def _taken(found: Search, fits: Sequence[Explanation]) -> Search | None:
+    """The search with the best of ``fits``; None where what stood is likelier, or it acts for a moment only."""
+    weighed = _weighed(found, sorted(fits, key=adjusted)) if fits else None
     if weighed is None or weighed.best is None:
         return None
     for candidate in weighed.best.candidates:
@@ -131,11 +162,15 @@ class _Screened:
         screen = linearise_about(start.fitted)
         white = against_white_noise(found, start, [one.candidate for one in scores])
         ends = runs(len(found.measured.windows))
-        cost = max(0.0, chance(screen, scores, ends).band - null_distribution(screen, scores).band)
-        return cls(((screen, scores), white), ends, cost)
+        return cls(((screen, scores), white), ends, _price(screen, scores, ends))
 
     def in_runs(self) -> list[list[InRuns]]:
         return [in_runs(screen, scores, self.ends) for screen, scores in self.both]
+
+
+def _price(screen: Linearisation, scores: Sequence[Score], ends: NDArray[np.int64]) -> float:
+    """What a spell costs: how much larger chance makes the largest statistic with all runs of windows than without."""
+    return max(0.0, chance(screen, scores, ends).band - null_distribution(screen, scores).band)
 
 
 def _in_spells(found: Search, start: Explanation, screened: _Screened) -> list[Explanation]:
@@ -174,10 +209,10 @@ def _different(fits: Sequence[Explanation]) -> list[Explanation]:
 
 
 def _in_part(single: Explanation, cost: float) -> Explanation | None:
-    """A single in the run of windows that asks for it, if that gains: what begins early explains most acting always."""
-    (candidate,) = single.candidates
+    """The last effect in the run of windows that asks for it, if that gains: begun early, it explains most always."""
+    *others, candidate = single.candidates
     spell = asked_for(single)
-    staged = replace(single, candidates=(replace(candidate, price=cost),))
+    staged = replace(single, candidates=(*others, replace(candidate, price=cost)))
     try:
         part = refitted_in(staged, spell)
     except InputError:  # it cannot change within a recording
@@ -193,7 +228,7 @@ def _needed(found: Search, start: Explanation, single: Explanation) -> bool:
     f = single.fitted
     fitted = fit(in_spell(f.misfit, candidate.name, None), f.u, f.states)
     always = Explanation((*others, replace(candidate, spell=None, price=0.0)), fitted)
-    if found.best is not None and found.best.names == always.names:
+    if found.best is not None and set(found.best.names) == set(always.names):
         always = min(always, found.best, key=adjusted)
     if adjusted(always) - adjusted(single) < least(found, always):
         return False

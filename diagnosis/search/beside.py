@@ -56,21 +56,34 @@ def _heavy(entry: Score, scores: Sequence[Score]) -> bool:
 
 def seconds(found: Search, explanation: Explanation) -> list[Score]:
     """The screen of mechanisms of other classes beside those of an explanation, and of further elements of a kind."""
-    others = [c for c in found.candidates if _may_join(c, explanation)]
+    others = [c for c in found.candidates if may_join(c, explanation)]
     return score(linearise_about(explanation.fitted), others, found.not_tried)
 
 
-def _may_join(candidate: Candidate, explanation: Explanation) -> bool:
+def may_join(candidate: Candidate, explanation: Explanation) -> bool:
+    """Whether it is of another class than the effects of an explanation, or a further element of one of them."""
     first = candidate.mechanism.beside
     if first:
         return first in explanation.names and candidate.name not in explanation.names
     return candidate.effect_class not in explanation.classes
 
 
+def one_of_each(scores: Sequence[Score]) -> list[Score]:
+    """The strongest variant of every mechanism before its others: laws at other joints, other orders."""
+    first: dict[str, Score] = {}
+    for entry in scores:
+        first.setdefault(entry.candidate.name, entry)
+    return list({entry.candidate: entry for entry in (*first.values(), *scores)}.values())
+
+
 def extended(
-    found: Search, explanation: Explanation, scores: Sequence[Score], widely: bool = False
+    found: Search,
+    explanation: Explanation,
+    scores: Sequence[Score],
+    widely: bool = False,
+    but: Candidate | None = None,
 ) -> list[Explanation]:
-    """Refits with one more mechanism, best first: the strongest of a screen beside the explanation.
+    """Refits with one more mechanism, ``but`` one that was tried, best first: the strongest of a screen beside it.
 
     ``widely``: those that explain much alone too, from where they stand alone. A law that carries part of what another
     parameter carried so far (the yielding of a spring and its stiffness) has no score there before both have moved.
@@ -78,7 +91,8 @@ def extended(
     if explains_all(explanation) and max((s.statistic for s in scores), default=0.0) < HOPELESS:
         return []
     fits = []
-    for entry in worth_a_refit(scores, FEWEST_SECOND, SHARE_OF_SECOND)[:SECOND_TRIES]:
+    worth = worth_a_refit(scores, FEWEST_SECOND + (but is not None), SHARE_OF_SECOND)
+    for entry in [entry for entry in one_of_each(worth) if entry.candidate != but][:SECOND_TRIES]:
         if found.affordable(entry.candidate.name):
             tried = [extend(explanation, entry.candidate, at, QUICK) for at in starts_of(entry, scores)]
             if entry.candidate.mechanism.beside:

@@ -18,7 +18,9 @@ FURTHER = 60.0
 LAST = 25.0
 """s for others in the place of each of several effects at the end, whatever was spent before."""
 RESERVED = 80.0
-"""s for effects that begin or end, whatever was spent before: they come last and may explain everything."""
+"""s for effects that begin or end, whatever was spent before: they may explain everything."""
+SHARED = 0.5
+"""Share of what is left of the whole that one effect that begins or ends may take before further effects."""
 LADDER = 70.0
 """s after which no further base model is tried."""
 SEARCH, ANSWER = 180.0, 220.0
@@ -34,8 +36,12 @@ class Budget:
     began: float = field(default_factory=lambda: DONE.seconds)
 
     @property
+    def left(self) -> float:
+        return self.most - (DONE.seconds - self.began)
+
+    @property
     def spent(self) -> bool:
-        return DONE.seconds - self.began > self.most
+        return self.left < 0.0
 
     def after(self, other: Budget) -> Budget:
         """This budget once ``other``, begun later, has been worked on."""

@@ -60,7 +60,7 @@ def _better(found: Search, incomplete: bool) -> Explanation | None:
         if adjusted(other) >= adjusted(best):
             return None
         same = set(other.candidates) == set(best.candidates)
-        if len(other.candidates) != len(best.candidates):
+        if len(other.candidates) != len(best.candidates) or not (same or found.eligible(other)):
             continue
         if same or not incomplete or (_everywhere(best, other) and not predicts_worse(best, other)):
             return other
@@ -77,15 +77,17 @@ def _everywhere(before: Explanation, after: Explanation) -> bool:
 
 
 def drop(found: Search) -> None:
-    """Drop what is not needed, or no longer."""
-    dropping = True
-    while dropping and found.best is not None and len(found.best.candidates) > 1:
-        dropping = False
-        for candidate in found.best.removable:
-            rest = without(found.best, candidate)
-            if adjusted(rest) - adjusted(found.best) < least(found, rest, candidate):
-                found.best, dropping = rest, True
-                break
+    """Drop what is not needed, or no longer, the least needed first; what is left without the others are rivals."""
+    while found.best is not None and len(found.best.candidates) > 1:
+        best, spare = found.best, []
+        for candidate in best.removable:
+            rest = without(best, candidate)
+            spare.append((adjusted(rest) - adjusted(best) - least(found, rest, candidate), rest))
+        excess, rest = min(spare, key=lambda entry: entry[0])
+        if excess >= 0.0:
+            return
+        found.best = rest
+        found.tried += [other for _, other in spare]
 
 
 def _try_others(found: Search, widely: bool) -> None:
@@ -101,6 +103,7 @@ def _try_others(found: Search, widely: bool) -> None:
     for candidate, left in sorted(standing.items(), key=lambda entry: entry[1].loss):
         others = frozenset(best.candidates) - {candidate}
         if others not in found.exchanged and found.affordable(f"others in the place of {candidate.name}"):
-            found.exchanged.add(others)
             for rest in [left, *([without(best, candidate)] if widely else [])]:
-                found.tried += extended(found, rest, seconds(found, rest), widely)
+                found.tried += extended(found, rest, seconds(found, rest), widely, but=candidate)
+            if not found.spent:  # else the others are tried when there is work left
+                found.exchanged.add(others)

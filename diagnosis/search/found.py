@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import NamedTuple
 
@@ -20,6 +20,7 @@ from diagnosis.errors.adequacy import errs
 from diagnosis.errors.model import Errors
 from diagnosis.fit.linearisation import Linearisation
 from diagnosis.fit.solver import Fitted
+from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.forces.constancy import About, Constancy
 from diagnosis.search.budget import ENDED, SEARCH, Budget
 from diagnosis.search.candidates import Candidate
@@ -40,6 +41,10 @@ ADEQUATE = 1.08
 """Misfit per sample under which an explanation is adequate."""
 ALONE, SETTLED, BADLY = 4.0, 1.3, 3.0
 """When one window may decide: its gain in thresholds, its misfit per sample with the mechanism and without."""
+
+
+STUCK = 1.0
+"""Gain by which a fit has left the valley in which it was."""
 
 
 @dataclass(frozen=True)
@@ -66,10 +71,12 @@ class Search:
     singles: list[Explanation] = field(default_factory=list)
     tried: list[Explanation] = field(default_factory=list)
     best: Explanation | None = None
+    passed_over: set[frozenset[Candidate]] = field(default_factory=set)
+    """What is likelier than what was taken and does not count: it rests on one window, or is a detail of a law."""
     exchanged: set[frozenset[Candidate]] = field(default_factory=set)
     """The mechanisms beside which others were tried in the place of one, since the last exchange."""
-    weighed: tuple[Candidate, ...] = ()
-    """The mechanisms with which the errors were estimated."""
+    weighed: Explanation | None = None
+    """That with which the errors were estimated."""
     at_null: Search | None = None
     """This search as it stood under the errors of the base model, once they were estimated anew."""
     marginal: float = 0.0
@@ -126,13 +133,30 @@ class Search:
             self.about = known = About.of(explanation.fitted, self.errors)
         return known
 
+    @property
+    def left(self) -> float:
+        """Seconds of work that all searches together may still take."""
+        return self.whole.left
+
+    @property
+    def spent(self) -> bool:
+        """Whether a budget has ended."""
+        return self.budget.spent or self.whole.spent
+
+    @property
+    def weighed_elsewhere(self) -> bool:
+        """Whether the errors were estimated with other mechanisms than the best, or in a valley that it has left."""
+        best, weighed = self.best, self.weighed
+        if best is None or weighed is None:
+            return best is not None
+        return best.candidates != weighed.candidates or best.loss < weighed.loss - STUCK
+
     def affordable(self, *names: str) -> bool:
         """Whether the budgets last; if not, that these mechanisms or stages were not tried (further) is noted."""
-        spent = self.budget.spent or self.whole.spent
-        if spent:
+        if self.spent:
             for name in names:
                 self.not_tried.setdefault(name, ENDED)
-        return not spent
+        return not self.spent
 
     @contextmanager
     def work_of_its_own(self, most: float) -> Iterator[None]:
@@ -142,6 +166,14 @@ class Search:
             yield
         finally:
             self.budget = outer.after(self.budget)
+
+    def pass_over(self, explanation: Explanation) -> None:
+        """It does not count, and is not taken later either."""
+        self.passed_over.add(frozenset(explanation.candidates))
+
+    def eligible(self, explanation: Explanation) -> bool:
+        """Whether it may be taken: it was not passed over."""
+        return frozenset(explanation.candidates) not in self.passed_over
 
     def gain(self, explanation: Explanation) -> float:
         """Gain over the base, less what shape parameters cost."""
@@ -174,8 +206,9 @@ def survives(before: Explanation, after: Explanation, threshold: float = MISSING
             and settles(before, after)
         )
     measured = after.measured
-    if len(measured.recordings) > 2 and not after.in_spell:
-        each = [float(gains[measured.recording_of == r].sum()) for r in range(len(measured.recordings))]
+    moving = np.unique(measured.recording_of)
+    if moving.size > 2 and not after.in_spell:
+        each = [float(gains[measured.recording_of == r].sum()) for r in moving]
         return total - max(each) >= 0.3 * threshold
     return True
 
@@ -202,6 +235,14 @@ def misfit_per_sample(explanation: Explanation) -> float:
     """Squared whitened residual per sample, without the worst tenth (at least one) of the windows."""
     each = np.sort(by_window(explanation))
     return float(np.mean(each[: max(1, int(0.9 * each.size))]))
+
+
+def left_over_white_noise(explanation: Explanation, errors: Errors) -> float:
+    """Misfit per sample over the white noise of the sensors and that of the base motion alone."""
+    fitted = explanation.fitted
+    white = sensor_noise_only(fitted.misfit.predictor).with_columns(errors.base)
+    seen = replace(fitted, misfit=replace(fitted.misfit, whitening=white))
+    return misfit_per_sample(replace(explanation, fitted=seen))
 
 
 def adequate(explanation: Explanation) -> bool:

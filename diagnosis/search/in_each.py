@@ -51,9 +51,10 @@ def in_each(
     acts or does in one spell, than which each must be likelier; ``cost``: the price of one spell.
     """
     m = found.measured
-    if len(m.recordings) < 2:
+    moving = np.unique(m.recording_of).size
+    if moving < 2:
         return []
-    price = cost * len(m.recordings)
+    price = cost * moving
     bar = min(adjusted(one) for one in (start, *known)) - MISSING
     fits = list(_from_known(known, price))
     fits += _from_screen(found, start, [in_own_runs(screen, scores, m) for screen, scores in screens], price)

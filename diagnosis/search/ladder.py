@@ -32,7 +32,7 @@ from diagnosis.progress import Progress
 from diagnosis.search.budget import ENDED, LADDER, Budget
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.details import least
-from diagnosis.search.found import Search, adjusted, misfit_per_sample, price
+from diagnosis.search.found import Search, adjusted, left_over_white_noise, price
 from diagnosis.search.refit import Explanation
 from diagnosis.search.weighing import reweighed
 from grids.recordings.base import Recording
@@ -94,7 +94,7 @@ def rungs(
     ``held``: recordings held out, which have to hold what the other model starts a window from.
     """
     ladder = found.measured.identification.ladder
-    if not ladder or (_left(found) < LEFT and not inadequacy(found.errors).large):
+    if not ladder or (left_over_white_noise(found.chosen, found.errors) < LEFT and not inadequacy(found.errors).large):
         return []
     budget = Budget(LADDER)
     recordings = [*found.measured.recordings, *held]
@@ -114,14 +114,6 @@ def rungs(
             found.not_tried[rung.name] = why
     found.budget = found.budget.after(budget)  # the search's own work goes on where it was
     return tried
-
-
-def _left(found: Search) -> float:
-    """Misfit per sample of what was found, over the noise of the sensors and of the base motion alone."""
-    fitted = found.chosen.fitted
-    plain = sensor_noise_only(fitted.misfit.predictor).with_columns(found.errors.base)
-    seen = replace(fitted, misfit=replace(fitted.misfit, whitening=plain))
-    return misfit_per_sample(replace(found.chosen, fitted=seen))
 
 
 def climb(found: Search, tried: Sequence[tuple[Rung, Weighed]], *, decisive: bool) -> Climbed | None:
@@ -275,5 +267,5 @@ def _on(found: Search, best: Weighed, others: Sequence[Explanation]) -> Search:
     tried = [on, *(reweighed(other, best.errors) for other in others)]
     return replace(
         found, base=reweighed(found.base, best.errors), best=on, errors=best.errors, tried=tried, singles=[],
-        weighed=on.candidates, outside=None, about=None,
+        weighed=on, outside=None, about=None,
     )  # fmt: skip

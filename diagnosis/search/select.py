@@ -6,18 +6,18 @@ there. What counts is in `diagnosis.search.found`.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 
 from diagnosis.errors.model import estimate
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.progress import Progress
-from diagnosis.search.beside import POOL_SHARE, THOROUGH, extended, seconds, starts_of, worth_a_refit
+from diagnosis.search.beside import POOL_SHARE, THOROUGH, extended, one_of_each, seconds, starts_of, worth_a_refit
 from diagnosis.search.budget import FURTHER, JOINTS, LAST, UNTRIED
 from diagnosis.search.candidates import Candidate, firsts
 from diagnosis.search.details import least
 from diagnosis.search.exchange import drop, exchanged
-from diagnosis.search.found import GAP, MISSING, Search, adequate, adjusted, survives
-from diagnosis.search.hidden import take_hidden
+from diagnosis.search.found import GAP, MISSING, STUCK, Search, adequate, adjusted, survives
+from diagnosis.search.hidden import hidden_beside, hidden_by_errors, take_hidden
 from diagnosis.search.joints import at_other_joints
 from diagnosis.search.left_out import predicts_worse
 from diagnosis.search.null import null_distribution
@@ -50,8 +50,6 @@ SHARE_OF_FIRST = 0.05
 NEAR, NEAR_ADEQUATE = 0.2, 0.6
 """Share of the leader's gain from which a single is refitted from the leader's optimum too."""
 FIRST_POOL = 3
-STUCK = 1.0
-"""Gain of the base from a single's optimum from which on it was stuck."""
 
 
 def first_effect(found: Search, progress: Progress) -> Iterator[Search]:
@@ -67,7 +65,7 @@ def first_effect(found: Search, progress: Progress) -> Iterator[Search]:
         return
     if found.best is None:
         progress("looking for what the errors hide", 0.46)
-        take_hidden(found)
+        take_hidden(found, found.base, found.singles)
     else:
         yield found
         progress("estimating the errors with what was found", 0.46)
@@ -91,7 +89,7 @@ def further_effects(found: Search, progress: Progress) -> Iterator[Search]:
     settle_ties(found)
     if found.best is not None:
         found.best = with_memory(again(found.best))
-        if found.best.candidates != found.weighed:
+        if found.weighed_elsewhere:
             found.errors = estimate(found.best.fitted, found.errors.base, found.errors)
         drop(found)  # errors estimated with both, and fits taken further, may ask for one only
         with_other_numbers(found)
@@ -106,6 +104,7 @@ def take_best_single(found: Search) -> None:
         if survives(found.base, single):
             found.best = single
             return
+        found.pass_over(single)
 
 
 def refit_singles(found: Search, progress: Progress) -> None:
@@ -121,7 +120,7 @@ def refit_singles(found: Search, progress: Progress) -> None:
     late: list[Candidate] = []
     if found.measured.stretches is None:
         white, scores = against_white_noise(found, found.base, firsts(found.candidates))
-        wanted += hidden_by_errors(scores, {entry.candidate for entry in wanted}, fewest)
+        wanted += hidden_by_errors(scores, {entry.candidate for entry in wanted}, fewest, SHARE_OF_FIRST)
         if misfits(white.fitted):
             late = setting_in(found.base, [entry.candidate for entry in found.scores])
     left = []
@@ -146,6 +145,8 @@ def refit_singles(found: Search, progress: Progress) -> None:
         return
     if led_by(found, found.singles[0]):
         found.singles[0] = again(reshaped(found.singles[0]))
+        tried = {single.candidates[0] for single in found.singles}
+        left += [s for s in worth_a_refit(found.scores, fewest, SHARE_OF_FIRST) if s.candidate not in tried]
     with found.work_of_its_own(JOINTS):
         at_other_joints(found)
     with found.work_of_its_own(UNTRIED):
@@ -162,21 +163,16 @@ def refit_singles(found: Search, progress: Progress) -> None:
 
 
 def in_turn(wanted: Sequence[Score], late: Sequence[Score]) -> list[Score]:
-    """The strongest of a screen, then what has no slope at its null, then the others: a budget may end on the way.
-
-    The strongest variant of every mechanism comes before its others: laws at other joints, other orders.
-    """
-    variants: dict[str, Score] = {}
-    for entry in wanted:
-        variants.setdefault(entry.candidate.name, entry)
-    strongest = list(variants.values())
-    ordered = (*strongest[:FEWEST_ADEQUATE], *late, *strongest[FEWEST_ADEQUATE:], *wanted)
+    """The strongest of a screen, then what has no slope at its null, then the others: a budget may end on the way."""
+    strongest = one_of_each(wanted)
+    ordered = (*strongest[:FEWEST_ADEQUATE], *late, *strongest[FEWEST_ADEQUATE:])
     return list({entry.candidate: entry for entry in ordered}.values())
 
 
 def led_by(found: Search, leader: Explanation) -> bool:
     """Take the base to the leader's optimum, and the singles with it, if it was stuck; whether it was.
 
+    The screen is then that of the freed base.
     What one mechanism gains by freeing a window that was stuck says nothing for it: all others were fitted from there.
     Those that a screen of the freed base gives no chance, and that explain no more than it does, stay where they are.
     """
@@ -184,24 +180,18 @@ def led_by(found: Search, leader: Explanation) -> bool:
     if restarted.loss >= found.base.loss - STUCK:
         return False
     found.base = restarted
-    scores = score(linearise_about(restarted.fitted), [c for single in found.singles for c in single.candidates])
-    worth = {entry.candidate for entry in worth_a_refit(scores, FEWEST_ADEQUATE, SHARE_OF_FIRST)}
+    opened = linearise_about(restarted.fitted)
+    found.scores = score(opened, firsts(found.candidates), found.not_tried)
+    found.null = null_distribution(opened, found.scores)
+    fitted = {c for single in found.singles for c in single.candidates}
+    again_worth = worth_a_refit([s for s in found.scores if s.candidate in fitted], FEWEST_ADEQUATE, SHARE_OF_FIRST)
+    worth = {entry.candidate for entry in again_worth}
     led = (
         from_other(single, restarted) if worth.intersection(single.candidates) or found.gain(single) > 0.0 else single
         for single in found.singles
     )
     found.singles = sorted(led, key=adjusted)
     return True
-
-
-def hidden_by_errors(white: Sequence[Score], tried: Collection[Candidate], fewest: int) -> list[Score]:
-    """The strongest of a screen against white noise that were not tried.
-
-    Errors about the base model hold part of what is missing: scatter of events much of a wrong law of them. Such a
-    mechanism has no score under these errors until it is in.
-    """
-    strongest = worth_a_refit(white, fewest, SHARE_OF_FIRST)[:fewest]
-    return [entry for entry in strongest if entry.candidate not in tried]
 
 
 def pool(found: Search, best: Explanation) -> list[list[Explanation]]:
@@ -241,8 +231,6 @@ def _pairs(found: Search, progress: Progress) -> None:
                 pairs += extended(found, single, screened, widely)
         if any(adequate(e) for e in pairs):  # the others are still tried in its place
             break
-    if not pairs:
-        return
     if found.outside is not None:
         if not any(adequate(e) for e in pairs):
             return
@@ -252,18 +240,23 @@ def _pairs(found: Search, progress: Progress) -> None:
     if pair is not None:
         found.best = over_ranges(again(reshaped(pair)))
         weigh_again(found)
-        exchanged(found, progress)  # before a third: what stands in for another effect leaves traces of its own
+    elif found.measured.stretches is None:
+        progress("looking for a second effect that the errors hide", 0.77)
+        take_hidden(found, found.best, [*pairs, *hidden_beside(found, found.best, pairs)])
+    exchanged(found, progress)  # before a third: what stands in for another effect leaves traces of its own
 
 
 def _pair_that_counts(found: Search, best: Explanation, pairs: Sequence[Explanation]) -> Explanation | None:
-    """The likeliest pair, if it counts; what may be a detail of a law of the joints is passed over."""
+    """The likeliest pair that counts; what rests on one window, or may be a detail of a law, is passed over."""
     for pair in sorted(pairs, key=adjusted):
         alone = best_of([e for e in found.singles if e.names[0] in pair.names] or [best])
         needed = least(found, alone, next(c for c in pair.candidates if c.name not in alone.names))
         gain = adjusted(best) - adjusted(pair)
-        if found.more <= gain < needed:
-            continue
-        return pair if gain >= needed and survives(alone, pair, needed) else None
+        if gain < found.more:
+            return None
+        if gain >= needed and survives(alone, pair, needed):
+            return pair
+        found.pass_over(pair)
     return None
 
 
@@ -298,10 +291,9 @@ def _next(found: Search, before: Explanation, further: Sequence[Explanation]) ->
     incomplete = found.incomplete
     for one in sorted(further, key=adjusted):
         needed, gain = least(found, before, one.candidates[-1]), adjusted(before) - adjusted(one)
-        if found.more <= gain < needed:  # a detail of a law of the joints
-            continue
-        if gain < needed or not survives(before, one, needed):
+        if gain < found.more:
             return None
-        if not (incomplete and predicts_worse(before, one)):
+        if gain >= needed and survives(before, one, needed) and not (incomplete and predicts_worse(before, one)):
             return one
+        found.pass_over(one)  # it rests on one window, or is a detail of a law of the joints
     return None

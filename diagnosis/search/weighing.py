@@ -62,19 +62,23 @@ def weigh_again(found: Search) -> None:
     for explanation in sorted([found.best, *found.tried], key=adjusted):
         if len(explanation.candidates) == size and found.gain(explanation) > least:
             leading.setdefault(frozenset(explanation.candidates), explanation)
-    near = list(leading.values())[:MOST]
-    if frozenset(found.best.candidates) not in list(leading)[:MOST]:
+    first: dict[frozenset[str], Explanation] = {}  # other orders, or other joints, of the same laws come last
+    for explanation in leading.values():
+        first.setdefault(frozenset(explanation.names), explanation)
+    near = list({id(e): e for e in (*first.values(), *leading.values())}.values())[:MOST]
+    if all(set(e.candidates) != set(found.best.candidates) for e in near):
         near.append(found.best)
     judged: list[tuple[float, Explanation, Errors]] = []
     for explanation in near:
         if judged and found.whole.spent:
             break
-        if len(judged) < MOST_OWN and found.gain(explanation) > OWN * found.gain(found.best):
+        counts = set(explanation.candidates) == set(found.best.candidates) or found.eligible(explanation)
+        if counts and len(judged) < MOST_OWN and found.gain(explanation) > OWN * found.gain(found.best):
             fitted, errors = refitted(explanation.fitted, found.errors.base, found.errors)
             price = adjusted(explanation) - explanation.loss
             judged.append((errors.loss + price, replace(explanation, fitted=fitted), errors))
     _, found.best, found.errors = min(judged, key=lambda entry: entry[0])
-    found.weighed = found.best.candidates
+    found.weighed = found.best
     found.base = reweighed(found.base, found.errors)
     others = [reweighed(e, found.errors) for e in near if e.candidates != found.best.candidates]
     close = [e for e in others if adjusted(e) - adjusted(found.best) < CLOSE]
@@ -83,7 +87,7 @@ def weigh_again(found: Search) -> None:
         close = []
     found.tried = [found.best, *(resized(e) if any(e is one for one in close) else e for e in others)]
     if close:
-        found.best = min([resized(found.best), *found.tried], key=adjusted)
+        found.best = min([resized(found.best), *filter(found.eligible, found.tried)], key=adjusted)
         found.tried.append(found.best)
     found.singles = sorted((e for e in found.tried if len(e.candidates) == 1), key=adjusted)
 

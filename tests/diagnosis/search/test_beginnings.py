@@ -15,13 +15,14 @@ from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.setup import measure
 from diagnosis.progress import silent
 from diagnosis.search import beginnings
-from diagnosis.search.beginnings import alone, had_not_begun, others_in_the_spell
+from diagnosis.search.beginnings import alone, beside, had_not_begun, others_in_the_spell
 from diagnosis.search.candidates import candidates
 from diagnosis.search.found import BADLY, MISSING, Search, adjusted, by_window
 from diagnosis.search.null import null_distribution
 from diagnosis.search.refit import Explanation, again, extend
 from diagnosis.search.runs import InRuns
 from diagnosis.search.screen import score
+from diagnosis.search.select import first_effect, further_effects
 from diagnosis.search.spells import Spell
 from tests.diagnosis.made import SPECIMEN
 from tests.diagnosis.search.changing import FEW, MODEL, made, searched
@@ -194,3 +195,21 @@ def test_a_mechanism_without_a_slope_starts_in_a_run_from_what_was_tried() -> No
     assert not one.slope and one.trial is not None
     without = InRuns(replace(one, starts=()), np.ones(1), np.zeros(1))
     assert [start.tolist() for start in without.starts(0)] == [one.trial.tolist()]
+
+
+def test_one_of_two_effects_begins_and_the_other_acts_always() -> None:
+    """Both named as acting always are no explanation, and the one that begins explains little without the other."""
+    leans = {"tilt.tilt": 0.006}
+    both = [(0.005, leans), (5.0, {**leans, "viscous_damping.rate": 0.5})]
+    measured = measure(SPECIMEN, [made("a", 13, both[:1]), made("b", 6, both)])
+    fitted, errors = calibrated(SPECIMEN, measured)
+    some = tuple(c for c in candidates(measured, SPECIMEN) if c.name in FEW)
+    found = Search(Explanation((), fitted), some, errors)
+    for more in (first_effect, alone, further_effects, beside):
+        for stage in more(found, silent):
+            found = stage
+    spells = {c.name: c.spell for c in found.chosen.candidates}
+    begins = spells.pop("viscous_damping")
+    assert spells == {"tilt": None} and isinstance(begins, Spell)
+    assert (begins.first, begins.last, begins.ends) == (1, 1, None)
+    assert begins.begins == pytest.approx(5.0, abs=0.3)

@@ -12,7 +12,7 @@ from diagnosis.progress import silent
 from diagnosis.search import exchange, select
 from diagnosis.search.beside import extended
 from diagnosis.search.budget import Budget
-from diagnosis.search.candidates import candidates
+from diagnosis.search.candidates import Candidate, candidates
 from diagnosis.search.exchange import exchanged
 from diagnosis.search.found import Search, adjusted
 from diagnosis.search.refit import Explanation, extend, joined
@@ -90,7 +90,7 @@ def test_no_effect_is_named_that_the_last_errors_do_not_ask_for(found: Search, m
         monkeypatch.setattr(select, more, lambda *_: None)
     spare = next(one for one in found.candidates if one.name == OTHERS[1])
     best = extend(taken(found, *TRUE), spare, spare.null)
-    search = replace(found, best=best, weighed=best.candidates)
+    search = replace(found, best=best, weighed=best)
     for _ in select.further_effects(search, silent):
         pass
     assert search.best is not None and set(search.best.names) == set(TRUE)
@@ -104,7 +104,7 @@ def test_an_effect_that_is_no_longer_needed_is_dropped(found: Search) -> None:
 
 def test_the_least_sure_effect_is_questioned_first(found: Search, monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[Explanation] = []
-    monkeypatch.setattr(exchange, "extended", lambda found, rest, scores, widely: asked.append(rest) or [])
+    monkeypatch.setattr(exchange, "extended", lambda found, rest, scores, widely, but: asked.append(rest) or [])
     exchanged_from(found, taken(found, *TRUE))
     standing = asked[::2]  # from where the others stand; fitted anew in between, for nothing completes this search
     assert {rest.names for rest in standing} == {(name,) for name in TRUE}
@@ -116,9 +116,9 @@ def test_others_are_tried_again_beside_what_stays_once_its_company_has_changed(
 ) -> None:
     asked: list[tuple[str, ...]] = []
 
-    def noted(found: Search, rest: Explanation, scores: list[Score], widely: bool) -> list[Explanation]:
+    def noted(found: Search, rest: Explanation, scores: list[Score], widely: bool, but: Candidate) -> list[Explanation]:
         asked.append(rest.names)
-        return extended(found, rest, scores, widely)
+        return extended(found, rest, scores, widely, but)
 
     monkeypatch.setattr(exchange, "extended", noted)
     best = exchanged_from(found, taken(found, "tilt", "velocity_restitution"))
@@ -131,7 +131,7 @@ def test_what_the_budget_left_untried_is_tried_at_the_end(found: Search, monkeyp
     for more in ("_pairs", "_more", "settle_ties"):
         monkeypatch.setattr(select, more, lambda *_: None)
     best = taken(found, "tilt", "velocity_restitution")
-    search = replace(found, best=best, tried=[best], weighed=best.candidates, exchanged=set(), budget=Budget(most=0.0))
+    search = replace(found, best=best, tried=[best], weighed=best, exchanged=set(), budget=Budget(most=0.0))
     for _ in select.further_effects(search, silent):
         pass
     assert search.best is not None and set(search.best.names) == set(TRUE)

@@ -1,0 +1,204 @@
+"""Which explanation is taken: what does not count is passed over for good, and variants leave room for other effects.
+
+The fits are made up: only their losses, window by window, decide.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from diagnosis.search import beside, details, exchange, select, weighing
+from diagnosis.search import found as counting
+from diagnosis.search.budget import Budget
+from diagnosis.search.found import Search, rivals
+from models.runs import DONE
+
+
+@dataclass(frozen=True)
+class Effect:
+    """Stands for a candidate: all of them are laws of the joints unless they say otherwise."""
+
+    name: str
+    order: int = 0
+    of_joints: bool = True
+    unknowns: tuple[int, ...] = (1,)
+    held: tuple[str, ...] = ()
+    price: float = 0.0
+    spell: None = None
+
+    @property
+    def mechanism(self) -> Any:
+        return SimpleNamespace(beside="")
+
+    @property
+    def effect_class(self) -> str:
+        return self.name
+
+
+@dataclass(frozen=True)
+class Explained:
+    """Stands for an explanation."""
+
+    candidates: tuple[Effect, ...]
+    fitted: Any
+    in_spell = False
+    measured: Any = field(default_factory=lambda: SimpleNamespace(recording_of=np.zeros(2, int), stretches=object()))
+
+    @property
+    def loss(self) -> float:
+        return float(self.fitted.loss)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(c.name for c in self.candidates)
+
+    @property
+    def classes(self) -> tuple[str, ...]:
+        return self.names
+
+    @property
+    def removable(self) -> tuple[Effect, ...]:
+        return self.candidates
+
+
+def fit(*candidates: Effect, loss: float, first: float | None = None) -> Any:
+    """An explanation of two windows; ``first``: the loss of the first of them, by default half of it."""
+    first = 0.5 * loss if first is None else first
+    return Explained(candidates, SimpleNamespace(window_losses=np.array([first, loss - first]), loss=loss))
+
+
+NOTHING: Any = SimpleNamespace(loss=0.0, base=None)
+A, B, C = (Effect(name) for name in ("maxwell", "hardening", "bouc_wen"))
+TILT = Effect("tilt", of_joints=False)
+
+
+@pytest.fixture(autouse=True)
+def made_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing is fitted: refits leave what they are given."""
+
+    def same(one: Any, *_: Any) -> Any:
+        return one
+
+    for module in (select, exchange):
+        for name in ("again", "reshaped", "over_ranges"):
+            monkeypatch.setattr(module, name, same)
+        monkeypatch.setattr(module, "seconds", lambda *_: [])
+    monkeypatch.setattr(weighing, "refitted", lambda f, *_: (f, SimpleNamespace(loss=f.loss, base=None)))
+    monkeypatch.setattr(weighing, "reweighed", same)
+    monkeypatch.setattr(weighing, "resized", same)
+    monkeypatch.setattr(exchange, "extended", lambda *_, **__: [])
+    monkeypatch.setattr(details, "of_joints", lambda c, _: c.of_joints)
+    monkeypatch.setattr(beside, "explains_all", lambda _: False)
+    for module in (select, details, counting):
+        monkeypatch.setattr(module, "adequate", lambda _: True)
+    monkeypatch.setattr(counting, "errs", lambda _: False)
+    monkeypatch.setattr(counting, "settles", lambda *_: False)
+
+
+def search(base: Any, *tried: Any) -> Any:
+    made: Any = base
+    some: Any = list(tried)
+    return Search(made, (), NOTHING, singles=list(some), tried=some, at_null=None)
+
+
+def test_a_single_that_rests_on_one_window_does_not_come_back_when_the_errors_are_estimated_anew() -> None:
+    clipped, tilt = fit(C, loss=700.0, first=300.0), fit(TILT, loss=800.0, first=500.0)
+    found = search(fit(loss=1000.0, first=600.0), clipped, tilt)
+    select.take_best_single(found)
+    assert found.best.names == ("tilt",)
+    weighing.weigh_again(found)
+    assert found.best.names == ("tilt",)
+
+
+def test_a_detail_of_a_law_does_not_take_the_place_of_a_second_effect(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of evidence 50 000 of a law 200 are a detail; a lean brings 100, and counts."""
+    law, detailed, leaning = fit(A, loss=10000.0), fit(A, B, loss=9800.0), fit(A, TILT, loss=9900.0)
+    rest = {"maxwell": fit(TILT, loss=59000.0), "hardening": law, "tilt": law}
+    for module in (details, exchange):
+        monkeypatch.setattr(module, "without", lambda _, c, *__: rest[c.name])
+    monkeypatch.setattr(select, "extended", lambda *_: [detailed, leaning])
+    found = search(fit(loss=60000.0), law)
+    found.best = law
+    select._pairs(found, lambda *_: None)
+    assert found.best.names == leaning.names
+
+
+def test_the_next_pair_is_taken_where_the_likeliest_rests_on_one_window() -> None:
+    law, clipped, leaning = fit(A, loss=10000.0), fit(A, C, loss=9000.0, first=4000.0), fit(A, TILT, loss=9800.0)
+    found = search(fit(loss=60000.0), law)
+    found.best = law
+    assert select._pair_that_counts(found, law, [leaning, clipped]) is leaning
+    assert not found.eligible(clipped)
+
+
+def test_the_least_needed_effect_goes_and_what_would_do_without_the_other_is_its_rival(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    alone = {"tilt": fit(A, loss=902.0), "maxwell": fit(TILT, loss=908.0)}
+    monkeypatch.setattr(exchange, "without", lambda _, c, *__: alone[c.name])
+    found = search(fit(loss=1000.0))
+    found.best = fit(TILT, A, loss=900.0)
+    exchange.drop(found)
+    assert found.best is alone["tilt"]
+    assert [(near.candidate.name, near.gap) for near in rivals(found)] == [("tilt", 6.0)]
+
+
+def scored(*effects: Effect) -> list[Any]:
+    """Scores that fall by 5 from one to the next."""
+    start = (np.zeros(1),)
+    return [
+        SimpleNamespace(candidate=c, statistic=1000.0 - 5.0 * k, starts=start, work=1.0) for k, c in enumerate(effects)
+    ]
+
+
+def test_variants_of_a_law_leave_room_for_other_effects(monkeypatch: pytest.MonkeyPatch) -> None:
+    orders = [Effect("bouc_wen", order) for order in range(6)]
+    tried: list[Effect] = []
+
+    def extend(explanation: Any, candidate: Effect, *_: Any) -> Any:
+        tried.append(candidate)
+        return fit(*explanation.candidates, candidate, loss=900.0)
+
+    monkeypatch.setattr(beside, "extend", extend)
+    monkeypatch.setattr(beside, "again", lambda one: one)
+    first: Any = fit(Effect("delay"), loss=1500.0)
+    beside.extended(search(fit(loss=2000.0)), first, scored(*orders, TILT, A))
+    assert tried == [orders[0], TILT, A, *orders[1:4]]
+    tried.clear()
+    but: Any = orders[0]
+    beside.extended(search(fit(loss=2000.0)), first, scored(*orders, TILT, A), but=but)
+    assert tried == [TILT, A, *orders[1:5]]
+
+
+def test_a_rival_is_kept_beside_variants_of_the_best() -> None:
+    orders = [fit(Effect("bouc_wen", order), loss=1000.0 + 0.4 * order) for order in range(6)]
+    tilt = fit(TILT, loss=1003.0)
+    found = search(fit(loss=2000.0), *orders, tilt)
+    found.best = orders[0]
+    weighing.weigh_again(found)
+    assert [near.candidate.name for near in rivals(found)] == ["tilt"]
+
+
+def test_what_the_budget_broke_off_is_tried_when_there_is_work_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(exchange, "without", lambda e, c, *_: fit(*(x for x in e.candidates if x is not c), loss=950.0))
+    asked: list[str] = []
+
+    def extended(found: Search, rest: Any, *_: Any, **__: Any) -> list[Any]:
+        if found.affordable("x"):
+            asked.append(rest.names[0])
+            DONE.call(0, 20.0)
+        return []
+
+    monkeypatch.setattr(exchange, "extended", extended)
+    found = search(fit(loss=2000.0))
+    found.best, found.budget = fit(A, TILT, loss=900.0), Budget(10.0)
+    exchange._try_others(found, False)
+    assert len(asked) == 1 and not found.exchanged
+    with found.work_of_its_own(1000.0):
+        exchange._try_others(found, False)
+    assert len(found.exchanged) == 2 and len(asked) == 3
