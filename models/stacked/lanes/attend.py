@@ -87,7 +87,11 @@ def finish(given: Table, result: Table, kept: Table, w: Table, lane: int, slot: 
             result[lane, column] = kept[slot, column]
         return
     add_time(result, lane, time)
-    result[lane, acc.END_1], result[lane, acc.END_2] = w[r.Q1, slot], w[r.Q1, slot] + w[r.Q2, slot]
+    end_1, end_2 = w[r.Q1, slot], w[r.Q1, slot] + w[r.Q2, slot]
+    result[lane, acc.END_1], result[lane, acc.END_2] = end_1, end_2
+    # a body that still moves outwards has not turned back, where peaks are taken otherwise
+    result[lane, acc.PEAK_1] = max(result[lane, acc.PEAK_1], abs(end_1))
+    result[lane, acc.PEAK_2] = max(result[lane, acc.PEAK_2], abs(end_2))
     result[lane, acc.FRICTION_BASE], result[lane, acc.FRICTION_TOP] = w[r.DEMAND_1, slot], w[r.DEMAND_2, slot]
     result[lane, acc.LOST_BASE] += (given[lane, r.P_M1] + given[lane, r.P_M2]) * w[r.WORK, slot]
 
