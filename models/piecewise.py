@@ -43,8 +43,8 @@ class Part:
 def in_force(parts: Sequence[Part], first: int, samples: int) -> list[Part]:
     """The parts of a run of so many ``samples`` that begins at sample ``first``, their samples counted from there."""
     begun = max(k for k, one in enumerate(parts) if one.first <= first)
-    found = [Part(max(0, one.first - first), one.values) for one in parts[begun:]]
-    return [one for one in found if one.first < samples or one.first == 0]
+    found = {max(0, one.first - first): one.values for one in parts[begun:]}  # of those from one sample on, the last
+    return [Part(at, values) for at, values in found.items() if at < samples or at == 0]
 
 
 def cannot_be_cut(model: Model[Any], parts: Sequence[Values]) -> str:

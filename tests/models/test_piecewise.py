@@ -73,6 +73,16 @@ def test_what_changes_acts_from_its_sample_on() -> None:
     np.testing.assert_array_equal(never, plain)
 
 
+def test_of_parts_from_one_sample_on_the_last_acts() -> None:
+    """Two stages that begin between two samples change the values twice at the next one."""
+    model = models.get("housner")
+    weak, weaker = ({**BLOCK, "restitution.factor_on_housner": factor} for factor in (0.95, 0.9))
+    once = simulate(model, [Part(0, BLOCK), Part(250, weaker)], SHAKING)
+    twice = simulate(model, [Part(0, weak), Part(0, BLOCK), Part(250, weak), Part(250, weaker)], SHAKING)
+    np.testing.assert_array_equal(twice.channels["rotation_1"], once.channels["rotation_1"])
+    assert twice.outputs == once.outputs and twice.events == once.events
+
+
 def test_a_filter_over_the_whole_record_sees_what_came_before_a_cut() -> None:
     (psi, second), first = pitch(SHAKING, 3.0), 321
     cut = begun_at(SHAKING, first)
