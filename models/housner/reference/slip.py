@@ -12,6 +12,7 @@ that takes a tangential impulse within mu times the normal one, else it slips wi
 restitution enters as an impulsive couple J (e - e_H) theta'. Without slip before the impact it takes
 mu > (h/b) (1 - e)/(1 + e), about .75 b/h, to stick: less than rocking takes to start.
 Where the equations of slip lose their solution (Painleve) the corner jams: it sticks.
+Slip under g/p^2 times the rate of rest ends in an impact that leaves the block slower than that rate.
 """
 
 from __future__ import annotations
@@ -207,11 +208,15 @@ class Sliding(Rocking):
         if s * after > 0.0:
             after, slip = 0.0, v + h * before
             slip -= math.copysign(min(abs(slip), mu * old * abs(before)), slip)
+        slow = REST_VELOCITY * eq.frequency_parameter * eq.alpha
+        if abs(after) < slow and abs(slip) * eq.frequency_parameter**2 < slow * float(eq.block.gravity[0]):
+            # ever smaller impacts leave ever less slip, whose full friction would lift the block again without end
+            slip = 0.0
         self.impacts += 1
         self.theta, self.side, self.arc = 0.0, -s, 0.0
         self.extra, self.way = (u, slip), int(np.sign(slip))
         self.events.append(Event(self.time, "impact"))
-        if abs(after) < REST_VELOCITY * eq.frequency_parameter * eq.alpha and not self._tips(piece):
+        if abs(after) < slow and not self._tips(piece):
             after, self.mode = 0.0, "rest"
             self.events.append(Event(self.time, "rest"))
         self.rate = after

@@ -5,11 +5,12 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from models.base import STATUS, FloatArray
 from models.housner.cantilever import BETA, SIGMA, STRUCTURAL_DAMPING, modal_integrals
 from models.housner.lanes import run as lanes
 from models.runs import Request
 from models.shaking import Shaking
-from tests.models.mechanisms.cases import ALPHA, HOUSNER, WALL, by_lanes, free, pulse, released
+from tests.models.mechanisms.cases import ALPHA, HOUSNER, WALL, by_lanes, by_reference, free, pulse, released
 
 G = 9.80665
 STOCKY = {"width": 1.6, "height": 2.0, "mass": 900.0}
@@ -59,6 +60,42 @@ def test_a_nearly_smooth_base_leaves_the_mass_centre_where_it_is() -> None:
     # the corner slips by far more than that
     slip = moved - 1.0 * (np.sin(response.channels["rotation_1"]) - np.sin(START["rotation_1"]))
     assert np.max(np.abs(slip)) > 5 * np.max(np.abs(moved))
+
+
+@pytest.mark.parametrize(
+    "loses",
+    [
+        {"restitution.factor_on_housner": np.linspace(0.6, 0.98, 60)},
+        {"velocity_restitution.beta": 0.1},
+        {"degradation.loss_of_restitution_per_impact": 0.02},
+    ],
+    ids=lambda loses: next(iter(loses)),
+)
+def test_a_block_that_slides_and_loses_at_impacts_comes_to_an_end(loses: dict[str, float | FloatArray]) -> None:
+    """Impacts that follow each other ever faster end where the block, and the slip it is left with, are slow."""
+    time = 0.01 * np.arange(180)
+    shaking = Shaking(0.01, 4.2 * np.sin(2 * np.pi * 2.3 * time) * (time < 1.0))
+    rng = np.random.default_rng(0)
+    values = {
+        "width": rng.uniform(0.3, 0.7, 60), "height": 2.0, "mass": 1000.0,
+        "sliding.friction": rng.uniform(0.15, 0.6, 60), **loses,
+    }  # fmt: skip
+    found = HOUSNER.evaluate(values, shaking, np.ones(60), outputs=["status", "impacts"], tail=8.0)
+    assert np.count_nonzero(found["impacts"] > 0) > 20
+    np.testing.assert_array_equal(found["status"] == STATUS.index("not_converged"), False)
+
+
+@pytest.mark.parametrize(("friction", "factor"), [(0.4, 0.9), (0.32, 0.85), (0.27, 0.95)])
+def test_what_slides_and_rocks_freely_loses_what_it_was_given(friction: float, factor: float) -> None:
+    values = {**WALL, "sliding.friction": friction, "restitution.factor_on_housner": factor}
+    fast, slow = by_lanes(values, free(6.0), START), by_reference(values, free(6.0), START)
+    for response in (fast, slow):
+        assert response.outputs["status"] == STATUS.index("rocking")
+        assert response.rotation[-1] == response.rate[-1] == 0.0
+        given = released(START["rotation_1"])
+        assert response.outputs["dissipated_energy"] == pytest.approx(given, rel=1e-6)
+    assert fast.outputs["impacts"] == slow.outputs["impacts"]
+    assert fast.shift[-1] == pytest.approx(slow.shift[-1], rel=1e-5, abs=1e-9)
 
 
 @pytest.mark.parametrize("seed", range(6))

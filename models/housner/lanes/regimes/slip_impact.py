@@ -60,6 +60,9 @@ def land(
     result[lane, r.R_SWING] = 0.0
     stand_on(given, w, lane, slot, -side, linear)
     calm = abs(om1) < given[lane, r.Q_REST]
+    if calm and abs(v1) * given[lane, r.Q_P] ** 2 < given[lane, r.Q_REST] * given[lane, r.Q_GRAVITY]:
+        # ever smaller impacts leave ever less slip, whose full friction would lift the block again without end
+        v1 = 0.0
     w[r.U1, slot] = v1
     if calm and not tips(given, w, lane, slot, record, i, f, linear):
         om1 = 0.0
