@@ -87,6 +87,52 @@ def _listed(names: Iterable[str], word: str = "and") -> str:
     return f"{', '.join(head)} {word} {last}" if head else last
 
 
+def check_joints(model: Model, options: Mapping[str, str], varied: Collection[str], given: Collection[str]) -> None:
+    """Raise InputError for what is ``given`` for a joint without rubber, or for a law that the joint does not have.
+
+    Where joints or a law are an axis (``varied``) it belongs to the cells that use it.
+    """
+    if "joints" not in model.options:
+        return
+    given = [*given, *(name for name, word in options.items() if word != model.options[name][0])]
+    for joint, other in (("base", "top"), ("top", "base")):
+        own = sorted(name for name in given if _of_joint(model, name, joint, other))
+        if own and options.get("joints") == other and "joints" not in varied:
+            raise InputError(
+                f"{own[0]} is given, but joints = '{other}' leaves no rubber at the {joint}: leave it out, or set "
+                "joints = 'both' in [options]."
+            )
+        if any(name.endswith("rubber_law") for name in varied):
+            continue
+        law = options.get(f"{joint}_rubber_law", "same")
+        law = options.get("rubber_law", "as_given") if law == "same" else law
+        for name in own:
+            kind = _kind(name)
+            if law != "as_given" and kind not in (None, law):
+                raise InputError(
+                    f"{name} is given, but the law of the {joint} layer is {law}: leave it out, or set "
+                    f"{joint}_rubber_law = '{kind}' in [options]."
+                )
+
+
+def _of_joint(model: Model, name: str, joint: str, other: str) -> bool:
+    """Whether a parameter, an option or a handle of a mechanism addresses the layer of ``joint`` alone."""
+    mechanism, dot, parameter = name.partition(".")
+    if not dot:
+        twin = name.replace(f"{joint}_", f"{other}_", 1)  # the block on top has sizes that begin with top, too
+        return name.startswith(f"{joint}_") and (twin in model.options or any(p.name == twin for p in model.parameters))
+    found = model.mechanisms.get(mechanism)
+    return found is not None and model.name in found.at_joints and parameter.endswith(f"_{joint}")
+
+
+def _kind(name: str) -> str | None:
+    """The rubber law whose number it is, if it is one's."""
+    from models.rubber import ELEMENTS
+
+    law = ELEMENTS.get(name.partition(".")[0])
+    return None if law is None else law.kind
+
+
 def check_laws(options: Mapping[str, str], varied: Collection[str], mechanisms: Collection[str]) -> None:
     """Raise InputError for the parameters of a rubber law that ``options`` leave unused everywhere.
 

@@ -38,7 +38,7 @@ from pydantic import Field
 
 from grids.alike import taken_once
 from grids.axes import Axis, Request, read_axis
-from grids.consistency import check_laws, check_names, replaced
+from grids.consistency import check_joints, check_laws, check_names, replaced
 from grids.files import Schema, check, parse_toml, read_text
 from grids.grid import Grid
 from grids.instruments import INSTRUMENTS
@@ -164,6 +164,7 @@ def parse_plan(text: str, folder: Path) -> Plan:
     options |= {name: targets.option(name, word, f"[options] {name}") for name, word in file.options.items()}
     options = {name: word for name, word in options.items() if name not in varied}
     check_laws(options, varied, used)
+    check_joints(model, options, varied, {*own, *varied})  # the specimen's numbers suit its own options
     vertical = specimen.vertical if specimen else None
     motions, axes = read_motions(file.motion, axes, folder, model, vertical, "vertical_acceleration" in used)
     check_scales(named, motions)

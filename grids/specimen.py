@@ -35,7 +35,7 @@ from typing import Any
 
 from pydantic import Field
 
-from grids.consistency import check_laws, check_names
+from grids.consistency import check_joints, check_laws, check_names
 from grids.files import Schema, check, parse_toml, read_text
 from grids.instruments import INSTRUMENTS
 from grids.law_table import read_law
@@ -137,6 +137,7 @@ def parse_specimen(text: str, folder: Path = Path()) -> Specimen:
     check_names(model, known | calibrate.keys(), used)
     options = {name: targets.option(name, word, f"[options] {name}") for name, word in file.options.items()}
     check_laws(options, (), used)
+    check_joints(model, options, (), known | calibrate.keys())
     check_vertical(model, file.motion.vertical)
     fixed = {**parameters, **{f"{m}.{p}": v for m, values in mechanisms.items() for p, v in values.items()}}
     if not calibrate:

@@ -70,6 +70,52 @@ def test_names_of_one_joint_alone_need_the_option_that_bonds_the_other() -> None
     plan({**WALL, **top}, options="joints = 'top'")
 
 
+@pytest.mark.parametrize("model", ["interface", "interface_linear"])
+def test_what_is_given_for_a_joint_without_rubber_is_refused(model: str) -> None:
+    """It would do nothing."""
+    top = {"top_layer_thickness": "20 mm", "top_layer_modulus": "1 MPa", "top_damping_ratio": 0.05}
+    both = {**WALL, **BASE, **top}
+    specimen(both, model=model)
+    sentence = r"^top_layer_modulus is given, but joints = 'base' leaves no rubber at the top: leave it out, or set"
+    with pytest.raises(InputError, match=sentence):
+        specimen({**WALL, **BASE, "top_layer_modulus": 1e6}, "[options]\njoints = 'base'", model)
+    with pytest.raises(InputError, match="base_damping_ratio is given, but joints = 'top' leaves no rubber at the"):
+        plan({**WALL, **top, "base_damping_ratio": 0.05}, model=model, options="joints = 'top'")
+    with pytest.raises(InputError, match="top_damping_ratio is given, but joints = 'base'"):
+        axes = f"{PGA}\ntop_damping_ratio = {{ values = [0.02, 0.05] }}"
+        plan({**WALL, **BASE}, model=model, axes=axes, options="joints = 'base'")
+    cells = plan(both, model=model, axes=f"{PGA}\njoints = {{ values = ['base', 'both'] }}")
+    assert cells.fixed["top_damping_ratio"] == 0.05
+
+
+@pytest.mark.parametrize(
+    "mechanism",
+    [
+        "[mechanisms.maxwell]\narm_stiffness_ratio_top = 0.5\nrelaxation_time = 0.05",
+        "[mechanisms.interface_shear]\nshear_over_normal_top = 0.5",
+        "[mechanisms.contact_length]\nfrozen_top = 0.5",
+        "[calibrate.mullins]\nsoftening_top = [0.0, 0.5]",
+    ],
+)
+def test_what_a_mechanism_does_at_a_joint_without_rubber_is_refused(mechanism: str) -> None:
+    specimen({**WALL, **RUBBER}, mechanism)
+    with pytest.raises(InputError, match=r"_top is given, but joints = 'base' leaves no rubber at the top"):
+        specimen({**WALL, **RUBBER}, f"[options]\njoints = 'base'\n{mechanism}")
+    with pytest.raises(InputError, match="top_rubber_law is given, but joints = 'base' leaves no rubber at the top"):
+        specimen({**WALL, **RUBBER}, "[options]\njoints = 'base'\ntop_rubber_law = 'linear'")
+
+
+def test_numbers_of_a_law_that_its_joint_does_not_have_are_refused() -> None:
+    laws = "[mechanisms.mullins]\nsoftening_top = 0.3\nsoftening_base = 0.2\nstrain = 0.3\n"
+    specimen({**WALL, **RUBBER}, f"[options]\nbase_rubber_law = 'mullins'\n{laws}")
+    sentence = "mullins.softening_base is given, but the law of the base layer is linear: leave it out, or set base_"
+    with pytest.raises(InputError, match=sentence):
+        specimen({**WALL, **RUBBER}, f"[options]\nrubber_law = 'mullins'\nbase_rubber_law = 'linear'\n{laws}")
+    axes = f"{PGA}\nbase_rubber_law = {{ values = ['linear', 'mullins'] }}"
+    values = {"'mullins.softening_top'": 0.3, "'mullins.softening_base'": 0.2, "'mullins.strain'": 0.3}
+    plan({**WALL, **RUBBER, **values}, axes=axes)
+
+
 @pytest.mark.parametrize("name", models.MODELS)
 def test_a_model_checks_and_derives_under_its_default_words(name: str) -> None:
     model = models.get(name)
