@@ -2,10 +2,11 @@
 
     u'' + 2 zeta omega u' + omega^2 u = -a(t),   felt: a + motion u'' + force (u'' + a)
 
-``u`` is the oscillator's displacement against the base, at rest at the sample before the record. A foundation that
-moves on soft ground carries the block with it (``motion``); a mass that swings on top or a liquid that sloshes pushes
-it with the force that accelerates it (``force``), as far as the block's own rocking does not drive them. What still
-swings when the record ends is not followed.
+``u`` is the oscillator's displacement against the base, at rest at the sample before the record, of which the shaking
+may be the later part (`Shaking.earlier`). A foundation that moves on soft ground carries the block with it
+(``motion``); a mass that swings on top or a liquid that sloshes pushes it with the force that accelerates it
+(``force``), as far as the block's own rocking does not drive them. What still swings when the record ends is not
+followed.
 """
 
 from __future__ import annotations
@@ -35,7 +36,9 @@ def felt(shaking: Shaking, motion: float, force: float, frequency: float, dampin
         return shaking
 
     def make() -> Shaking:
-        total = acceleration(shaking.horizontal, shaking.time_step, frequency, damping)
+        earlier = np.zeros(0) if shaking.earlier is None else shaking.earlier
+        base = np.concatenate([earlier, shaking.horizontal])
+        total = acceleration(base, shaking.time_step, frequency, damping)[earlier.size :]
         more = motion * (total - shaking.horizontal) + force * total
         return replace(shaking, horizontal=shaking.horizontal + more)
 

@@ -147,12 +147,13 @@ class Housner(Model[Block]):
     def resume(
         self, states: FloatArray, outputs: Mapping[str, NDArray[Any]], initial: Mapping[str, FloatArray]
     ) -> dict[str, FloatArray]:
-        """Rotation and rate, the largest rotation and the impacts so far."""
+        """Rotation and rate, the largest rotation so far and since the last impact, and the impacts so far."""
         earlier = {name: initial.get(name, np.zeros(states.shape[0])) for name in ("peak_rotation_1", "impacts")}
         return {
             "rotation_1": states[:, 0],
             "rotation_rate_1": states[:, 1],
             "peak_rotation_1": np.maximum(earlier["peak_rotation_1"], outputs["peak_rotation"]),
+            "swing_peak_1": np.asarray(outputs["swing_peak"], dtype=np.float64),
             "impacts": earlier["impacts"] + outputs["impacts"],
         }
 

@@ -103,7 +103,7 @@ def start(given: Table, result: Table, w: Table, lane: int, slot: int, time: flo
     for row in range(result.shape[1]):
         result[lane, row] = 0.0
     result[lane, r.R_PEAK] = w[r.PEAK, slot]
-    result[lane, r.R_SWING] = abs(theta)
+    result[lane, r.R_SWING] = max(given[lane, r.Q_SWING], abs(theta))
     result[lane, r.R_IMPACTS] = given[lane, r.Q_IMPACTS]
     result[lane, r.R_ONSET], result[lane, r.R_OVERTURNED_AT], result[lane, r.R_UP_SINCE] = math.nan, math.nan, math.nan
     for row in (r.U, r.U1, r.Z, r.Z1):
@@ -135,6 +135,7 @@ def finish(given: Table, result: Table, w: Table, lane: int, slot: int, time: fl
     theta = w[r.TH, slot]
     result[lane, r.R_ROTATION] = theta
     result[lane, r.R_PEAK] = max(result[lane, r.R_PEAK], abs(theta))
+    result[lane, r.R_SWING] = max(result[lane, r.R_SWING], abs(theta))
     result[lane, r.R_DEMAND] = w[r.DEMAND, slot]
     result[lane, r.R_DISSIPATED] += given[lane, r.Q_MASS] * w[r.WORK, slot]
     result[lane, r.R_IMPACTS] -= given[lane, r.Q_IMPACTS]

@@ -97,6 +97,7 @@ def given_table(block: Block, scale: FloatArray, initial: Mapping[str, FloatArra
         (r.Q_THETA, initial.get("rotation_1", 0.0)),
         (r.Q_OMEGA, initial.get("rotation_rate_1", 0.0)),
         (r.Q_PEAK, initial.get("peak_rotation_1", 0.0)),
+        (r.Q_SWING, initial.get("swing_peak_1", 0.0)),
         (r.Q_IMPACTS, initial.get("impacts", 0.0)),
     )
     found = filled(block.size, r.N_GIVEN, constants)
@@ -110,7 +111,8 @@ def run(block: Block, request: Request, refinement: int = 1) -> Run:
     """Run n lanes of ``block`` as requested; ``refinement`` divides every step.
 
     Samples: theta (rad), theta' (rad s-1) and what the mass centre's displacement has beyond that of rocking on
-    fixed corners (m). ``initial`` may hold ``peak_rotation_1`` (rad) and ``impacts`` before the run, too.
+    fixed corners (m). ``initial`` may hold ``peak_rotation_1`` (rad), ``swing_peak_1`` (rad, since the last impact)
+    and ``impacts`` before the run, too.
     """
     shaking = request.shaking
     found, steps = empty(request, r.N_RESULT, 3), 0
@@ -149,7 +151,7 @@ def _record(request: Request, per_sample: int, corner: float) -> Record:
 
 
 def outputs(block: Block, result: NDArray[np.float64]) -> dict[str, NDArray[Any]]:
-    """The declared outputs from the table of results."""
+    """The declared outputs from the table of results, and ``swing_peak``: for a run that goes on from there."""
     status = result[:, r.R_STATUS].astype(np.int8)
     return {
         "peak_rotation": result[:, r.R_PEAK],
@@ -163,4 +165,5 @@ def outputs(block: Block, result: NDArray[np.float64]) -> dict[str, NDArray[Any]
         "dissipated_energy": result[:, r.R_DISSIPATED],
         "friction_demand": np.where(result[:, r.R_DEMAND] > 1e299, np.inf, result[:, r.R_DEMAND]),
         "status": status,
+        "swing_peak": result[:, r.R_SWING],
     }

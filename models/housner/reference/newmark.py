@@ -67,7 +67,7 @@ class _Lanes:
         self.alpha = block.slenderness
         self.slow = REST_VELOCITY * block.frequency_parameter * self.alpha
         self.theta, self.rate, self.side = np.zeros(n), np.zeros(n), np.ones(n)
-        self.largest, self.arc, self.impacts = np.zeros(n), np.zeros(n), np.zeros(n)
+        self.largest, self.arc, self.impacts, self.earlier = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
         self.lost, self.uplift, self.friction = np.zeros(n), np.zeros(n), np.zeros(n)
         self.onset, self.fall = np.full(n, np.nan), np.full(n, np.nan)
         self.up, self.done, self.failed = np.zeros(n, bool), np.zeros(n, bool), np.zeros(n, bool)
@@ -78,7 +78,9 @@ class _Lanes:
         self.rate[:] = initial.get("rotation_rate_1", 0.0)
         self.up = (self.theta != 0.0) | (self.rate != 0.0)
         self.side = np.where(np.where(self.theta != 0.0, self.theta, self.rate) < 0.0, -1.0, 1.0)
-        self.largest, self.arc = np.abs(self.theta), np.abs(self.theta)
+        self.largest = np.maximum(np.abs(self.theta), initial.get("peak_rotation_1", 0.0))
+        self.arc = np.maximum(np.abs(self.theta), initial.get("swing_peak_1", 0.0))
+        self.earlier[:] = initial.get("impacts", 0.0)
 
     def over(self, shaken: bool) -> bool:
         """Whether nothing can happen any more."""
@@ -240,7 +242,7 @@ class _Lanes:
             rate=before,
             previous_peak=self.arc[k],
             largest_peak=self.largest[k],
-            impacts=self.impacts[k],
+            impacts=self.earlier[k] + self.impacts[k],
         )
         after = ratio * before
         a, gravity = ground
@@ -314,4 +316,5 @@ class _Lanes:
             "dissipated_energy": self.lost,
             "friction_demand": self.friction,
             "status": np.array([float(STATUS.index(word)) for word in words.tolist()]),
+            "swing_peak": self.arc,
         }

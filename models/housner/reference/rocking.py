@@ -337,6 +337,7 @@ class Rocking:
             "dissipated_energy": self.lost,
             "friction_demand": self.friction,
             "status": float(STATUS.index(status)),
+            "swing_peak": self.arc,
         }
 
     def result(self) -> Run:

@@ -23,7 +23,8 @@ def run(block: Block, request: Request, rtol: float = 1e-10) -> Run:
     """One block (a `Block` of one lane) as requested.
 
     Samples: theta (rad), theta' (rad s-1) and what the mass centre's displacement has beyond that of rocking on
-    fixed corners (m). ``initial`` may hold ``peak_rotation_1`` (rad) and ``impacts`` before the run, too.
+    fixed corners (m). ``initial`` may hold ``peak_rotation_1`` (rad), ``swing_peak_1`` (rad, since the last impact)
+    and ``impacts`` before the run, too.
     A history of a block that has overturned goes on to pi/2; outputs count to overturning all the same.
     ``rtol`` is that of DOP853, the absolute tolerance is rtol times (alpha, p alpha, M g R alpha^2).
     """
@@ -31,6 +32,7 @@ def run(block: Block, request: Request, rtol: float = 1e-10) -> Run:
     start = request.start
     body.begin(start.get("rotation_1", 0.0), start.get("rotation_rate_1", 0.0))
     body.largest = max(body.largest, start.get("peak_rotation_1", 0.0))
+    body.arc = max(body.arc, start.get("swing_peak_1", 0.0))
     body.earlier = start.get("impacts", 0.0)
     pitching = float(block.pitch_per_acceleration[0]), float(block.pitch_low_pass[0])
     gains = block.oscillator_motion, block.oscillator_force
