@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from models.base import FloatArray, OverParts, Parameter, Quantity, Values
+from models.errors import InputError
 from models.peaks import AT_SAMPLES
 
 PARAMETERS = (
@@ -58,7 +59,7 @@ def lanes_shape(values: Values, size: int | None) -> tuple[int, ...]:
 
 
 def bodies(values: Values, size: int | None = None) -> Bodies:
-    """The two rectangles of the parameters: I = m (length^2 + height^2)/12."""
+    """The two rectangles of the parameters: I = m (length^2 + height^2)/12. Raises InputError for a density alone."""
     shape = lanes_shape(values, size)
 
     def value(name: str, default: float = np.nan) -> FloatArray:
@@ -67,6 +68,8 @@ def bodies(values: Values, size: int | None = None) -> Bodies:
     height, top_length, top_height = value("wall_height"), value("top_length"), value("top_height")
     length = value("wall_length") if "wall_length" in values else value("aspect_ratio") * height
     dense = "wall_density" in values
+    if dense and np.any(np.isnan(value("wall_thickness"))):
+        raise InputError("wall_density gives a mass only with wall_thickness: give both, or wall_mass")
     mass = value("wall_density") * length * height * value("wall_thickness") if dense else value("wall_mass")
     top = value("top_mass")
     return Bodies(

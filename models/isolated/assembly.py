@@ -35,6 +35,8 @@ def complaints(values: Values) -> list[str]:
     for name in ("storey_stiffness", "storey_damping"):
         if most > 1 and name not in values:
             found.append(f"levels is {most} and {name} is missing: give it, or 1 level for a rigid body")
+        if "levels" not in values and name in values:
+            found.append(f"{name} is given but levels is not: give levels, the slab included, or leave it out")
     return found
 
 

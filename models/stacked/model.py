@@ -50,11 +50,10 @@ class Stacked(Model[Stack]):
 
     def check(self, values: Values, options: Mapping[str, str] | None = None) -> list[str]:
         """What has no meaning together: a density without thickness, a stack that does not stand by itself."""
-        if "wall_density" in values and bool(np.any(np.isnan(values.get("wall_thickness", np.nan)))):
-            return ["wall_density gives a mass only with wall_thickness: give both, or wall_mass"]
+        if found := super().check(values, options):
+            return found
         stack = self.build(values, options)
         lean = stack.offset / stack.gravity
-        found = []
         for slope, what in (
             (stack.half_width / stack.centre, "wall and top block as one body"),
             (stack.half_width_2 / stack.centre_2, "top block"),

@@ -116,6 +116,32 @@ def test_numbers_of_a_law_that_its_joint_does_not_have_are_refused() -> None:
     plan({**WALL, **RUBBER, **values}, axes=axes)
 
 
+@pytest.mark.parametrize("model", ["stacked", "interface", "interface_linear"])
+def test_a_density_without_a_thickness_is_refused(model: str) -> None:
+    stiffness = {"base_stiffness": 6.2e7, "top_stiffness": 6.2e7, "base_damping": 1e5, "top_damping": 1e5}
+    layers = {} if model == "stacked" else {"layer_thickness": "10 mm", **stiffness}
+    values = {**WALL, **layers}
+    specimen(values, model=model)
+    del values["wall_thickness"]
+    for read in (plan, specimen):
+        with pytest.raises(InputError, match="wall_density gives a mass only with wall_thickness: give both, or wall"):
+            read(values, model=model)
+    del values["wall_density"]
+    specimen({**values, "wall_mass": 160.0}, model=model)
+
+
+@pytest.mark.parametrize("name", ["storey_stiffness", "storey_damping"])
+def test_storeys_of_a_building_without_levels_are_refused(name: str) -> None:
+    """A body without levels is rigid: the number would do nothing."""
+    sentence = f"{name} is given but levels is not: give levels, the slab included, or leave it out"
+    for read in (plan, specimen):
+        with pytest.raises(InputError, match=sentence):
+            read({**BUILDING, name: 1e6}, model="isolated")
+    storeys = {**BUILDING, "storey_stiffness": 1e8, "storey_damping": 1e5}
+    specimen({**storeys, "levels": 1}, model="isolated")
+    plan(storeys, model="isolated", axes=f"{PGA}\nlevels = {{ values = [1, 3] }}")
+
+
 @pytest.mark.parametrize("name", models.MODELS)
 def test_a_model_checks_and_derives_under_its_default_words(name: str) -> None:
     model = models.get(name)
