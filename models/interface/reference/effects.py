@@ -229,6 +229,11 @@ class EffectsEquation(Equation):
     def accelerated(self, q: Sequence[float], v: Sequence[float], ground: Ground, strips: Both) -> FloatArray:
         return np.asarray(self.free @ self._solved(q, v, ground, strips)[0])
 
+    def let_go(self, q: Sequence[float], v: Sequence[float], hidden: FloatArray, ground: Ground) -> None:
+        for k, sign in self.moving.items():
+            if sign == 0.0 and self._spare(k, q, v, hidden, ground) < 0.0:
+                self.switched(f"go {k}", q, v, hidden, ground)
+
     def switches(self) -> list[Switch]:
         """The events that end the present discrete state."""
         found = [self._stop(k, sign) if sign != 0.0 else self._go(k) for k, sign in self.moving.items()]

@@ -161,6 +161,9 @@ class Equation:
         """The hidden state of a run that begins at q, q'; ``memory``: what else it starts from."""
         return self.relaxed(q)
 
+    def let_go(self, q: Sequence[float], v: Sequence[float], hidden: FloatArray, ground: Ground) -> None:
+        """Before a piece of the ground's motion, which may begin with a jump: what nothing holds any more moves."""
+
     def switches(self) -> Sequence[Switch]:
         """Events at which the equations change; none of a plain wall."""
         return ()

@@ -110,6 +110,8 @@ class _Run:
             value.terminal, value.direction = True, -1.0  # type: ignore[attr-defined]
             return value
 
+        q, v = (part.tolist() for part in self.spread(self.y))
+        self.equation.let_go(q, v, self.y[works + 2 :], piece.at(piece.start))
         fall.terminal = True  # type: ignore[attr-defined]
         # without shaking, look at the motion now and then: it may have come to rest
         ends = [piece.end] if shaken else [*np.arange(piece.start + self.period, piece.end, self.period), piece.end]

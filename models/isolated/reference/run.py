@@ -111,6 +111,9 @@ class _Run:
             power = -a * float(self.mass @ y[n : 2 * n])
             return np.concatenate([y[n : 2 * n], self.second(y, a), [power], rates])
 
+        # of what is zero, the sign is that of its rate
+        self.way = self.way or np.sign(self.second(self.y, a0)[0] or a0 - a1)
+        self.side = self.side or self.way
         self.time = start
         while self.time < end:
             solution = solve_ivp(

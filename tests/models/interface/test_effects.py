@@ -153,6 +153,27 @@ def test_a_dry_couple_holds_the_wall_up_to_its_size() -> None:
     assert moved[1] < 0.8 * moved[0] < 0.8 * plain
 
 
+@pytest.mark.parametrize(
+    ("values", "start", "push"),
+    [
+        ({"coulomb_damping.over_m_g_b": 0.01}, {"rotation_1": 0.01, "rotation_2": 0.01}, 0.0),
+        ({"sliding.friction": 0.02}, {}, -2.0 * G),
+    ],
+)
+def test_what_friction_cannot_hold_moves_from_the_start(
+    values: dict[str, float], start: dict[str, float], push: float
+) -> None:
+    """A turned wall, and a base that is pushed from the first sample on."""
+    shaking = Shaking(0.005, np.full(11, push))
+    request = asked(shaking, duration=0.05, initial=start)
+    slow = reference.run(wall({**SHORT, **values}), request, 1e-6).samples[0]
+    fast = lanes.run(wall({**SHORT, **values}), request, 4).samples[0]
+    for k, name in ((0, "rotation"), (8, "slip")):
+        moved = np.ptp(slow[:, k])
+        np.testing.assert_allclose(fast[:, k], slow[:, k], rtol=0.0, atol=1e-2 * moved + 1e-9, err_msg=name)
+    assert np.ptp(slow[:, 8 if push else 0]) > 1e-4
+
+
 def test_a_frozen_contact_is_that_of_the_published_equations() -> None:
     """Of `interface_linear` at small rotations, where the geometry hardly bends."""
     import models
