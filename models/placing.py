@@ -17,13 +17,16 @@ from models.observed import Observed
 class Placing:
     """The part of a model that says where its bodies are.
 
-    ``bodies``: how many rigid bodies `poses` places; ``not_placed``: mechanisms with which a body is not rigid or not
-    on its pivots, so that `poses` does not hold.
+    ``bodies``: how many rigid bodies `poses` places. Mechanisms with which it does not hold: ``not_placed``, a body is
+    not rigid or not on its pivots; ``moves_pivots``, those move with the motion; ``turns_base``, readings that are not
+    relative to the base lack what its rotation adds.
     """
 
     name: str
     bodies: int = 0
     not_placed: tuple[str, ...] = ()
+    moves_pivots: tuple[str, ...] = ()
+    turns_base: tuple[str, ...] = ()
 
     def poses(self, coefficients: Any, samples: FloatArray) -> Mapping[str, FloatArray]:
         """Poses ``(n, samples)`` of states as integrators return them (`models.kinematics.Poses`), without rotations.
@@ -48,6 +51,17 @@ class Placing:
                 f"channel {name} is on body {place.body} and model {self.name} {has}: leave the channel out, or use "
                 "another model."
             )
+
+    def unplaced(self, place: Place) -> dict[str, str]:
+        """Mechanisms with which the reading of ``place`` is not predicted, and why."""
+        why = "it moves points of a body otherwise than a rigid body's, which channels at positions are predicted by"
+        found = dict.fromkeys(self.not_placed, why)
+        if place.quantity not in ("rotation", "angular_velocity"):
+            found |= dict.fromkeys(self.moves_pivots, "it moves the pivots, which channels at positions do not follow")
+        if place.absolute:
+            why = "it turns the base, which absolute accelerations and load cells at positions are predicted without"
+            found |= dict.fromkeys(self.turns_base, why)
+        return found
 
 
 def masses(like: FloatArray, *bodies: tuple[FloatArray, FloatArray, FloatArray]) -> dict[str, Callable[[], FloatArray]]:

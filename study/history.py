@@ -110,11 +110,11 @@ def _check_places(model: Model, specimen: Specimen, placed: Mapping[str, Place])
     """Raises InputError for channels that the model does not predict with this specimen's mechanisms."""
     for name, place in placed.items():
         model.check_place(name, place)
-        if bends := [m for m in model.not_placed if m in specimen.mechanisms]:
-            raise InputError(
-                f"channel {name} is at a position of a rigid body, which a body with {bends[0]} is not: leave the "
-                f"channel or {bends[0]} out."
-            )
+        for mechanism, why in model.unplaced(place).items():
+            if mechanism in specimen.mechanisms:
+                raise InputError(
+                    f"channel {name} is not predicted with {mechanism}: {why}; leave the channel or {mechanism} out."
+                )
 
 
 Ways = Sequence[tuple[int, Mechanisms]]

@@ -131,10 +131,9 @@ def _with_whole_numbers_held(
 
 def absent(measured: Measured) -> dict[str, str]:
     """Mechanisms that cannot be tried on these recordings, and why."""
-    never = {}
-    if measured.places:
-        why = "it moves points of a body otherwise than a rigid body's, which channels at positions are predicted by"
-        never = dict.fromkeys(measured.model.not_placed, why)
+    never: dict[str, str] = {}
+    for place in measured.places.values():
+        never |= measured.model.unplaced(place)
     if all(s.vertical_acts and s.vertical is not None for s in measured.shakings):
         never["vertical_acceleration"] = "the vertical motion of the base acts in the base model already"
     elif any(s.vertical is None for s in measured.shakings):

@@ -41,6 +41,8 @@ class Housner(Model[Block]):
     integrators = ("lanes", "reference", "newmark")
     bodies = 1
     not_placed = ("bounce", "wall_flexibility")
+    moves_pivots = ("crushing",)
+    turns_base = ("table_pitch",)
     resumes_with = declaration.RESUMES_WITH
 
     def assemble(self, values: Values, options: Mapping[str, str], *, vertical: bool, size: int) -> Block:

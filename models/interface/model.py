@@ -45,6 +45,7 @@ class Interface(Model[LayeredWall]):
     bodies = 2
     call_time = 1e-2
     not_placed = ("wall_flexibility",)
+    turns_base: tuple[str, ...] = ("table_pitch",)
     vertical_by_default = True
     resumes_with: tuple[str, ...] | None = (
         "vertical_acceleration", "pivot_inset", "hardening", "locking", "tilt", "eccentricity", "table_pitch",

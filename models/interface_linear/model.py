@@ -34,6 +34,7 @@ class InterfaceLinear(Interface):
     outputs = declaration.OUTPUTS
     identification = IDENTIFICATION
     bodies = 2
+    turns_base = ()
     resumes_with = ("vertical_acceleration", "pivot_inset", "tilt")
 
     def resolve_options(self, options: Mapping[str, str] | None) -> dict[str, str]:

@@ -40,6 +40,7 @@ class Stacked(Model[Stack]):
     states = declaration.STATES
     identification = IDENTIFICATION
     bodies = 2
+    turns_base = ("table_pitch",)
     resumes_with = (
         "vertical_acceleration", "pivot_inset", "tilt", "eccentricity", "table_pitch", "restitution",
         "viscous_damping", "coulomb_damping",

@@ -13,6 +13,7 @@ from grids.specimen import parse_specimen
 from grids.write_specimen import specimen_text
 from models.errors import InputError
 from models.kinematics import Place
+from rocking.simulation import simulate
 
 TABLE = {"quantity": "displacement", "position_x": "-12 cm", "direction": "z"}
 
@@ -69,3 +70,27 @@ def test_what_is_wrong_is_said_with_the_channel_and_a_cure(changed: dict[str, ob
     with pytest.raises(InputError, match="channel lvdt_left") as error:
         read_place("lvdt_left", {**TABLE, **changed})
     assert said in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "quantity", "predicted"),
+    [
+        ("table_pitch]\npitch_per_acceleration = 0.003\nlow_pass_hz = 30", "acceleration", False),
+        ("table_pitch]\npitch_per_acceleration = 0.003\nlow_pass_hz = 30", "force", False),
+        ("table_pitch]\npitch_per_acceleration = 0.003\nlow_pass_hz = 30", "displacement", True),
+        ("crushing]\ninset_per_rotation = 3.0", "uplift", False),
+        ("crushing]\ninset_per_rotation = 3.0", "rotation", True),
+        ("pivot_inset]\ninset_over_half_width = 0.3", "uplift", True),
+    ],
+)
+def test_what_a_channel_is_not_predicted_with_is_refused(mechanism: str, quantity: str, predicted: bool) -> None:
+    """A base that turns moves what stands on it; pivots that move are not those of the reading."""
+    block = 'title = "b"\nmodel = "housner"\n[parameters]\nwidth = 0.5\nheight = 2.0\nmass = 1000.0\n'
+    block += f'[initial]\nrotation_1 = 0.1\n[mechanisms.{mechanism}\n[channels.sensor]\nquantity = "{quantity}"\n'
+    specimen = parse_specimen(block)
+    if predicted:
+        assert simulate(specimen, duration=0.1)["sensor"].size > 10
+        return
+    name = mechanism.partition("]")[0]
+    with pytest.raises(InputError, match=f"sensor is not predicted with {name}: .*; leave the channel or {name} out"):
+        simulate(specimen, duration=0.1)
