@@ -14,7 +14,7 @@ from diagnosis.errors.model import calibrated
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.setup import measure
 from diagnosis.progress import silent
-from diagnosis.search import beginnings
+from diagnosis.search import beginnings, in_spells
 from diagnosis.search.beginnings import alone, beside, had_not_begun, others_in_the_spell
 from diagnosis.search.candidates import candidates
 from diagnosis.search.found import BADLY, MISSING, Search, adjusted, by_window
@@ -95,7 +95,7 @@ def test_no_part_of_the_recordings_is_refitted_where_what_always_acts_explains_a
     def refitted(*_: object) -> Explanation:
         raise AssertionError("refitted in a part of the recordings")
 
-    monkeypatch.setattr(beginnings, "_in_run", refitted)
+    monkeypatch.setattr(in_spells, "in_run", refitted)
     always = [(1.0, {"restitution.factor_on_housner": 0.93})]
     searched([made("a", 13, always), made("b", 6, always)])
     late = [(6.0, {"restitution.factor_on_housner": 0.93})]
@@ -105,7 +105,7 @@ def test_no_part_of_the_recordings_is_refitted_where_what_always_acts_explains_a
 
 def test_what_begins_early_is_found_where_it_explains_most_acting_always(monkeypatch: pytest.MonkeyPatch) -> None:
     """Then no run of windows stands out in the screen, and the single itself is asked where it acts."""
-    monkeypatch.setattr(beginnings, "_quick", lambda *_: iter(()))
+    monkeypatch.setattr(in_spells, "quick", lambda *_: iter(()))
     inset = {"pivot_inset.inset_over_half_width": 0.15}
     measured = measure(SPECIMEN, [made("a", 6, [(3.5, inset)]), made("b", 13, [(1.0, inset)])])
     fitted, errors = calibrated(SPECIMEN, measured)
@@ -136,11 +136,11 @@ def test_the_strongest_against_white_noise_is_taken_along_however_little_it_gain
     other = replace(knocked, candidates=(replace(knocked.candidates[0], mechanism=MODEL.mechanisms["tilt"]),))
     gains = {("tilt",): 1000.0, ("offset",): 100.0}
     screens = iter(([other], [knocked]))
-    monkeypatch.setattr(beginnings, "_quick", lambda *_: iter(next(screens)))
-    monkeypatch.setattr(beginnings, "thorough", lambda single: single)
-    monkeypatch.setattr(beginnings, "adjusted", lambda e: -gains.get(e.names, 0.0))
-    screened = beginnings._Screened.of(found, found.base, found.scores)
-    assert [e.names for e in beginnings._in_spells(found, found.base, screened)] == [("tilt",), ("offset",)]
+    monkeypatch.setattr(in_spells, "quick", lambda *_: iter(next(screens)))
+    monkeypatch.setattr(in_spells, "thorough", lambda single: single)
+    monkeypatch.setattr(in_spells, "adjusted", lambda e: -gains.get(e.names, 0.0))
+    screened = in_spells.Screened.of(found, found.base, found.scores)
+    assert [e.names for e in in_spells.in_spells(found, found.base, screened)] == [("tilt",), ("offset",)]
 
 
 @pytest.mark.parametrize(("begins", "counts"), [(3.0, True), (1.0, True), (None, False)])
