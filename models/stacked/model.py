@@ -30,7 +30,7 @@ class Stacked(Model[Stack]):
 
     name = "stacked"
     title = "two stacked rigid blocks on a rigid base"
-    version = "2"
+    version = "3"
     parameters = declaration.PARAMETERS
     alternatives = declaration.ALTERNATIVES
     options = declaration.OPTIONS
