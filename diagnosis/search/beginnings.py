@@ -22,7 +22,7 @@ from diagnosis.fit.solver import fit
 from diagnosis.forces.constancy import BLOW, FOR_A_WHILE, Constancy
 from diagnosis.progress import Progress
 from diagnosis.search.beside import seconds
-from diagnosis.search.budget import RESERVED, SHARED
+from diagnosis.search.budget import RESERVED
 from diagnosis.search.details import least
 from diagnosis.search.found import ALONE, MISSING, Search, adjusted, explains_all, price, settles, survives
 from diagnosis.search.in_each import in_each
@@ -45,7 +45,7 @@ def alone(found: Search, progress: Progress) -> Iterator[Search]:
     if found.null is None or _settled(found):
         return
     progress("looking for an effect that begins or ends", 0.48)
-    with found.work_of_its_own(min(RESERVED, SHARED * found.left)):
+    with found.work_of_its_own(min(RESERVED, found.spare)):
         found.begun = _begun(found, found.base)
     begun = found.begun
     if begun is not None and begun.best is not None and explains_all(begun.best) and not begun.incomplete:

@@ -14,13 +14,11 @@ JOINTS = 25.0
 UNTRIED = 35.0
 """s for what is left of the screen, in the place of the strongest single."""
 FURTHER = 60.0
-"""s for effects beside the first, whatever was spent before: where two act, the first explains little."""
+"""s for effects beside the first, kept back from all that comes before: where two act, the first explains little."""
 LAST = 25.0
 """s for others in the place of each of several effects at the end, whatever was spent before."""
 RESERVED = 80.0
 """s for effects that begin or end, whatever was spent before: they may explain everything."""
-SHARED = 0.5
-"""Share of what is left of the whole that one effect that begins or ends may take before further effects."""
 LADDER = 70.0
 """s after which no further base model is tried."""
 SEARCH, ANSWER = 180.0, 220.0

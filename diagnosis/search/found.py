@@ -22,7 +22,7 @@ from diagnosis.fit.linearisation import Linearisation
 from diagnosis.fit.solver import Fitted
 from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.forces.constancy import About, Constancy
-from diagnosis.search.budget import ENDED, SEARCH, Budget
+from diagnosis.search.budget import ENDED, FURTHER, SEARCH, Budget
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.null import Null
 from diagnosis.search.refit import Explanation, from_other, gain_by_window
@@ -134,9 +134,9 @@ class Search:
         return known
 
     @property
-    def left(self) -> float:
-        """Seconds of work that all searches together may still take."""
-        return self.whole.left
+    def spare(self) -> float:
+        """Seconds of work that may be done before further effects are looked for, which need theirs."""
+        return self.whole.left - FURTHER
 
     @property
     def spent(self) -> bool:

@@ -147,9 +147,9 @@ def refit_singles(found: Search, progress: Progress) -> None:
         found.singles[0] = again(reshaped(found.singles[0]))
         tried = {single.candidates[0] for single in found.singles}
         left += [s for s in worth_a_refit(found.scores, fewest, SHARE_OF_FIRST) if s.candidate not in tried]
-    with found.work_of_its_own(JOINTS):
+    with found.work_of_its_own(min(JOINTS, found.spare)):
         at_other_joints(found)
-    with found.work_of_its_own(UNTRIED):
+    with found.work_of_its_own(min(UNTRIED, found.spare)):
         in_its_place(found, left)
     leader = found.singles[0]
     near = NEAR_ADEQUATE if adequate(leader) else NEAR
