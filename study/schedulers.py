@@ -97,13 +97,13 @@ def _local(scheduler: str, workers: int) -> Executor:
     if scheduler == "processes":
         # Spawned, for a fork of a process with threads may hang.
         context = multiprocessing.get_context("spawn")
-        return ProcessPoolExecutor(workers, mp_context=context, initializer=_start_worker)
+        return ProcessPoolExecutor(workers, mp_context=context, initializer=start_worker)
     from dask.local import SynchronousExecutor
 
     return SynchronousExecutor()
 
 
-def _start_worker() -> None:
+def start_worker() -> None:
     """Leave Ctrl-C to the parent, and end with it: a killed parent cannot stop its workers."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent = multiprocessing.parent_process()

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import time
 from collections.abc import Callable, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, Future, wait
 from pathlib import Path
 
 from benchmarks.diagnosis import bases, stacks, walls
@@ -13,6 +12,7 @@ from benchmarks.diagnosis import cases as blocks
 from benchmarks.diagnosis.files import write_case
 from benchmarks.diagnosis.suite import CaseDesign
 from diagnosis.prove.answers import Answering, answer, diagnosed, read_json
+from diagnosis.prove.pool import processes
 from diagnosis.prove.scores import Scored
 
 
@@ -46,8 +46,7 @@ def run_all(
     end = time.monotonic() + 60.0 * minutes
     waiting = [w for w in designs if not (answers / f"{w.label}.json").is_file()]
     say(f"{len(designs) - len(waiting)} of {len(designs)} cases were answered before")
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(jobs, mp_context=context) as pool:
+    with processes(jobs) as pool:
         running: dict[Future[str], CaseDesign] = {}
         while waiting or running:
             while waiting and len(running) < jobs and time.monotonic() < end:

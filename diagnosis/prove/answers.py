@@ -66,13 +66,15 @@ def plain(found: Diagnosis) -> dict[str, Any]:
         "null_band": found.null_band,
         "reference_peak": found.reference_peak,
         "screen": [asdict(one) for one in found.screen],
+        "finished": found.finished and not found.skipped,
     }
 
 
 def answer(folder: Path, path: Path, answering: Answering = diagnosed) -> dict[str, Any]:
     """The answer to ``folder``, from ``path`` if it is there already; else found, timed and written.
 
-    A failure is an answer too: verdict ``failed`` and its traceback. ``seconds`` are by the clock,
+    A failure is an answer too: verdict ``failed`` and its traceback. What Ctrl-C cut short is none: a
+    KeyboardInterrupt, and nothing is written, or it would be kept for the final one. ``seconds`` are by the clock,
     ``processor_seconds`` those in which the process had a core: other work on the machine adds to the first alone.
     """
     if path.is_file():
@@ -82,6 +84,8 @@ def answer(folder: Path, path: Path, answering: Answering = diagnosed) -> dict[s
         found = answering(folder)
     except Exception:
         found = {"verdict": "failed", "statement": traceback.format_exc(), **NOTHING}
+    if not found.get("finished", True):
+        raise KeyboardInterrupt
     taken = {"seconds": time.perf_counter() - begin, "processor_seconds": time.process_time() - used}
     whole = {**found, **taken, "sources": fingerprint()}
     write_json(path, whole)

@@ -6,15 +6,15 @@ answers.json beside them, ``{"cases": {"case_NN": {"kind", "effects", "recording
 
 from __future__ import annotations
 
-import multiprocessing
 import time
 from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import as_completed
 from pathlib import Path
 from typing import Any
 
 from diagnosis.prove import figures, report
 from diagnosis.prove.answers import Answering, answer, diagnosed, read_json, sha256, write_json
+from diagnosis.prove.pool import processes
 from diagnosis.prove.scores import Scored
 from grids.files import parse_toml, read_text
 from models.errors import InputError
@@ -69,7 +69,7 @@ def prove(
     waiting = [path for path in chosen if not (answers / f"{path.name}.json").is_file()]
     say(f"{len(chosen) - len(waiting)} of {len(chosen)} cases were answered before")
     end = time.monotonic() + 60.0 * minutes
-    with ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn")) as pool:
+    with processes(jobs) as pool:
         while waiting and time.monotonic() < end:
             batch, waiting = waiting[:jobs], waiting[jobs:]
             running = {pool.submit(answer, path, answers / f"{path.name}.json", answering): path for path in batch}
