@@ -13,9 +13,12 @@ from pathlib import Path
 from typing import Any
 
 from diagnosis.answer.result import Diagnosis, Effect
+from models.errors import InputError
 
 ROOMS = ("models", "grids", "diagnosis")
 ROOT = Path(__file__).resolve().parents[2]
+FILES = "files_sha256"
+"""The entry of an answer that says to which files it is one."""
 NOTHING: dict[str, Any] = {"effects": [], "rivals": [], "constancy": [], "located": [], "base": {}}
 
 Answering = Callable[[Path], dict[str, Any]]
@@ -79,6 +82,7 @@ def answer(folder: Path, path: Path, answering: Answering = diagnosed) -> dict[s
     """
     if path.is_file():
         return read_json(path)
+    files = file_hashes(folder)
     begin, used = time.perf_counter(), time.process_time()
     try:
         found = answering(folder)
@@ -87,9 +91,24 @@ def answer(folder: Path, path: Path, answering: Answering = diagnosed) -> dict[s
     if not found.get("finished", True):
         raise KeyboardInterrupt
     taken = {"seconds": time.perf_counter() - begin, "processor_seconds": time.process_time() - used}
-    whole = {**found, **taken, "sources": fingerprint()}
+    whole = {**found, **taken, "sources": fingerprint(), FILES: files}
     write_json(path, whole)
     return whole
+
+
+def file_hashes(folder: Path) -> dict[str, str]:
+    """sha256 of every file of a case by name, without hidden ones, which a file manager may leave."""
+    return {path.name: sha256(path) for path in sorted(folder.glob("[!.]*")) if path.is_file()}
+
+
+def check_same(path: Path, kept: Mapping[str, Any], folder: Path) -> None:
+    """Raise InputError unless the answer ``kept`` in ``path`` is one to the case ``folder`` as it is now."""
+    cure = "name another folder with --out, or delete it so that the case is answered again."
+    if FILES not in kept:
+        raise InputError(f"{path} does not say to which files it is the answer (an earlier version's): {cure}")
+    then, now = kept[FILES], file_hashes(folder)
+    if changed := sorted(name for name in {*then, *now} if then.get(name) != now.get(name)):
+        raise InputError(f"{path} is the answer to another {changed[0]} than that in {folder}: {cure}")
 
 
 def sha256(path: Path) -> str:

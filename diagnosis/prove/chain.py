@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from diagnosis.prove import figures, report
-from diagnosis.prove.answers import Answering, answer, diagnosed, read_json, sha256, write_json
+from diagnosis.prove.answers import Answering, answer, check_same, diagnosed, read_json, sha256, write_json
 from diagnosis.prove.pool import processes
 from diagnosis.prove.scores import Scored
 from grids.files import parse_toml, read_text
@@ -67,6 +67,10 @@ def prove(
     chosen = cases_in(folder, half, model)
     answers = out / "answers"
     waiting = [path for path in chosen if not (answers / f"{path.name}.json").is_file()]
+    for path in chosen:
+        if path not in waiting:
+            kept = answers / f"{path.name}.json"
+            check_same(kept, read_json(kept), path)
     say(f"{len(chosen) - len(waiting)} of {len(chosen)} cases were answered before")
     end = time.monotonic() + 60.0 * minutes
     with processes(jobs) as pool:

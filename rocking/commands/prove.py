@@ -11,7 +11,8 @@ import typer
 def prove(
     folder: Annotated[Path, typer.Argument(help="Folder with case_01, case_02 ... and answers.json, the key.")],
     out: Annotated[
-        Path | None, typer.Option(help="Folder of answers and scores.  [default: results/prove/DIR]")
+        Path | None,
+        typer.Option(help="Folder of answers and scores.  [default: results/prove/PARENT_DIR, with half and model]"),
     ] = None,
     half: Annotated[str, typer.Option(help="all, odd or even: which cases, by their numbers.")] = "all",
     model: Annotated[str | None, typer.Option(help="Only cases whose specimen is of this model.")] = None,
@@ -27,7 +28,14 @@ def prove(
     from diagnosis.prove.chain import prove as prove_folder
     from rocking.commands.diagnose import make_folder
 
-    place = out or Path("results/prove") / f"{folder.resolve().name}{'' if half == 'all' else f'_{half}'}"
+    place = out or default_folder(folder, half, model)
     make_folder(place)
     if prove_folder(folder, place, half=half, model=model, jobs=jobs, minutes=minutes, say=typer.echo):
         typer.echo(f"written: {place / 'prove.json'} and figures", err=True)
+
+
+def default_folder(folder: Path, half: str, model: str | None) -> Path:
+    """Its own for each choice of cases; many folders of cases are called ``cases``, so the one above counts too."""
+    whole = folder.resolve()
+    words = [whole.parent.name, whole.name, *([half] if half != "all" else []), *([model] if model else [])]
+    return Path("results/prove") / "_".join(word for word in words if word)

@@ -10,9 +10,11 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner
 
+from diagnosis.prove.answers import NOTHING
 from diagnosis.prove.chain import cases_in, prove
 from models.errors import InputError
 from rocking.commands import app
+from rocking.commands.prove import default_folder
 
 
 def answer_by_title(folder: Path) -> dict[str, Any]:
@@ -86,3 +88,27 @@ def test_halves_and_models_part_the_cases(folder: Path) -> None:
 def test_the_command_says_what_a_folder_needs(tmp_path: Path) -> None:
     found = CliRunner().invoke(app, ["prove", str(tmp_path), "--out", str(tmp_path / "out")])
     assert found.exit_code == 2 and "no concealed cases" in found.output and "answers.json" in found.output
+
+
+def test_answers_to_other_cases_are_not_scored(folder: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    prove(folder, out, model="housner", jobs=1, say=print, answering=answer_by_title)
+    scored = (out / "prove.json").read_bytes()
+    changed = folder / "case_02" / "specimen.toml"
+    changed.write_text(changed.read_text() + "# another wall\n")
+    with pytest.raises(InputError, match=r"case_02\.json is the answer to another specimen\.toml.*--out"):
+        prove(folder, out, model="housner", jobs=1, say=print, answering=answer_by_title)
+    assert (out / "prove.json").read_bytes() == scored
+
+
+def test_an_answer_that_does_not_say_to_which_files_is_not_scored(folder: Path, tmp_path: Path) -> None:
+    answers = tmp_path / "out" / "answers"
+    answers.mkdir(parents=True)
+    (answers / "case_01.json").write_text(json.dumps({"verdict": "nothing_missing", **NOTHING, "seconds": 1.0}))
+    with pytest.raises(InputError, match=r"case_01\.json does not say to which files.*--out"):
+        prove(folder, tmp_path / "out", jobs=1, say=print, answering=answer_by_title)
+
+
+def test_folders_of_one_name_have_their_own_answers() -> None:
+    assert default_folder(Path("/a/first/cases"), "all", None) == Path("results/prove/first_cases")
+    assert default_folder(Path("/a/second/cases"), "odd", "housner") == Path("results/prove/second_cases_odd_housner")
