@@ -13,12 +13,14 @@ from pathlib import Path
 from typing import Any
 
 from diagnosis.answer.result import Diagnosis, Effect
+from grids.files import read_text
 from models.errors import InputError
 
 ROOMS = ("models", "grids", "diagnosis")
 ROOT = Path(__file__).resolve().parents[2]
 FILES = "files_sha256"
 """The entry of an answer that says to which files it is one."""
+DAMAGED = "write it anew (an answer that is deleted is found again)."
 NOTHING: dict[str, Any] = {"effects": [], "rivals": [], "constancy": [], "located": [], "base": {}}
 
 Answering = Callable[[Path], dict[str, Any]]
@@ -125,5 +127,11 @@ def write_json(path: Path, content: Mapping[str, Any]) -> None:
 
 
 def read_json(path: Path) -> dict[str, Any]:
-    content: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    """The object of a file; InputError where it is damaged."""
+    try:
+        content = json.loads(read_text(path, "file"))
+    except (json.JSONDecodeError, RecursionError) as error:
+        raise InputError(f"{path} is not valid JSON ({error}); {DAMAGED}") from None
+    if not isinstance(content, dict):
+        raise InputError(f"{path} is no JSON object in braces; {DAMAGED}")
     return content

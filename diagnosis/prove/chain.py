@@ -1,4 +1,4 @@
-"""The whole chain on a folder of concealed cases: answers first, hashed before the key is opened, then scored.
+"""The whole chain on a folder of concealed cases: answers first, hashed before the key is read, then scored.
 
 A case is a folder ``case_NN`` with specimen.toml, train_1.nc, train_2.nc and test_1.nc; the key of all is
 answers.json beside them, ``{"cases": {"case_NN": {"kind", "effects", "recordings", ...}}}``.
@@ -9,11 +9,13 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from concurrent.futures import as_completed
+from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 from typing import Any
 
 from diagnosis.prove import figures, report
 from diagnosis.prove.answers import Answering, answer, check_same, diagnosed, read_json, sha256, write_json
+from diagnosis.prove.cases import check_answer, check_files, check_key
 from diagnosis.prove.pool import processes
 from diagnosis.prove.scores import Scored
 from grids.files import parse_toml, read_text
@@ -60,17 +62,24 @@ def prove(
 ) -> dict[str, Any]:
     """Answer the cases of ``folder``, hash the answers, open the key, score and draw.
 
+    The key is not used for answering; its form is checked before the first case, as are the files of all cases.
+
     Answers lie in ``out``/answers, a file a case; those that are there are kept, so that it goes on where it stopped.
     No case begins after ``minutes``. Only when all are answered are they hashed (``out``/sha256.json) and scored
     (``out``/prove.json, wrong.txt and figures). Returns the figures, empty when cases are left. Raises InputError.
     """
     chosen = cases_in(folder, half, model)
     answers = out / "answers"
+    # Only its form is looked at: a slip in the key must not show after hours of answering.
+    check_key(folder / KEY, read_json(folder / KEY), [path.name for path in chosen])
+    check_files(chosen)
     waiting = [path for path in chosen if not (answers / f"{path.name}.json").is_file()]
     for path in chosen:
         if path not in waiting:
             kept = answers / f"{path.name}.json"
-            check_same(kept, read_json(kept), path)
+            content = read_json(kept)
+            check_answer(kept, content)
+            check_same(kept, content, path)
     say(f"{len(chosen) - len(waiting)} of {len(chosen)} cases were answered before")
     end = time.monotonic() + 60.0 * minutes
     with processes(jobs) as pool:
@@ -78,7 +87,14 @@ def prove(
             batch, waiting = waiting[:jobs], waiting[jobs:]
             running = {pool.submit(answer, path, answers / f"{path.name}.json", answering): path for path in batch}
             for done in as_completed(running):
-                found = done.result()
+                try:
+                    found = done.result()
+                except BrokenProcessPool:
+                    lost = ", ".join(path.name for path in batch)
+                    raise InputError(
+                        f"a process was killed while it answered one of {lost} (is memory short?); answers are kept "
+                        f"in {answers}: start again, with --jobs 1 where memory is short."
+                    ) from None
                 say(f"{running[done].name}: {found['verdict']}, {found['seconds']:.0f} s")
     if waiting:
         say(f"{len(waiting)} cases are left: start again to go on")
@@ -86,8 +102,6 @@ def prove(
     hashes = {path.name: sha256(answers / f"{path.name}.json") for path in chosen}
     write_json(out / HASHES, hashes)
     keys = read_json(folder / KEY)["cases"]
-    if missing := sorted(set(hashes) - set(keys)):
-        raise InputError(f"{folder / KEY} has no entry for {missing[0]}; the answers are kept in {answers}.")
     scored = [Scored(name, read_json(answers / f"{name}.json"), keys[name]) for name in hashes]
     numbers = {**report.summary(scored), **report.provenance(scored), "answers_sha256": hashes}
     write_json(out / "prove.json", numbers)

@@ -113,7 +113,7 @@ def covered(case: Scored) -> list[bool]:
         if effect["name"] not in hidden:
             continue
         found = effect["parameters"]
-        for name, value in hidden[effect["name"]]["parameters"].items():
+        for name, value in hidden[effect["name"]].get("parameters", {}).items():
             if name not in found:
                 continue
             factor = 1.0

@@ -23,7 +23,7 @@ def prove(
 
     Writes answers, their hashes, prove.json (every share with its binomial interval), a list of wrong answers, and
     figures: confusion matrix, evidence against the size of the effect, said against true intervals. It goes on
-    where it stopped; the key is opened only when every case is answered.
+    where it stopped. The form of the key is checked first; it is read for scoring only when every case is answered.
     """
     from diagnosis.prove.chain import prove as prove_folder
     from rocking.commands.diagnose import make_folder

@@ -11,6 +11,7 @@ import pytest
 from typer.testing import CliRunner
 
 from diagnosis.prove.answers import NOTHING
+from diagnosis.prove.cases import FILES
 from diagnosis.prove.chain import cases_in, prove
 from models.errors import InputError
 from rocking.commands import app
@@ -18,7 +19,7 @@ from rocking.commands.prove import default_folder
 
 
 def answer_by_title(folder: Path) -> dict[str, Any]:
-    """Says what stands in the specimen's title, and that no key lies open beside the answers yet."""
+    """Says what stands in the specimen's title."""
     text = (folder / "specimen.toml").read_text()
     name = text.partition("title = ")[2].partition("\n")[0].strip('"')
     effects = [{"name": name, "class": name, "parameters": {}, "evidence": 80.0}] if name else []
@@ -46,6 +47,8 @@ def folder(tmp_path: Path) -> Path:
     }
     for name, (title, model, _) in cases.items():
         (place / name).mkdir(parents=True)
+        for recording in FILES[1:]:
+            (place / name / recording).touch()
         (place / name / "specimen.toml").write_text(f'title = "{title}"\nmodel = "{model}"\n')
     (place / "answers.json").write_text(json.dumps({"cases": {name: key for name, (_, _, key) in cases.items()}}))
     return place
@@ -68,8 +71,7 @@ def test_answers_are_hashed_then_scored_and_kept(folder: Path, tmp_path: Path) -
     assert again[0] == "3 of 3 cases were answered before" and answer.stat().st_mtime_ns == written
 
 
-def test_the_key_stays_shut_while_cases_are_left(folder: Path, tmp_path: Path) -> None:
-    (folder / "answers.json").write_text("no key yet")
+def test_nothing_is_scored_while_cases_are_left(folder: Path, tmp_path: Path) -> None:
     lines: list[str] = []
     assert prove(folder, tmp_path / "out", minutes=0.0, say=lines.append, answering=answer_by_title) == {}
     assert lines[-1].startswith("4 cases are left") and not (tmp_path / "out" / "prove.json").exists()
