@@ -11,6 +11,7 @@ import numpy as np
 from diagnosis.answer.result import Effect, Rival, Verdict
 from diagnosis.fit.intervals import Estimate
 from diagnosis.fit.unknowns import Unknown
+from diagnosis.outcomes.adequacy import INADEQUATE, chance_of_slopes, worse_than_even
 from diagnosis.outcomes.answer import Compared, OutcomeDiagnosis, Posterior
 from diagnosis.outcomes.bank import Bank
 from diagnosis.outcomes.evidence import best, chance_of_misfit, expected, left_out, log_of_kept
@@ -26,8 +27,6 @@ from models.base import FloatArray
 from study.provenance import commit, now, versions
 
 SAMPLES = 256
-INADEQUATE = 0.01
-"""Chance of the residuals' misfit by groups below which the extended model does not explain the runs."""
 BASE, EXTENDED = "base model", "extended model"
 
 
@@ -43,14 +42,17 @@ def assemble(found: Search, flags: FloatArray, rng: np.random.Generator, progres
     own = {u.name for repair in chosen.effects for u in repair.unknowns}
     at = best(chosen.bank, flags)
     scatter = Estimate(float(SCATTERS[at.scatter]), *_ends(posterior.scatter), "1")
+    compared = _compared(found, flags, measures, base, last)
+    explained = misfit > INADEQUATE and not worse_than_even(compared, EXTENDED)
+    explained = explained and chance_of_slopes(last, flags, measures, rng) > INADEQUATE
     answer = OutcomeDiagnosis(
-        verdict=_verdict(found, misfit),
+        verdict=_verdict(found, explained),
         statement="",
         effects=tuple(_effect(step, estimates) for step in found.steps),
         rivals=_rivals(found),
         wrong=wrong_predictions(base, flags, outcomes.groups, measures),
         left=wrong_predictions(last, flags, outcomes.groups, measures),
-        compared=_compared(found, flags, measures, base, last),
+        compared=compared,
         base={name: one for name, one in estimates.items() if name not in own},
         at_bound=tuple(name for name, one in estimates.items() if one.at_bound),
         scatter=scatter,
@@ -77,12 +79,12 @@ def assemble(found: Search, flags: FloatArray, rng: np.random.Generator, progres
     return replace(answer, statement=statement(answer, found))
 
 
-def _verdict(found: Search, misfit: float) -> Verdict:
+def _verdict(found: Search, explained: bool) -> Verdict:
     if not found.finished and not found.steps:
         return "cannot_tell_apart"
     if not found.steps:
-        return "nothing_missing" if misfit > INADEQUATE else "not_in_library"
-    if misfit <= INADEQUATE:
+        return "nothing_missing" if explained else "not_in_library"
+    if not explained:
         return "not_in_library"
     other = {rival.effect_class for rival in _rivals(found)}
     return "cannot_tell_apart" if other - {r.mechanism.effect_class for r in found.chosen.effects} else "missing"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from diagnosis.answer.rivals import told_apart
+from diagnosis.outcomes.adequacy import INADEQUATE, swapped
 from diagnosis.outcomes.answer import Compared, OutcomeDiagnosis, Wrong
 from diagnosis.outcomes.search import Search
 from grids.units import with_unit
@@ -28,10 +29,13 @@ def statement(answer: OutcomeDiagnosis, found: Search) -> str:
     if answer.rivals:
         parts += [f"Outcomes alone cannot tell {which}." for which in told_apart(answer.rivals, len(answer.effects))]
     if answer.verdict == "not_in_library":
-        parts.append(
-            "That does not settle it: what is left hangs together within groups of runs "
-            f"(p {_at_most(answer.misfit_p_value)}), so something that depends on the motion is not in the library."
-        )
+        parts.append(_left(answer))
+        base = next(one for one in answer.compared if one.cross_validated)
+        if swapped(base.chance, answer.overturned):
+            parts.append(
+                f"The base model is right about most runs if they are turned round: are 0 and 1 swapped in column "
+                f"'{found.outcomes.column}'?"
+            )
     parts.append(
         f"From run to run the motion's scale at which it overturns scatters by {answer.scatter.estimate:.0%} "
         f"({answer.scatter.low95:.0%} to {answer.scatter.high95:.0%})."
@@ -50,6 +54,19 @@ def _opening(answer: OutcomeDiagnosis) -> str:
     if answer.verdict == "nothing_missing":
         return f"Nothing of the library is missing that these outcomes could show (p {answer.p_value:.2g})."
     return "No mechanism of the library improves the predictions, and the model does not explain the outcomes."
+
+
+def _left(answer: OutcomeDiagnosis) -> str:
+    """Why the outcomes count as unexplained."""
+    if answer.misfit_p_value <= INADEQUATE:
+        return (
+            "That does not settle it: what is left hangs together within groups of runs "
+            f"(p {_at_most(answer.misfit_p_value)}), so something that depends on the motion is not in the library."
+        )
+    return (
+        "That does not settle it: what is left depends on the motion, or runs left out are predicted no better than "
+        "by a coin."
+    )
 
 
 def _at_most(p: float) -> str:

@@ -50,13 +50,17 @@ class OutcomeFile(Schema):
 
 @dataclass(frozen=True)
 class Outcomes:
-    """Runs (n,) by name: the motion of each, its group, and whether it overturned (None: not known)."""
+    """Runs (n,) by name: the motion of each, its group, and whether it overturned (None: not known).
+
+    ``column``: the one that says so, to speak of it.
+    """
 
     name: str
     runs: tuple[str, ...]
     motions: tuple[Motion, ...]
     groups: tuple[str, ...]
     overturned: NDArray[np.bool_] | None
+    column: str = "overturned"
 
     @property
     def size(self) -> int:
@@ -84,7 +88,7 @@ def read_outcomes(path: str | Path) -> Outcomes:
     flags = None if file.overturned is None else np.array([_flag(line, file) for line in lines])
     groups = runs if file.group is None else tuple(line[file.group].strip() for line in lines)
     motions = tuple(_motion(file, line, folder, run) for line, run in zip(lines, runs, strict=True))
-    return Outcomes(path.stem, runs, motions, groups, flags)
+    return Outcomes(path.stem, runs, motions, groups, flags, file.overturned or "overturned")
 
 
 def _beside(folder: Path, table: str) -> Path:

@@ -115,6 +115,17 @@ def test_the_answer_predicts_further_runs_from_its_folder(with_inset: OutcomeDia
     assert prediction_text(prediction).count("\n") == 1 + further.size
 
 
+@pytest.mark.slow
+def test_outcomes_turned_round_are_not_explained_and_asked_about() -> None:
+    """Motions that overturn stand and the others fall: no group is off as a whole, but nothing is predicted."""
+    runs = runs_of(5, {}, groups=4, each=4)
+    assert runs.overturned is not None
+    found = diagnose_outcomes(BLOCK, replace(runs, overturned=~runs.overturned, column="fell"))
+    assert found.verdict == "not_in_library"
+    assert found.predictor("base model").scores.log_loss.value > np.log(2.0)
+    assert "are 0 and 1 swapped in column 'fell'?" in found.statement
+
+
 def test_too_few_runs_are_refused() -> None:
     few = runs_of(1, {}, groups=1, each=4)
     with pytest.raises(InputError, match="at least 10 runs are needed"):
