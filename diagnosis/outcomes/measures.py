@@ -18,7 +18,10 @@ SHOWN = tuple(measure for measure in MEASURES if measure.stretch is not None)
 """All but pseudo-accelerations: a rocking body has no period."""
 UNITS = {measure.symbol: measure.unit for measure in SHOWN}
 THRESHOLDS = ("PGA", "PGV")
-SHARPEST = 0.02
+SHARPEST, BLUNTEST = 0.02, 7.0
+"""Logarithmic standard deviations of a threshold, at least and at most."""
+BEYOND = 5.0
+"""How far the logarithm of a median may lie beyond the measures."""
 
 
 def measures_of(motions: Sequence[Motion]) -> dict[str, FloatArray]:
@@ -36,8 +39,12 @@ def threshold(measure: FloatArray, outcomes: FloatArray) -> tuple[float, float]:
         return -float(np.sum(np.log(np.where(outcomes > 0.5, chance, 1.0 - chance))))
 
     start = [[float(np.quantile(x, q)), np.log(0.3)] for q in (0.25, 0.5, 0.75)]
-    found = min((minimize(loss, one, method="Nelder-Mead") for one in start), key=lambda one: float(one.fun))
-    return float(np.exp(found.x[0])), max(float(np.exp(found.x[1])), SHARPEST)
+    # Where larger motions stand and smaller ones fall the best median is infinite.
+    bounds = [(float(x.min()) - BEYOND, float(x.max()) + BEYOND), (np.log(SHARPEST), np.log(BLUNTEST))]
+    found = min(
+        (minimize(loss, one, method="Nelder-Mead", bounds=bounds) for one in start), key=lambda one: float(one.fun)
+    )
+    return float(np.exp(found.x[0])), float(np.exp(found.x[1]))
 
 
 def exceeding(measure: FloatArray, median: float, deviation: float) -> FloatArray:
