@@ -82,11 +82,11 @@ def read_outcomes(path: str | Path) -> Outcomes:
     for column in (file.run, file.overturned, file.group):
         if column is not None and column not in lines[0]:
             raise InputError(f"{path.name}: {file.table} has no column {column!r}; {nearest(column, lines[0])}")
-    runs = tuple(line[file.run].strip() for line in lines)
+    runs = _filled(lines, file.run, file.table)
     if twice := [run for run, count in Counter(runs).items() if count > 1]:
         raise InputError(f"{file.table}: run {twice[0]!r} stands there twice in column {file.run!r}; rename one")
     flags = None if file.overturned is None else np.array([_flag(line, file) for line in lines])
-    groups = runs if file.group is None else tuple(line[file.group].strip() for line in lines)
+    groups = runs if file.group is None else _filled(lines, file.group, file.table)
     motions = tuple(_motion(file, line, folder, run) for line, run in zip(lines, runs, strict=True))
     return Outcomes(path.stem, runs, motions, groups, flags, file.overturned or "overturned")
 
@@ -102,7 +102,9 @@ def _beside(folder: Path, table: str) -> Path:
 def _lines(path: Path) -> Sequence[Mapping[str, str]]:
     text = read_text(path, "table of outcomes")
     try:
-        lines = list(csv.DictReader(text.splitlines(), restkey="", strict=True))
+        reader = csv.DictReader(text.splitlines(), restkey="", strict=True)
+        _check_header(path, reader.fieldnames or ())
+        lines = list(reader)
     except csv.Error as error:
         raise InputError(f"{path.name}: is no table ({error}); save it as CSV with one line of names") from None
     if not lines:
@@ -113,6 +115,25 @@ def _lines(path: Path) -> Sequence[Mapping[str, str]]:
     return lines
 
 
+def _check_header(path: Path, columns: Sequence[str]) -> None:
+    for number, column in enumerate(columns, 1):
+        if not column.strip():
+            raise InputError(
+                f"{path.name}: column {number} has no name; give it one in the header, or save the table without its "
+                "index (pandas: to_csv(index=False))"
+            )
+    if twice := [column for column, count in Counter(columns).items() if count > 1]:
+        raise InputError(f"{path.name}: two columns are called {twice[0]!r}; rename one")
+
+
+def _filled(lines: Sequence[Mapping[str, str]], column: str, table: str) -> tuple[str, ...]:
+    """The cells of a column, none of them empty."""
+    cells = tuple(line[column].strip() for line in lines)
+    if "" in cells:
+        raise InputError(f"{table}: line {cells.index('') + 2} has an empty cell in column {column!r}; fill it in")
+    return cells
+
+
 def _flag(line: Mapping[str, str], file: OutcomeFile) -> bool:
     word = line[file.overturned or ""].strip().lower()
     if word not in (*YES, *NO):
@@ -120,12 +141,17 @@ def _flag(line: Mapping[str, str], file: OutcomeFile) -> bool:
     return word in YES
 
 
-def _completed(template: str, line: Mapping[str, str]) -> Iterator[str]:
+def _completed(template: str, line: Mapping[str, str], run: str) -> Iterator[str]:
     """The parts of a template with the cells of ``line`` in the place of ``{column}`` or ``{column:0>3}``."""
     try:
         parts = list(Formatter().parse(template))
     except ValueError as error:
         raise InputError(f"motion = {template!r} is no template ({error}); write columns as {{name}}") from None
+    if all(column is None for _, column, _, _ in parts):
+        raise InputError(
+            f"motion = {template!r} has no column in braces, so that all runs would have one motion; write the "
+            "column that tells them apart, {name}"
+        )
     for text, column, layout, conversion in parts:
         yield text
         if column is None:
@@ -134,11 +160,13 @@ def _completed(template: str, line: Mapping[str, str]) -> Iterator[str]:
             raise InputError(f"motion = {template!r} names {{{column}}}, which is no column; {nearest(column, line)}")
         if conversion or not LAYOUT.fullmatch(layout or ""):
             raise InputError(f"motion = {template!r}: {layout or conversion!r} is no layout; write {{{column}:0>3}}")
-        yield format(line[column].strip(), layout or "")
+        if not (cell := line[column].strip()):
+            raise InputError(f"run {run!r} has an empty cell in column {column!r}, which names its motion; fill it in")
+        yield format(cell, layout or "")
 
 
 def _motion(file: OutcomeFile, line: Mapping[str, str], folder: Path, run: str) -> Motion:
-    source = "".join(_completed(file.motion, line))
+    source = "".join(_completed(file.motion, line, run))
     given = {"file": source, **file.statement} if file.statement else source
     try:
         return read_motion(given, component=file.component, near=folder)

@@ -56,6 +56,7 @@ def test_outcomes_may_be_unknown_and_every_run_its_own_group(tmp_path: Path) -> 
         ("{test:0>3}", "{test:0>999999999}", "is no layout"),
         ("{test:0>3}", "{test", "is no template"),
         ("{test:0>3}", "{test}", "run '1'"),
+        ("{test:0>3}", "001", "no column in braces"),
         ("tests.csv", "test.csv", "does not exist"),
         ("[statement]", "[statements]", "statements"),
     ],
@@ -75,8 +76,18 @@ def test_a_slip_in_the_description_is_named(tmp_path: Path, old: str, new: str, 
         ("test,motion,fell\n", "no line below its header"),
         ("", "no line below its header"),
         ('test,motion,fell\n1,"a,0\n', "is no table"),
+        ("test,motion,fell\n,a,0\n", "line 2 has an empty cell in column 'test'"),
+        ("test,motion,fell\n1,a,0\n12, ,1\n", "line 3 has an empty cell in column 'motion'"),
+        ("test,motion,fell,fell\n1,a,0,1\n", "two columns are called 'fell'; rename one"),
+        (",test,motion,fell\n0,1,a,0\n", r"column 1 has no name.*index"),
     ],
 )
 def test_a_slip_in_the_table_is_named(tmp_path: Path, table: str, said: str) -> None:
     with pytest.raises(InputError, match=said):
         read_outcomes(written(tmp_path, table=table))
+
+
+def test_an_empty_cell_in_the_name_of_a_motion_is_no_motion(tmp_path: Path) -> None:
+    plain = DESCRIPTION.replace("{test:0>3}", "{number:0>3}")
+    with pytest.raises(InputError, match="run '12' has an empty cell in column 'number'"):
+        read_outcomes(written(tmp_path, "test,motion,fell,number\n1,a,0,1\n12,a,1,\n", plain))
