@@ -13,6 +13,8 @@ import numpy as np
 
 import models
 from grids.plan import Plan
+from grids.recordings.base import REQUIRED, Recording
+from grids.recordings.outcomes import Outcomes
 from grids.specimen import Specimen, state_unit
 from grids.targets import SCALES
 from grids.units import with_unit
@@ -68,6 +70,18 @@ def suspicions_of_peak(what: str, pga: float) -> tuple[str, ...]:
     return (
         f"{what} peaks at {pga / GRAVITY:.3g} g (usual: up to {most / GRAVITY:g} g); are its unit and its scale right?",
     )
+
+
+def suspicions_of_recordings(recordings: Iterable[Recording]) -> tuple[str, ...]:
+    """Sentences about recordings whose base moves unusually."""
+    peaks = [(one.name, float(np.max(np.abs(one.channels[REQUIRED])))) for one in recordings]
+    return tuple(said for name, peak in peaks for said in suspicions_of_peak(f"recording {name}", peak))
+
+
+def suspicions_of_outcomes(outcomes: Outcomes) -> tuple[str, ...]:
+    """A sentence about the run whose motion is the strongest, if that is unusual: a unit is wrong in all alike."""
+    run, most = max(zip(outcomes.runs, outcomes.motions, strict=True), key=lambda both: both[1].pga)
+    return suspicions_of_peak(f"{outcomes.name}: the motion of run '{run}'", most.pga)
 
 
 def suspicions_of_specimen(specimen: Specimen) -> tuple[str, ...]:

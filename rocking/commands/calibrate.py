@@ -49,7 +49,7 @@ def calibrate(
 
     wall = read_specimen(specimen)
     warn(suspicions_of_specimen(wall), strict)
-    read = read_recordings(recordings)
+    read = read_recordings(recordings, strict=strict)
     with stages("stopped") as progress:
         from diagnosis import calibrate as calibrate_recordings
 

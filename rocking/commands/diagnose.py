@@ -47,11 +47,11 @@ def diagnose(
     if outcomes is not None:
         if recordings or holdout or bootstrap:
             raise InputError("--outcomes takes no recordings, --holdout or --bootstrap: leave them out")
-        of_outcomes(wall, outcomes, out)
+        of_outcomes(wall, outcomes, out, strict)
         return
     if not recordings:
         raise InputError("no recording is named: give one or more, or --outcomes TABLE")
-    read = read_recordings(recordings, holdout or [])
+    read = read_recordings(recordings, holdout or [], strict=strict)
     train, test = read[: len(recordings)], read[len(recordings) :]
     make_folder(out)
     with stages("stopped; nothing was written") as progress:
@@ -66,13 +66,15 @@ def diagnose(
     typer.echo("written: " + ", ".join(str(path) for path in paths), err=True)
 
 
-def of_outcomes(wall: Specimen, table: Path, out: Path) -> None:
+def of_outcomes(wall: Specimen, table: Path, out: Path, strict: bool) -> None:
     """The diagnosis of runs of which only the outcomes are known."""
     from diagnosis.outcomes import diagnose_outcomes
     from diagnosis.outcomes.files import write_answer
+    from grids.plausibility import suspicions_of_outcomes
     from grids.recordings.outcomes import read_outcomes
 
     runs = read_outcomes(table)
+    warn(suspicions_of_outcomes(runs), strict)
     make_folder(out)
     with stages("stopped; nothing was written") as progress:
         found = diagnose_outcomes(wall, runs, progress=progress)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from models.errors import InputError
+from rocking.commands.base import warn
 from rocking.interrupts import INTERRUPTED
 
 if TYPE_CHECKING:
@@ -17,12 +18,13 @@ if TYPE_CHECKING:
     from grids.recordings import Recording
 
 
-def read_recordings(paths: Sequence[Path], held_out: Sequence[Path] = ()) -> list[Recording]:
+def read_recordings(paths: Sequence[Path], held_out: Sequence[Path] = (), *, strict: bool = False) -> list[Recording]:
     """All recordings in their order; what was done to them and what looks wrong goes to stderr.
 
-    Raises InputError for a recording given twice, or two that share a name.
+    Raises InputError for a recording given twice, two that share a name, or if ``strict`` an unusual motion of a base.
     """
     from diagnosis.data.measured import left_out
+    from grids.plausibility import suspicions_of_recordings
     from grids.recordings import read_recording
 
     seen: dict[str, Path] = {}
@@ -43,6 +45,7 @@ def read_recordings(paths: Sequence[Path], held_out: Sequence[Path] = ()) -> lis
             typer.echo(f"note: {recording.name}: {note}", err=True)
         for suspicion in recording.suspicions:
             typer.echo(f"suspicion: {recording.name}: {suspicion}", err=True)
+    warn(suspicions_of_recordings(found), strict)
     for together in (found[: len(paths)], found[len(paths) :]):
         for channel, lacking in left_out(together).items():
             typer.echo(f"note: {channel} is not compared, because {', '.join(lacking)} lacks it", err=True)

@@ -5,10 +5,19 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from grids.motions import Motion
 from grids.plan import parse_plan
-from grids.plausibility import suspicions_of_plan, suspicions_of_specimen
+from grids.plausibility import (
+    suspicions_of_outcomes,
+    suspicions_of_plan,
+    suspicions_of_recordings,
+    suspicions_of_specimen,
+)
+from grids.recordings.base import Recording
+from grids.recordings.outcomes import Outcomes
 from grids.specimen import parse_specimen
 
 PLAN = """
@@ -101,3 +110,15 @@ def test_a_factor_that_takes_a_motion_beyond_any_earthquake() -> None:
 def test_time_stretched_beyond_sense() -> None:
     (said,) = suspicions_of_plan(parse_plan(PLAN.replace("[axes]", "[axes]\ntime_scale = { values = [1000] }"), Path()))
     assert "time_scale = 1000 is unusually large" in said
+
+
+@pytest.mark.parametrize(("peak", "count"), [(4.9, 0), (5.54, 1)])
+def test_unusual_motions_of_tests_are_named(peak: float, count: int) -> None:
+    """Of a table of outcomes once, however many of its runs are beyond the usual: their unit is the same."""
+    shaken = np.array([0.0, peak * 9.80665, 0.0])
+    motions = (Motion("a", 0.01, shaken), Motion("b", 0.01, 0.99 * shaken))
+    said = suspicions_of_outcomes(Outcomes("table", ("1", "2"), motions, ("1", "2"), None))
+    assert len(said) == count and all("run '1' peaks at 5.54 g" in one for one in said)
+    recorded = Recording("shaken", 0.01, 0.01 * np.arange(3), {"base_acceleration_x": -shaken})
+    said = suspicions_of_recordings([recorded])
+    assert len(said) == count and all("recording shaken peaks at 5.54 g" in one for one in said)
