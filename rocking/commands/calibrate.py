@@ -10,6 +10,7 @@ import typer
 import models
 from models.errors import InputError
 from rocking.commands.base import STRICT, warn
+from rocking.commands.outputs import keep_inputs
 from rocking.commands.recordings import read_recordings, stages
 
 if TYPE_CHECKING:
@@ -42,6 +43,10 @@ def calibrate(
     """
     if at_strain is not None and out is None:
         raise InputError("--at-strain says which specimen to write: name its file with --out.")
+    if out is not None:
+        if out.suffix.lower() != ".toml":
+            raise InputError(f"--out {out}: a specimen is written as TOML; end the name in .toml.")
+        keep_inputs([out], [specimen, *recordings])
     from rich.console import Console
 
     from grids.plausibility import suspicions_of_specimen

@@ -9,6 +9,7 @@ import typer
 
 from models.errors import InputError
 from rocking.commands.base import STRICT, warn
+from rocking.commands.outputs import in_answer, keep_inputs
 from rocking.commands.recordings import read_recordings, stages
 
 if TYPE_CHECKING:
@@ -42,6 +43,8 @@ def diagnose(
     from grids.plausibility import suspicions_of_specimen
     from grids.specimen import read_specimen
 
+    given = [specimen, *(recordings or []), *(holdout or []), *([outcomes] if outcomes else [])]
+    keep_inputs(in_answer(out), given)
     wall = read_specimen(specimen)
     warn(suspicions_of_specimen(wall), strict)
     if outcomes is not None:

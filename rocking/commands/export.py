@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from rocking.commands.base import NEAREST, SELECT, read_selection
+from rocking.commands.outputs import in_study, keep_inputs
 
 
 def export(
@@ -22,6 +23,7 @@ def export(
     from study.open import open_study
     from study.selection import place
 
+    keep_inputs([out], in_study(folder))
     cube = open_study(folder, lazy=True)
     at = read_selection(cube, select, nearest)
     path = export_cube(cube, out, outputs=output or (), at=at)

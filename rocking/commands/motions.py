@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from rocking.commands.outputs import keep_inputs
+
 if TYPE_CHECKING:
     from grids.motions import Motion
 
@@ -19,6 +21,7 @@ def motions(
 ) -> None:
     """List the shipped motions, or describe, draw and convert one."""
     from grids.motions import find, list_shipped, read_motion
+    from grids.motions.locate import split_source
     from models.errors import InputError
 
     sources = list(list_shipped()) if file is None else find(file)
@@ -28,6 +31,8 @@ def motions(
         typer.echo(repr(read_motion(source, component=component)))
     if file is None or len(sources) > 1:
         return
+    if out is not None and isinstance(sources[0], str):
+        keep_inputs([out], [Path(split_source(sources[0])[0])])
     motion = read_motion(sources[0], component=component)
     _describe(motion)
     if out is not None:

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from rocking.commands.outputs import in_answer, keep_inputs
 from rocking.commands.recordings import stages
 
 
@@ -22,9 +23,14 @@ def predict_outcomes(
     from diagnosis.outcomes import predict_outcomes as predict
     from diagnosis.outcomes.files import prediction_text, read_answer
     from diagnosis.outcomes.scores import scores
+    from grids.files import parse_toml, read_text
     from grids.recordings.outcomes import read_outcomes
     from study.store import write_text
 
+    if out is not None:
+        described = parse_toml(read_text(outcomes, "description of outcomes"))
+        table = outcomes.parent / str(described.get("table", ""))
+        keep_inputs([out], [outcomes, table, *in_answer(answer)])
     specimen, posterior = read_answer(answer)
     runs = read_outcomes(outcomes)
     with stages("stopped; nothing was written") as progress:

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from rocking.commands.base import STRICT, number, warn
+from rocking.commands.outputs import keep_inputs
 
 
 def simulate(
@@ -31,6 +32,7 @@ def simulate(
     strict: Annotated[bool, typer.Option("--strict", help=STRICT)] = False,
 ) -> None:
     """Simulate a specimen and write every observable over time, and the events."""
+    from grids.motions.locate import split_source
     from grids.plausibility import suspicions_of_peak, suspicions_of_specimen
     from grids.specimen import read_specimen, with_mechanism
     from rocking.simulation import simulate as simulate_history
@@ -39,6 +41,7 @@ def simulate(
 
     if figure is not None:
         check_suffix(figure)
+    keep_inputs([out], [specimen, *([Path(split_source(motion)[0])] if motion else [])])
     wall = read_specimen(specimen)
     if displacement_high_pass is not None:
         wall = with_mechanism(wall, "integrated_displacement", {"high_pass_hz": displacement_high_pass})

@@ -1,0 +1,41 @@
+"""Where commands write: never over what they read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from models.errors import InputError
+
+STUDY = ("cube.nc", "manifest.json", "study.toml", "blocks", "failed")
+"""What `run` writes into a study's folder and other commands read there."""
+ANSWER = ("diagnosis.json", "extended.toml", "posterior.nc", "fit.nc", "report.html", "law.csv", "runs.csv")
+"""Files of the answer of a diagnosis."""
+
+
+def keep_inputs(outputs: Iterable[Path], inputs: Iterable[Path]) -> None:
+    """Raise InputError when a file to write is one of the ``inputs`` or lies in one that is a folder.
+
+    A table and the TOML that describes it are one input, whichever of them is named.
+    """
+    read = [one.resolve() for path in inputs for one in _with_companions(path)]
+    for output in outputs:
+        written = output.resolve()
+        for path in read:
+            if path == written or (path.is_dir() and path in written.parents):
+                raise InputError(f"{output} would be written over an input of this command; name another place for it.")
+
+
+def in_study(folder: Path) -> list[Path]:
+    """What is read of a study's folder, or of the file of a cube."""
+    return [folder] if folder.is_file() else [folder / name for name in STUDY]
+
+
+def in_answer(folder: Path) -> list[Path]:
+    """The files of the answer of a diagnosis."""
+    return [folder / name for name in ANSWER]
+
+
+def _with_companions(path: Path) -> list[Path]:
+    beside = {".csv": ".toml", ".txt": ".toml", ".toml": ".csv"}.get(path.suffix.lower())
+    return [path] if beside is None else [path, path.with_suffix(beside)]

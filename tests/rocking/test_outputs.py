@@ -1,0 +1,66 @@
+"""What commands write: never over what they read, and nothing that another answer needs."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from rocking.commands import app
+
+EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "from_a_data_logger"
+
+
+def rocking(*words: object) -> Result:
+    return CliRunner().invoke(app, [str(word) for word in words])
+
+
+@pytest.fixture(autouse=True)
+def inputs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A folder with a specimen, two recordings, an answer, a table of outcomes and a study."""
+    monkeypatch.chdir(tmp_path)
+    for name in ("block.toml", "shake_1.csv", "shake_1.toml"):
+        shutil.copy(EXAMPLE / name, name)
+    Path("free.nc").write_text("a recording")
+    for name in ("answer/extended.toml", "answer/posterior.nc", "study/cube.nc", "study/blocks/one.nc", "tests.csv"):
+        Path(name).parent.mkdir(exist_ok=True)
+        Path(name).write_text("kept")
+    Path("runs.toml").write_text('table = "tests.csv"')
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "calibrate block.toml shake_1.csv --out block.toml",
+        "calibrate block.toml shake_1.csv --out shake_1.toml",
+        "calibrate block.toml shake_1.csv --out answer/../block.toml",
+        "simulate block.toml --motion free.nc --out free.nc",
+        "motions free.nc --out free.nc",
+        "predict-outcomes answer --outcomes runs.toml --out runs.toml",
+        "predict-outcomes answer --outcomes runs.toml --out tests.csv",
+        "predict-outcomes answer --outcomes runs.toml --out answer/extended.toml",
+        "export study --out study/cube.nc",
+        "export study --out study/blocks/one.nc",
+        "export study/cube.nc --out study/cube.nc",
+        "diagnose answer/extended.toml shake_1.csv --out answer",
+    ],
+)
+def test_an_output_over_an_input_is_refused_before_the_work(words: str) -> None:
+    if words.startswith("motions"):
+        from grids.motions import read_motion
+        from grids.motions.write import write_motion
+
+        write_motion(read_motion("ridgecrest_2019_clc"), Path("free.nc"))
+    before = {path: path.read_bytes() for path in Path().rglob("*") if path.is_file()}
+    refused = rocking(*words.split())
+    assert refused.exit_code == 2 and "over an input of this command" in refused.stderr, refused.output
+    assert refused.stderr.count("\n") == 1
+    assert {path: path.read_bytes() for path in Path().rglob("*") if path.is_file()} == before
+
+
+def test_a_calibrated_specimen_is_written_as_toml() -> None:
+    refused = rocking("calibrate", "block.toml", "shake_1.csv", "--out", "free.nc")
+    assert refused.exit_code == 2 and "--out free.nc" in refused.stderr and "end the name in .toml" in refused.stderr
+    assert Path("free.nc").read_text() == "a recording"
