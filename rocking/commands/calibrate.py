@@ -27,7 +27,8 @@ def calibrate(
         list[Path], typer.Argument(help="Recordings (.nc, or .csv with .toml), in the order of the tests.")
     ],
     out: Annotated[
-        Path | None, typer.Option(help="Specimen file to write, with the fitted values; posterior.nc beside it.")
+        Path | None,
+        typer.Option(help="Specimen file to write, with the fitted values; NAME.posterior.nc beside NAME.toml."),
     ] = None,
     at_strain: Annotated[
         float | None,
@@ -46,7 +47,7 @@ def calibrate(
     if out is not None:
         if out.suffix.lower() != ".toml":
             raise InputError(f"--out {out}: a specimen is written as TOML; end the name in .toml.")
-        keep_inputs([out], [specimen, *recordings])
+        keep_inputs([out, samples_beside(out)], [specimen, *recordings])
     from rich.console import Console
 
     from grids.plausibility import suspicions_of_specimen
@@ -84,7 +85,6 @@ def calibrate(
 def write(wall: Specimen, found: Calibration, out: Path, at_strain: float | None) -> None:
     """The calibrated specimen as a file, and beside it samples of what was found."""
     from diagnosis.answer.calibration import specimen_at, specimen_of
-    from diagnosis.report import POSTERIOR
     from diagnosis.report.posterior_file import write_posterior
     from grids.write_specimen import specimen_text
     from study.store import write_text
@@ -93,10 +93,15 @@ def write(wall: Specimen, found: Calibration, out: Path, at_strain: float | None
     write_text(out, specimen_text(chosen))
     typer.echo(f"written: {out}", err=True)
     if found.posterior and at_strain is None:
-        path = write_posterior(found.posterior, models.get(wall.model), wall.title, out.with_name(POSTERIOR))
+        path = write_posterior(found.posterior, models.get(wall.model), wall.title, samples_beside(out))
         typer.echo(f"written: {path}", err=True)
-    else:  # that of an earlier calibration
-        out.with_name(POSTERIOR).unlink(missing_ok=True)
+    else:  # those of an earlier calibration of the same name
+        samples_beside(out).unlink(missing_ok=True)
+
+
+def samples_beside(out: Path) -> Path:
+    """Where the samples lie of the specimen at ``out``: a folder may hold those of other answers too."""
+    return out.with_suffix(".posterior.nc")
 
 
 def parameter_table(title: str, found: Calibration) -> Table:

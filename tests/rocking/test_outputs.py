@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
+import xarray as xr
 from typer.testing import CliRunner, Result
 
+from diagnosis.answer.calibration import Calibration
+from diagnosis.fit.intervals import Estimate
+from grids.specimen import read_specimen
 from rocking.commands import app
+from rocking.commands.calibrate import write
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "from_a_data_logger"
 
@@ -64,3 +71,18 @@ def test_a_calibrated_specimen_is_written_as_toml() -> None:
     refused = rocking("calibrate", "block.toml", "shake_1.csv", "--out", "free.nc")
     assert refused.exit_code == 2 and "--out free.nc" in refused.stderr and "end the name in .toml" in refused.stderr
     assert Path("free.nc").read_text() == "a recording"
+
+
+def test_samples_of_a_calibration_are_named_after_its_specimen() -> None:
+    """Those of the diagnosis in the same folder are what its studies take."""
+    estimate = Estimate(0.25, 0.24, 0.26, "m", "")
+    found = Calibration(
+        {"width": estimate}, np.eye(1), 0.1, 0.1, 1.0, 3, posterior={"width": np.linspace(0.24, 0.26, 5)}
+    )
+    wall = read_specimen("block.toml")
+    write(wall, found, Path("answer/base.toml"), None)
+    assert Path("answer/posterior.nc").read_text() == "kept"
+    with xr.open_dataset("answer/base.posterior.nc") as samples:
+        assert samples["width"].size == 5
+    write(wall, replace(found, posterior={}), Path("answer/base.toml"), None)
+    assert not Path("answer/base.posterior.nc").exists() and Path("answer/posterior.nc").exists()
