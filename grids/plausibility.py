@@ -18,6 +18,7 @@ from grids.recordings.outcomes import Outcomes
 from grids.specimen import Specimen, state_unit
 from grids.targets import SCALES
 from grids.units import with_unit
+from models.errors import nearest
 
 GRAVITY = 9.80665
 USUAL: Mapping[str, tuple[float, float]] = {
@@ -98,6 +99,31 @@ def suspicions_of_specimen(specimen: Specimen) -> tuple[str, ...]:
         for name, value in specimen.initial.items()
         if state_unit(model, name, name) == "rad" and abs(value) >= np.pi / 2
     ]
+    return tuple(found)
+
+
+def suspicions_of_stages(specimen: Specimen, lengths: Mapping[str, float], alone: bool = False) -> tuple[str, ...]:
+    """Sentences about stages that fit none of the recordings, of ``lengths`` (s) by name.
+
+    ``alone``: one recording of a series is looked at, whose others may be named too.
+    """
+    staged = [(name, n, stage) for name, stages in specimen.stages.items() for n, stage in enumerate(stages, 1)]
+    if alone and any(stage.recording in lengths for *_, stage in staged):
+        staged = [one for one in staged if one[2].recording in lengths]
+    found = []
+    for name, number, stage in staged:
+        where = f"[[mechanisms.{name}.stages]] {number}"
+        if stage.recording not in lengths:
+            cure = nearest(stage.recording, lengths)
+            found.append(f"{where}: recording = '{stage.recording}' is none of the recordings given; {cure}")
+            continue
+        length = lengths[stage.recording]
+        late = {key: time for key, time in (("begins", stage.begins), ("ends", stage.ends)) if length < time < np.inf}
+        found += [
+            f"{where}: {key} = {time:g} s lies after the end of recording {stage.recording} ({length:.4g} s); is the "
+            "unit right ('4210 ms')?"
+            for key, time in [*late.items()][:1]
+        ]
     return tuple(found)
 
 

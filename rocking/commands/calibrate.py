@@ -11,7 +11,7 @@ import models
 from models.errors import InputError
 from rocking.commands.base import STRICT, warn
 from rocking.commands.outputs import keep_inputs
-from rocking.commands.recordings import read_recordings, stages
+from rocking.commands.recordings import read_recordings, stages, warn_of_stages
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -56,6 +56,7 @@ def calibrate(
     wall = read_specimen(specimen)
     warn(suspicions_of_specimen(wall), strict)
     read = read_recordings(recordings, strict=strict)
+    warn_of_stages(wall, read, strict)
     with stages("stopped") as progress:
         from diagnosis import calibrate as calibrate_recordings
 

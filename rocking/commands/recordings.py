@@ -16,6 +16,7 @@ from rocking.interrupts import INTERRUPTED
 if TYPE_CHECKING:
     from diagnosis.progress import Progress
     from grids.recordings import Recording
+    from grids.specimen import Specimen
 
 
 def read_recordings(paths: Sequence[Path], held_out: Sequence[Path] = (), *, strict: bool = False) -> list[Recording]:
@@ -50,6 +51,14 @@ def read_recordings(paths: Sequence[Path], held_out: Sequence[Path] = (), *, str
         for channel, lacking in left_out(together).items():
             typer.echo(f"note: {channel} is not compared, because {', '.join(lacking)} lacks it", err=True)
     return found
+
+
+def warn_of_stages(specimen: Specimen, recordings: Sequence[Recording], strict: bool, alone: bool = False) -> None:
+    """Warn of stages of mechanisms that would be passed over, because they fit none of the recordings."""
+    from grids.plausibility import suspicions_of_stages
+
+    lengths = {recording.name: float(recording.time[-1]) for recording in recordings}
+    warn(suspicions_of_stages(specimen, lengths, alone), strict)
 
 
 @contextmanager

@@ -15,6 +15,7 @@ from grids.plausibility import (
     suspicions_of_plan,
     suspicions_of_recordings,
     suspicions_of_specimen,
+    suspicions_of_stages,
 )
 from grids.recordings.base import Recording
 from grids.recordings.outcomes import Outcomes
@@ -122,3 +123,31 @@ def test_unusual_motions_of_tests_are_named(peak: float, count: int) -> None:
     recorded = Recording("shaken", 0.01, 0.01 * np.arange(3), {"base_acceleration_x": -shaken})
     said = suspicions_of_recordings([recorded])
     assert len(said) == count and all("recording shaken peaks at 5.54 g" in one for one in said)
+
+
+def staged(*recordings: str, begins: str = "1.5") -> str:
+    stages = "".join(
+        f'[[mechanisms.pivot_inset.stages]]\nrecording = "{name}"\nbegins = {begins}\n' for name in recordings
+    )
+    return f"{SPECIMEN}[mechanisms.pivot_inset]\ninset_over_half_width = 0.05\n{stages}"
+
+
+@pytest.mark.parametrize(
+    ("text", "alone", "words"),
+    [
+        (staged("shake1"), False, ("[[mechanisms.pivot_inset.stages]] 1", "'shake1'", "did you mean 'shake_1'?")),
+        (staged("shake1"), True, ("'shake1'", "did you mean 'shake_1'?")),
+        (staged("shake_1", "shake_2"), False, ("stages]] 2", "'shake_2' is none of the recordings given")),
+        (staged("shake_1", begins="4210"), False, ("begins = 4210 s", "recording shake_1 (8 s)", "unit")),
+        (staged("shake_1", begins="1\nends = 4210"), True, ("ends = 4210 s", "recording shake_1 (8 s)", "unit")),
+    ],
+)
+def test_a_stage_that_fits_no_recording(text: str, alone: bool, words: tuple[str, ...]) -> None:
+    (said,) = suspicions_of_stages(parse_specimen(text), {"shake_1": 8.0}, alone)
+    assert all(word in said for word in words), said
+
+
+def test_stages_that_fit() -> None:
+    assert suspicions_of_stages(parse_specimen(staged("shake_1")), {"shake_1": 8.0}) == ()
+    assert suspicions_of_stages(parse_specimen(staged("shake_1", "shake_2")), {"shake_1": 8.0}, alone=True) == ()
+    assert suspicions_of_stages(parse_specimen(SPECIMEN), {"shake_1": 8.0}) == ()

@@ -152,6 +152,28 @@ def test_what_looks_wrong_is_said(tmp_path: Path) -> None:
     assert code == 0 and "suspicion: shake_1: rotation_1 follows base_acceleration_x with the wrong sign" in err
 
 
+STAGE = """
+[mechanisms.pivot_inset]
+inset_over_half_width = 0.05
+[[mechanisms.pivot_inset.stages]]
+recording = "shake1"
+"""
+
+
+@pytest.mark.usefixtures("quick")
+def test_a_stage_of_no_recording_is_said_or_refused_if_strict(tmp_path: Path) -> None:
+    block = tmp_path / "block.toml"
+    block.write_text(Path(BLOCK).read_text("utf-8") + STAGE)
+    out = ("--out", str(tmp_path / "answer"))
+    code, _, err = run("diagnose", str(block), FIRST, *out)
+    assert code == 0 and "warning: [[mechanisms.pivot_inset.stages]] 1: recording = 'shake1'" in err
+    history = ("simulate", str(block), "--motion", FIRST, "--out", str(tmp_path / "h.nc"))
+    for words in (("diagnose", str(block), FIRST, *out), ("calibrate", str(block), FIRST), history):
+        code, _, err = run(*words, "--strict")
+        assert code == 2 and "did you mean 'shake_1'?" in err and err.count("error:") == 1
+    assert not (tmp_path / "h.nc").exists()
+
+
 def stopping(at: float) -> Callable[[str], object]:
     """Stages in which Ctrl-C is pressed once, when ``at`` of the work is done."""
     pressed: list[str] = []
