@@ -11,6 +11,7 @@ from diagnosis.answer.drift import FEWEST, Drift, drift_of, value_at
 from diagnosis.answer.heldout import frozen, relative_misfit
 from diagnosis.answer.posterior import posterior
 from diagnosis.data.measured import Measured
+from diagnosis.data.twice import refuse_twice
 from diagnosis.errors.model import Errors, calibrated
 from diagnosis.fit.channels import added_by_channels
 from diagnosis.fit.intervals import Estimate, correlation, estimates, profile_rise, settled
@@ -93,6 +94,7 @@ def calibrate(
             f"nothing to calibrate in '{specimen.title}': no parameter has a [tolerance] or a range in [calibrate]; "
             "give one, for instance [tolerance] width = 0.005 (one sigma, relative)."
         )
+    refuse_twice(recordings)
     given = specimen.mechanisms
     specimen, seen = as_recorded(specimen, recordings)
     measured = measure(specimen, recordings)

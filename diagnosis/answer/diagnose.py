@@ -11,6 +11,7 @@ from diagnosis.answer.ladder import confirmed
 from diagnosis.answer.result import Diagnosis
 from diagnosis.answer.statement import statement
 from diagnosis.answer.task import Task
+from diagnosis.data.twice import refuse_twice
 from diagnosis.errors.model import calibrated
 from diagnosis.fit.one_thread import one_thread
 from diagnosis.fit.setup import as_recorded, measure
@@ -45,6 +46,7 @@ def diagnose(
     ends it: the answer holds what was found so far and has ``finished`` false. One after the search leaves
     out what the answer can do without (``skipped``); a second one is raised. Raises InputError.
     """
+    refuse_twice(training, holdout)
     progress("calibrating the base model and the errors of the recordings", 0.02)
     whole = Budget(SEARCH)
     specimen, seen = as_recorded(specimen, [*training, *holdout])
