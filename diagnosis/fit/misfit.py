@@ -192,12 +192,13 @@ class Misfit:
         predicted = yield [here, *moved]
         r = dict(zip(map(id, [here, *moved]), self.whitened(predicted), strict=True))
         differences = [(r[id(up)] - r[id(down)]) / width for (down, up), width in zip(ends, widths, strict=True)]
-        columns = np.stack(differences, axis=-1)
+        residual = r[id(here)]
+        columns = np.stack(differences, axis=-1) if differences else np.empty((*residual.shape, 0))
         k = len(self.unknowns)
         by_unknown = columns[..., :k]
         if self.whitening.shared is not None:
             by_unknown = np.concatenate([by_unknown, self.whitening.shared], axis=-1)
-        return Linear(r[id(here)], by_unknown, columns[..., k:])
+        return Linear(residual, by_unknown, columns[..., k:])
 
     def weights(self, residual: FloatArray) -> FloatArray:
         """Weight of each window (W,) in the least squares that has the loss's gradient."""
