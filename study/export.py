@@ -25,6 +25,8 @@ def export(
 ) -> Path:
     """Write ``out`` (.csv or .nc): all outputs or the named ones, at the selected values.
 
+    A smaller cube keeps ``status``, without which it is none.
+
     The CSV has one row a cell, a column for every coordinate and output with its unit in brackets,
     numbers with all their digits. Raises InputError for unknown names and endings.
     """
@@ -34,7 +36,9 @@ def export(
     for name in outputs:
         if name not in known:
             raise InputError(f"'{name}' is no output of this cube: {nearest(name, known)}")
-    chosen = chosen[list(outputs)] if outputs else chosen
+    if outputs:
+        table = path.suffix == ".csv"
+        chosen = chosen[list(outputs if table else dict.fromkeys([*outputs, "status"]))]
     chosen.attrs = dict(cube.attrs)
     if path.suffix == ".csv":
         write_whole(path, lambda temporary: _write_csv(chosen, temporary))

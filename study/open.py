@@ -45,14 +45,25 @@ def open_study(folder: str | Path, outputs: Collection[str] | None = None, *, la
         if lazy:
             with NETCDF_LOCK, bounded_cache():
                 cube = xr.open_dataset(path, engine="netcdf4", chunks={}, lock=NETCDF_LOCK)
-            found = _of_today(cube if outputs is None else cube[list(outputs)])
+            found = _chosen(cube, path, outputs)
             if found is not cube:
                 found.set_close(cube.close)
             return found
         with NETCDF_LOCK, xr.open_dataset(path, engine="netcdf4") as cube:
-            return _of_today((cube if outputs is None else cube[list(outputs)]).load())
+            return _chosen(cube, path, outputs).load()
+    except InputError:
+        raise
     except (OSError, ValueError) as error:
         raise InputError(f"{path} is not a readable cube ({error}): run the study again") from None
+
+
+def _chosen(cube: xr.Dataset, path: Path, outputs: Collection[str] | None) -> xr.Dataset:
+    if "status" not in cube.data_vars:
+        raise InputError(
+            f"{path} is no cube of a study (it has no variable 'status'): name results/NAME or its cube.nc"
+        )
+    today = _of_today(cube)
+    return today if outputs is None else today[list(outputs)]
 
 
 def _of_today(cube: xr.Dataset) -> xr.Dataset:

@@ -93,6 +93,18 @@ def test_status_check_export_and_map(finished: Path) -> None:
     assert wrong.exit_code == 2 and "did you mean 'peak_rotation'" in wrong.stderr
 
 
+def test_what_is_no_cube_is_refused_and_a_smaller_cube_is_one(finished: Path) -> None:
+    xr.Dataset({"width": ("sample", np.ones(3))}).to_netcdf("posterior.nc")
+    for words in (("map",), ("check",), ("slices", "--x", "pga"), ("export", "--out", "a.nc")):
+        name, *rest = words
+        refused = rocking(name, "posterior.nc", *(["peak_rotation"] if name == "slices" else []), *rest)
+        assert refused.exit_code == 2 and "posterior.nc is no cube of a study" in refused.stderr, refused.output
+    kept = rocking("export", finished, "--out", "small.nc", "--output", "peak_rotation")
+    assert kept.exit_code == 0, kept.output
+    drawn = rocking("slices", "small.nc", "peak_rotation", "--x", "pga", "--out", "peak.png")
+    assert drawn.exit_code == 0, drawn.output
+
+
 def test_check_says_when_a_cube_is_wrong(finished: Path) -> None:
     import shutil
 
