@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import difflib
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +22,8 @@ from models.kinematics import Place
 
 BETWEEN = "between_samples"
 LINEAR, BAND_LIMITED = "linear", "band_limited"
+CLOSE = 0.8
+"""How alike (`difflib`) an attribute is to a known one that it is a slip; CF's 'positive' is .67 of 'position_x'."""
 SUFFIXES = (".nc", ".nc4", ".cdf", ".netcdf")
 
 
@@ -36,6 +39,8 @@ def read(path: Path) -> Raw:
     levels: tuple[str, ...] = ()
     places: dict[str, Place] = {}
     for name, variable in data.variables.items():
+        if name not in CHANNELS and "time" in variable.dimensions and name not in variable.dimensions:
+            _refuse_misspelt(name, variable)
         if name not in CHANNELS and "quantity" in variable.attributes and variable.dimensions == ("time",):
             stated = {key: _plain(variable.attributes[key]) for key in KEYS if key in variable.attributes}
             places |= read_places({name: stated}, CHANNELS)
@@ -60,6 +65,14 @@ def _band_limited(base: Variable | None) -> bool:
     if stated not in (LINEAR, BAND_LIMITED):
         raise InputError(f"{REQUIRED}: {BETWEEN} is '{stated}'; {nearest(str(stated), (LINEAR, BAND_LIMITED))}")
     return stated == BAND_LIMITED
+
+
+def _refuse_misspelt(name: str, variable: Variable) -> None:
+    """An attribute like one of `KEYS` is meant as one; passed over, it would leave the channel at another place."""
+    for attribute in variable.attributes:
+        close = difflib.get_close_matches(attribute.lower(), KEYS, n=1, cutoff=CLOSE)
+        if close and attribute not in KEYS:
+            raise InputError(f"channel {name}: attribute '{attribute}' is not known; did you mean '{close[0]}'?")
 
 
 def _plain(attribute: str) -> str | float:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from grids.recordings import read_recording
 from grids.recordings.placed import attributes, read_place
@@ -94,3 +95,20 @@ def test_what_a_channel_is_not_predicted_with_is_refused(mechanism: str, quantit
     name = mechanism.partition("]")[0]
     with pytest.raises(InputError, match=f"sensor is not predicted with {name}: .*; leave the channel or {name} out"):
         simulate(specimen, duration=0.1)
+
+
+@pytest.mark.parametrize(("slip", "meant"), [("positon_x", "position_x"), ("Relative_to", "relative_to")])
+def test_a_misspelt_attribute_is_refused_and_a_foreign_one_is_not(tmp_path: Path, slip: str, meant: str) -> None:
+    """Passed over, it would leave the channel in the middle of the body."""
+    time = 0.01 * np.arange(200)
+    held = {
+        "base_acceleration_x": ("time", np.sin(9.0 * time), {"units": "m s-2"}),
+        "lvdt": ("time", 0.01 * np.sin(5.0 * time), {"units": "m", "quantity": "displacement", "positive": "up"}),
+    }
+    recording = xr.Dataset(held, coords={"time": ("time", time, {"units": "s"})})
+    recording.to_netcdf(tmp_path / "sound.nc")
+    assert "lvdt" in read_recording(tmp_path / "sound.nc").places
+    recording["lvdt"].attrs[slip] = "base"
+    recording.to_netcdf(tmp_path / "slip.nc")
+    with pytest.raises(InputError, match=f"channel lvdt: attribute '{slip}' is not known; did you mean '{meant}'"):
+        read_recording(tmp_path / "slip.nc")
