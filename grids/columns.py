@@ -138,7 +138,19 @@ def _rows(path: Path, layout: Layout) -> tuple[list[str], list[tuple[int, list[s
             f"{path.name}: line {line} holds numbers where the names of the columns are expected; state "
             "header = false (columns by number), or skip the lines above the names"
         )
+    for number, cells in rows[1:]:
+        if any(cells[len(names) :]):
+            raise InputError(
+                f"{path.name}: line {number} has {len(cells)} cells, the header {len(names)}; {_cure(layout)}."
+            )
     return names, rows[1:]
+
+
+def _cure(layout: Layout) -> str:
+    """Of rows with more cells than there are columns: a decimal comma that delimits splits every number in two."""
+    if layout.delimiter == "," and layout.decimal == ".":
+        return "state decimal = ',' and the delimiter if its numbers have a decimal comma, else complete the header"
+    return "name every column in the header, or correct the delimiter"
 
 
 def _split(path: Path, lines: list[str], delimiter: str) -> list[list[str]]:

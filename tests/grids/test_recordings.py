@@ -195,6 +195,23 @@ def test_a_decimal_comma_is_stated_or_asked_for(written: Callable[[str, str], Pa
         read_recording(path)
 
 
+def test_a_row_with_more_cells_than_the_header_is_refused(written: Callable[[str, str], Path]) -> None:
+    """A decimal comma where the comma delimits, or a column of indices without a name, shifts the columns."""
+    toml = 'time_step = "5 ms"\n[columns]\nbase_acceleration_x = { column = "acc", unit = "m/s2" }\n'
+    toml += 'rotation_1 = { column = "inc", unit = "rad" }\n'
+    values = [(f"{a:.5f}", f"{r:.6f}") for a, r in zip(BASE, ROTATION, strict=True)]
+    written("test_4.toml", toml)
+    tables = (
+        [",".join(v.replace(".", ",") for v in row) for row in values],
+        [f"{k},{a},{r}" for k, (a, r) in enumerate(values)],
+    )
+    for rows in tables:
+        with pytest.raises(InputError, match=r"line 2 has \d cells, the header 2; state decimal = ',' and the delim"):
+            read_recording(written("test_4.csv", "\n".join(["acc,inc", *rows])))
+    trailing = "\n".join(["acc,inc", *(f"{a},{r}," for a, r in values)])
+    assert "rotation_1" in read_recording(written("test_4.csv", trailing)).channels
+
+
 def test_a_word_among_the_numbers_is_told_with_its_line_and_the_file_once(written: Callable[[str, str], Path]) -> None:
     with pytest.raises(InputError, match="line 502: rotation_1 is 'ERR', not a number; correct it") as error:
         read_recording(logged(written, {500: "ERR"}))
