@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from tempfile import TemporaryFile
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -63,10 +64,10 @@ def diagnose(
         from diagnosis.report import write_answer
 
         found = diagnose_recordings(wall, train, test, bootstrap=bootstrap, progress=progress)
+    typer.echo(found.statement)  # before the disk can refuse the rest
     with stages(f"stopped while the answer was written; {out} is not complete") as progress:
         progress("writing the report", 0.98)
         paths = write_answer(found, wall, train, test, out)
-    typer.echo(found.statement)
     typer.echo("written: " + ", ".join(str(path) for path in paths), err=True)
 
 
@@ -82,13 +83,14 @@ def of_outcomes(wall: Specimen, table: Path, out: Path, strict: bool) -> None:
     make_folder(out)
     with stages("stopped; nothing was written") as progress:
         found = diagnose_outcomes(wall, runs, progress=progress)
-        paths = write_answer(found, wall, out)
     typer.echo(found.statement)
+    with stages(f"stopped while the answer was written; {out} is not complete"):
+        paths = write_answer(found, wall, out)
     typer.echo("written: " + ", ".join(str(path) for path in paths), err=True)
 
 
 def make_folder(out: Path) -> None:
-    """The folder of the answer, before the work; InputError where it cannot be made."""
+    """The folder of the answer, before the work; InputError where it cannot be made or written to."""
     try:
         out.mkdir(parents=True, exist_ok=True)
     except (FileExistsError, NotADirectoryError):
@@ -96,3 +98,9 @@ def make_folder(out: Path) -> None:
     except OSError as error:
         why = (error.strerror or str(error)).lower()
         raise InputError(f"--out {out} cannot be made ({why}); name a folder elsewhere.") from None
+    try:
+        with TemporaryFile(dir=out):
+            pass
+    except OSError as error:
+        why = (error.strerror or str(error)).lower()
+        raise InputError(f"--out {out} cannot be written to ({why}); make it writable, or name another.") from None

@@ -93,8 +93,28 @@ def test_a_full_disk_is_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         raise OSError(errno.ENOSPC, "No space left on device", str(tmp_path / "fit.nc"))
 
     monkeypatch.setattr("diagnosis.report.write_answer", full)
-    code, _, err = run("diagnose", BLOCK, FIRST, "--out", str(tmp_path))
+    code, out, err = run("diagnose", BLOCK, FIRST, "--out", str(tmp_path))
     assert code == 2 and "fit.nc: no space left on device" in err
+    assert out == diagnosis("nothing_missing").statement  # which took the time
+
+
+@pytest.mark.skipif(not Path("/proc/self").is_dir(), reason="needs a folder that nobody can write to")
+def test_a_folder_that_cannot_be_written_to_is_said_before_the_work() -> None:
+    code, out, err = run("diagnose", BLOCK, FIRST, "--out", "/proc")
+    assert code == 2 and out == "" and "--out /proc cannot be written to" in err
+
+
+@pytest.mark.usefixtures("quick")
+def test_tables_of_an_earlier_answer_go_and_others_stay(tmp_path: Path) -> None:
+    written = {"extended.toml": 'file = "law.csv"', "diagnosis.json": "{}", "runs.csv": "run,group,overturned,pga"}
+    mine = {"runs.csv": "number,pga", "law.csv": "mine"}
+    for folder, texts in (("answer", {"law.csv": "old", **written}), ("mine", mine)):
+        (tmp_path / folder).mkdir()
+        for name, text in texts.items():
+            (tmp_path / folder / name).write_text(text)
+        assert run("diagnose", BLOCK, FIRST, "--out", str(tmp_path / folder))[0] == 0
+        left = {path.name for path in (tmp_path / folder).glob("*.csv")}
+        assert left == (set() if folder == "answer" else {"runs.csv", "law.csv"})
 
 
 def test_a_channel_that_one_recording_lacks_is_said_for_those_compared_together(
