@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import tomllib
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
@@ -83,9 +83,20 @@ def _address(location: list[str]) -> str:
 
 
 def _known(schema: type[Schema], location: list[str]) -> list[str]:
+    """Keys of the table at ``location``, also where it may be left out or is one of many, by name or in a list."""
+    held: Any = schema
     for part in location:
-        annotation = schema.model_fields[part].annotation if part in schema.model_fields else None
-        if not (isinstance(annotation, type) and issubclass(annotation, Schema)):
-            return []
-        schema = annotation
-    return [field.alias or name for name, field in schema.model_fields.items()]
+        inner = _schema_in(held)
+        if inner is None:
+            break
+        if part in inner.model_fields:  # else the name or number of one of many, all of the same schema
+            held = inner.model_fields[part].annotation
+    found = _schema_in(held)
+    return [field.alias or name for name, field in found.model_fields.items()] if found else []
+
+
+def _schema_in(annotation: Any) -> type[Schema] | None:
+    """The schema that a type is or holds: ``Table | None``, ``dict[str, Table]``."""
+    if isinstance(annotation, type) and issubclass(annotation, Schema):
+        return annotation
+    return next((found for found in map(_schema_in, get_args(annotation)) if found), None)

@@ -48,6 +48,8 @@ def check(
     """
     if cells < 1:
         raise InputError(f"cells is {cells}: give 1 or more")
+    if seed is not None and seed < 0:
+        raise InputError(f"seed is {seed}: give 0 or more")
     folder = Path(folder)
     cube = open_study(folder)
     plan = load_plan(folder)

@@ -28,6 +28,8 @@ def read_recording(path: str | Path, *, base_only: bool = False) -> Recording:
     """
     path = Path(path)
     table = path.with_suffix(".csv") if path.suffix == ".toml" else path
+    if table.is_dir():
+        raise InputError(f"recording {table} is a folder; name a file in it.")
     if not table.is_file():
         beside = [p.name for p in table.parent.glob(f"*{table.suffix}")] if table.parent.is_dir() else []
         cure = nearest(table.name, beside) if beside else "check the path."

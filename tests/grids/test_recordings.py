@@ -302,6 +302,18 @@ def test_bad_descriptions(kind: str, written: Callable[[str, str], Path]) -> Non
     assert all(word in str(error.value) for word in ("test_2", *words)), str(error.value)
 
 
+def test_a_misspelt_key_of_a_column_is_told_with_the_right_one(written: Callable[[str, str], Path]) -> None:
+    toml = 'time_step = "5 ms"\n[columns]\nbase_acceleration_x = { colum = "acc", unit = "m/s2" }\n'
+    with pytest.raises(InputError, match=r"base_acceleration_x colum is not known; did you mean 'column'"):
+        read_recording(mapped(written, toml))
+
+
+def test_a_folder_is_no_recording(tmp_path: Path) -> None:
+    (tmp_path / "shake.csv").mkdir()
+    with pytest.raises(InputError, match=r"shake.csv is a folder; name a file in it"):
+        read_recording(tmp_path / "shake.csv")
+
+
 def test_files_that_are_none(tmp_path: Path, written: Callable[[str, str], Path]) -> None:
     path = stored(tmp_path, dataset())
     with pytest.raises(InputError, match=r"does not exist; did you mean 'test_1.nc'"):

@@ -201,6 +201,7 @@ def test_motions_lists_reads_draws_and_converts() -> None:
         (("run", "small.toml", "--workers", "0"), "give 1 or more"),
         (("status", "results/none"), "holds no study"),
         (("check", "results/none"), "run the study first"),
+        (("check", "results/none", "--seed", "-1"), "seed is -1: give 0 or more"),
         (("map", "results/none"), "run the study first"),
         (("export", "results/none", "--out", "a.csv"), "run the study first"),
         (("simulate", "wall.toml", "--out", "h.nc"), "no motion and no duration"),
