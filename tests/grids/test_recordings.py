@@ -195,23 +195,6 @@ def test_a_decimal_comma_is_stated_or_asked_for(written: Callable[[str, str], Pa
         read_recording(path)
 
 
-def test_a_row_with_more_cells_than_the_header_is_refused(written: Callable[[str, str], Path]) -> None:
-    """A decimal comma where the comma delimits, or a column of indices without a name, shifts the columns."""
-    toml = 'time_step = "5 ms"\n[columns]\nbase_acceleration_x = { column = "acc", unit = "m/s2" }\n'
-    toml += 'rotation_1 = { column = "inc", unit = "rad" }\n'
-    values = [(f"{a:.5f}", f"{r:.6f}") for a, r in zip(BASE, ROTATION, strict=True)]
-    written("test_4.toml", toml)
-    tables = (
-        [",".join(v.replace(".", ",") for v in row) for row in values],
-        [f"{k},{a},{r}" for k, (a, r) in enumerate(values)],
-    )
-    for rows in tables:
-        with pytest.raises(InputError, match=r"line 2 has \d cells, the header 2; state decimal = ',' and the delim"):
-            read_recording(written("test_4.csv", "\n".join(["acc,inc", *rows])))
-    trailing = "\n".join(["acc,inc", *(f"{a},{r}," for a, r in values)])
-    assert "rotation_1" in read_recording(written("test_4.csv", trailing)).channels
-
-
 def test_a_word_among_the_numbers_is_told_with_its_line_and_the_file_once(written: Callable[[str, str], Path]) -> None:
     with pytest.raises(InputError, match="line 502: rotation_1 is 'ERR', not a number; correct it") as error:
         read_recording(logged(written, {500: "ERR"}))
@@ -300,18 +283,6 @@ def test_bad_descriptions(kind: str, written: Callable[[str, str], Path]) -> Non
     with pytest.raises(InputError) as error:
         read_recording(mapped(written, CSV.replace(old, new, 1)))
     assert all(word in str(error.value) for word in ("test_2", *words)), str(error.value)
-
-
-def test_a_misspelt_key_of_a_column_is_told_with_the_right_one(written: Callable[[str, str], Path]) -> None:
-    toml = 'time_step = "5 ms"\n[columns]\nbase_acceleration_x = { colum = "acc", unit = "m/s2" }\n'
-    with pytest.raises(InputError, match=r"base_acceleration_x colum is not known; did you mean 'column'"):
-        read_recording(mapped(written, toml))
-
-
-def test_a_folder_is_no_recording(tmp_path: Path) -> None:
-    (tmp_path / "shake.csv").mkdir()
-    with pytest.raises(InputError, match=r"shake.csv is a folder; name a file in it"):
-        read_recording(tmp_path / "shake.csv")
 
 
 def test_files_that_are_none(tmp_path: Path, written: Callable[[str, str], Path]) -> None:
