@@ -18,7 +18,6 @@ from grids.recordings.outcomes import Outcomes
 from grids.specimen import Specimen, state_unit
 from grids.targets import SCALES
 from grids.units import with_unit
-from models.errors import nearest
 
 GRAVITY = 9.80665
 USUAL: Mapping[str, tuple[float, float]] = {
@@ -113,18 +112,28 @@ def suspicions_of_stages(specimen: Specimen, lengths: Mapping[str, float], alone
     found = []
     for name, number, stage in staged:
         where = f"[[mechanisms.{name}.stages]] {number}"
-        if stage.recording not in lengths:
-            cure = nearest(stage.recording, lengths)
-            found.append(f"{where}: recording = '{stage.recording}' is none of the recordings given; {cure}")
+        if stage.recording not in lengths:  # any other recording is as after the last stage
+            if slips := [name for name in lengths if _letters(name) == _letters(stage.recording)]:
+                found.append(
+                    f"{where}: recording = '{stage.recording}' is none of the recordings given; did you mean "
+                    f"'{slips[0]}'?"
+                )
             continue
         length = lengths[stage.recording]
-        late = {key: time for key, time in (("begins", stage.begins), ("ends", stage.ends)) if length < time < np.inf}
+        late = {
+            key: time for key, time in (("begins", stage.begins), ("ends", stage.ends)) if 1.01 * length < time < np.inf
+        }
         found += [
             f"{where}: {key} = {time:g} s lies after the end of recording {stage.recording} ({length:.4g} s); is the "
             "unit right ('4210 ms')?"
             for key, time in [*late.items()][:1]
         ]
     return tuple(found)
+
+
+def _letters(name: str) -> str:
+    """A name without what a slip leaves out or turns: its letters and digits in lower case."""
+    return "".join(c for c in name.lower() if c.isalnum())
 
 
 def _unusual(model: str, values: Mapping[str, np.ndarray]) -> Iterator[str]:

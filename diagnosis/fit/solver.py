@@ -227,7 +227,7 @@ def _fitting(misfit: Misfit, u: FloatArray, states: FloatArray, iterations: int)
     place = yield from Place.at(misfit, u, states)
     damping, small, bold = 1.0, 0, True
     for _ in range(iterations):
-        if place.gain >= TOLERANCE and not place.fresh:
+        if not place.fresh:  # derivatives of another place say where to go, not that this is the end
             place = yield from Place.at(place.misfit, place.u, place.states)
         if place.gain < TOLERANCE:
             break

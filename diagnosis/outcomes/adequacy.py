@@ -32,8 +32,8 @@ def _steepest(chance: FloatArray, outcomes: FloatArray, measures: Mapping[str, F
 
 
 def worse_than_even(compared: Iterable[Compared], by: str) -> bool:
-    """Whether ``by`` predicts runs that it has not learned from worse than a coin does."""
-    return any(one.cross_validated and one.by == by and one.scores.log_loss.value > EVEN for one in compared)
+    """Whether ``by`` predicts runs that it has not learned from clearly worse than a coin does."""
+    return any(one.cross_validated and one.by == by and one.scores.log_loss.low95 > EVEN for one in compared)
 
 
 def swapped(base: FloatArray, outcomes: FloatArray) -> bool:

@@ -100,7 +100,7 @@ def _one_of_several(found: Search, best: Explanation) -> Search | None:
     screen, scores = linearise_about(best.fitted), seconds(found, best)
     cost = price_of_a_spell(screen, scores, runs(len(found.measured.windows)))
     fits = []
-    for candidate in best.candidates:
+    for candidate in best.removable:
         others = tuple(one for one in best.candidates if one is not candidate)
         if not found.affordable(at_an_instant(candidate.name)):
             continue
@@ -208,7 +208,10 @@ def others_in_the_spell(best: Explanation) -> Iterator[Explanation]:
         f = without(best, begins, 0).fitted
         staged = replace(other, spell=begins.spell, price=begins.price)
         try:
-            yield Explanation((staged,), fit(in_spell(f.misfit, other.name, begins.spell), f.u, f.states))
+            yield Explanation(
+                (*(one for one in others if one is not other), staged),
+                fit(in_spell(f.misfit, other.name, begins.spell), f.u, f.states),
+            )
         except InputError:  # it cannot change within a recording
             continue
 

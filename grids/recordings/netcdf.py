@@ -69,9 +69,10 @@ def _band_limited(base: Variable | None) -> bool:
 
 def _refuse_misspelt(name: str, variable: Variable) -> None:
     """An attribute like one of `KEYS` is meant as one; passed over, it would leave the channel at another place."""
+    known = "quantity" in variable.attributes
     for attribute in variable.attributes:
         close = difflib.get_close_matches(attribute.lower(), KEYS, n=1, cutoff=CLOSE)
-        if close and attribute not in KEYS:
+        if close and attribute not in KEYS and (known or close[0] == "quantity"):  # else the channel is left out
             raise InputError(f"channel {name}: attribute '{attribute}' is not known; did you mean '{close[0]}'?")
 
 

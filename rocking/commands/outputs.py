@@ -38,4 +38,5 @@ def in_answer(folder: Path) -> list[Path]:
 
 def _with_companions(path: Path) -> list[Path]:
     beside = {".csv": ".toml", ".txt": ".toml", ".toml": ".csv"}.get(path.suffix.lower())
-    return [path] if beside is None else [path, path.with_suffix(beside)]
+    companion = None if beside is None else path.with_suffix(beside)
+    return [path] if companion is None or not companion.exists() else [path, companion]

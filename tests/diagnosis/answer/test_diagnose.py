@@ -94,7 +94,7 @@ def test_windows_far_from_the_noise_and_what_could_not_be_done_are_told(
 
     if stage == "far":
         far = (Unfit("train_1", 1.0, 1.6, 30.0), Unfit("train_1", 2.0, 2.5, 19.0))
-        monkeypatch.setattr(import_module("diagnosis.answer.verdict"), "unfit", lambda found: far)
+        monkeypatch.setattr(import_module("diagnosis.answer.verdict"), "unfit_windows", lambda found: far)
     else:
         monkeypatch.setattr(import_module("diagnosis.answer.assembly"), "_horizons", refused)
     found = diagnose(SPECIMEN, [recording("train_1", 1), recording("train_2", 2)])

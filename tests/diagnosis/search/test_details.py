@@ -29,7 +29,9 @@ def explanation(gain: float, *candidates: Any, model: str = "interface") -> Any:
 
 
 def search(*singles: Any) -> Any:
-    return SimpleNamespace(gain=lambda e: e.gain, more=MORE, singles=singles, strongest_law=None)
+    return SimpleNamespace(
+        gain=lambda e: e.gain, more=MORE, singles=singles, strongest_law=None, pass_over=lambda one: None
+    )
 
 
 @pytest.fixture(autouse=True)

@@ -16,7 +16,7 @@ def fit(loss: float) -> Any:
 
 
 def search(incomplete: bool) -> Any:
-    return SimpleNamespace(incomplete=incomplete, more=20.0)
+    return SimpleNamespace(incomplete=incomplete, more=20.0, pass_over=lambda one: None)
 
 
 @pytest.fixture(autouse=True)
