@@ -31,9 +31,8 @@ def true_peak(explanation: Explanation) -> float | None:
     m, fitted = explanation.measured, explanation.fitted
     without = {k: v for k, v in fitted.point.values.items() if k.partition(".")[0] not in names}
     lead, moving = m.lead, m.windows[0].recording
-    if (
-        m.identification.leads[0].channel in m.recordings[moving].estimated
-    ):  # no rotation sensor whose level it could be
+    if m.identification.leads[0].channel in m.recordings[moving].estimated:
+        # no rotation sensor whose level it could be
         return m.reference_peak
     motion = fitted.misfit.predictor.predict([Point(without, fitted.states)])[0][:, lead]
     first = m.recording_of == moving

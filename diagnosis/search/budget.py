@@ -18,7 +18,7 @@ FURTHER = 60.0
 LAST = 25.0
 """s for others in the place of each of several effects at the end, whatever was spent before."""
 RESERVED = 80.0
-"""s for effects that begin or end, whatever was spent before: they may explain everything."""
+"""s for effects that begin or end: they may explain everything."""
 LADDER = 70.0
 """s after which no further base model is tried."""
 SEARCH, ANSWER = 180.0, 220.0

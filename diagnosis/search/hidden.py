@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from diagnosis.errors.evidence import Without
+from diagnosis.errors.model import estimate
 from diagnosis.fit.misfit import STEP
 from diagnosis.search.beside import (
     FEWEST_SECOND,
@@ -71,26 +72,27 @@ def take_hidden(found: Search, before: Explanation, fits: Sequence[Explanation])
 
     Beside others it has to leave errors that hold no more than noise, or what it explains may be part of a third thing.
     """
-    trials = [e for e in sorted(fits, key=adjusted) if adjusted(before) - adjusted(e) > LEAST][:MOST]
+    beside = [e for e in sorted(fits, key=adjusted) if set(before.candidates) < set(e.candidates)]
+    trials = [e for e in beside if adjusted(before) - adjusted(e) > LEAST][:MOST]
     if not trials:
         return
-    base = Without.estimated(found.errors, found.measured, np.zeros((*found.measured.values.shape, 0)))
-    about = found.weighed or before  # where the errors stand: a motion with other events has other derivatives
+    errors = estimate(before.fitted, found.errors.base, found.errors)  # those of the search may stand at another fit
+    base = Without.estimated(errors, before.measured, np.zeros((*before.measured.values.shape, 0)))
     gains = {}
     for trial in trials:
-        column = _derivative(about, trial.candidates[-1])
+        column = _derivative(before, trial.candidates[-1])
         if np.any(column):
-            gains[trial.names] = base.evidence(column).without_largest
-    large = [trial for trial in trials if gains.get(trial.names, 0.0) > MISSING]
+            gains[trial.candidates] = base.evidence(column).without_largest
+    large = [trial for trial in trials if gains.get(trial.candidates, 0.0) > MISSING]
     if not large:
         return
     kept = replace(found)
-    found.best, found.tried = max(large, key=lambda trial: gains[trial.names]), [*fits]
+    found.best, found.tried = max(large, key=lambda trial: gains[trial.candidates]), [*fits]
     weigh_again(found)
     if not _counts(found):
         vars(found).update(vars(kept))
     elif not before.candidates:
-        found.marginal = gains.get(found.best.names, 0.0)
+        found.marginal = gains.get(found.best.candidates, 0.0)
 
 
 def _counts(found: Search) -> bool:
@@ -103,13 +105,13 @@ def _counts(found: Search) -> bool:
     return not found.incomplete and adjusted(rest) - adjusted(best) >= needed and survives(rest, best, needed)
 
 
-def _derivative(about: Explanation, candidate: Candidate) -> FloatArray:
+def _derivative(before: Explanation, candidate: Candidate) -> FloatArray:
     """Change (W, C, N) of the predictions with the candidate's first coordinate at its null; zero without one."""
-    predictor, point = about.fitted.misfit.predictor, about.fitted.point
+    predictor, point = before.fitted.misfit.predictor, before.fitted.point
     low, high = candidate.unknowns[0].bounds
     ends = [candidate.null.copy(), candidate.null.copy()]
     ends[0][0], ends[1][0] = max(ends[0][0] - STEP, low), min(ends[1][0] + STEP, high)
     width = ends[1][0] - ends[0][0]
     down, up = predictor.predict([at(point, candidate, u) for u in ends])
     slope = (up - down) / width
-    return np.where(np.isfinite(slope) & about.measured.mask, slope, 0.0)
+    return np.where(np.isfinite(slope) & before.measured.mask, slope, 0.0)

@@ -146,7 +146,8 @@ def refit_singles(found: Search, progress: Progress) -> None:
     if led_by(found, found.singles[0]):
         found.singles[0] = again(reshaped(found.singles[0]))
         tried = {single.candidates[0] for single in found.singles}
-        left += [s for s in worth_a_refit(found.scores, fewest, SHARE_OF_FIRST) if s.candidate not in tried]
+        worth = one_of_each(worth_a_refit(found.scores, fewest, SHARE_OF_FIRST))[:MOST]
+        left = [s for s in worth if s.candidate not in tried]
     with found.work_of_its_own(min(JOINTS, found.spare)):
         at_other_joints(found)
     with found.work_of_its_own(min(UNTRIED, found.spare)):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -15,18 +16,12 @@ from diagnosis.search.candidates import candidates
 from diagnosis.search.refit import Explanation
 from diagnosis.search.screen import score
 from grids.recordings.base import Recording
-from grids.specimen import Specimen
+from tests.diagnosis import walls
 from tests.diagnosis.made import TIME_STEP, motion
 from tests.diagnosis.search.recovered import assert_recovered
-from tests.diagnosis.walls import KNOWN, LAYERS, NOISE, TRUE
+from tests.diagnosis.walls import NOISE, TRUE
 
-WALL = Specimen(
-    title="wall on linear rubber",
-    model="interface_linear",
-    parameters={**KNOWN, "wall_height": 1.8},
-    tolerance={"wall_height": 0.005},
-    calibrate={name: (value / 2.5, value * 2.5) for name, value in LAYERS.items()},
-)
+WALL = replace(walls.WALL, title="wall on linear rubber", model="interface_linear")
 EFFECTS = {"pivot_inset.inset_over_half_width": 0.06, "tilt.tilt": 0.004}
 
 
