@@ -36,10 +36,10 @@ def felt(shaking: Shaking, motion: float, force: float, frequency: float, dampin
         return shaking
 
     def make() -> Shaking:
-        earlier = np.zeros(0) if shaking.earlier is None else shaking.earlier
-        base = np.concatenate([earlier, shaking.horizontal])
-        total = acceleration(base, shaking.time_step, frequency, damping)[earlier.size :]
-        more = motion * (total - shaking.horizontal) + force * total
-        return replace(shaking, horizontal=shaking.horizontal + more)
+        cut = 0 if shaking.earlier is None else shaking.earlier.size
+        base = shaking.horizontal if shaking.earlier is None else np.append(shaking.earlier, shaking.horizontal)
+        total = acceleration(base, shaking.time_step, frequency, damping)
+        whole = base + motion * (total - base) + force * total
+        return replace(shaking, horizontal=whole[cut:], earlier=whole[:cut] if cut else None)  # filters follow it
 
     return shaking.once((__name__, motion, force, frequency, damping), make)

@@ -38,7 +38,7 @@ def run_through(
     found = np.zeros((len(parts), len(m.channels), samples // size))
     around = m.around(shaking.time_step, shaking.horizontal)
     peaks = {c: float(np.max(np.abs(m.recordings[recording].channels[c]))) for c in m.channels}
-    # of all levels together: the channel of one may be dead
+    # of all levels together: one of them may hardly move
     largest = {c: max(peak for other, peak in peaks.items() if stem(other) == stem(c)) for c in m.channels}
     for low in range(0, len(parts), LANES):
         some = parts[low : low + LANES]

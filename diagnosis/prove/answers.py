@@ -104,12 +104,15 @@ def file_hashes(folder: Path) -> dict[str, str]:
 
 
 def check_same(path: Path, kept: Mapping[str, Any], folder: Path) -> None:
-    """Raise InputError unless the answer ``kept`` in ``path`` is one to the case ``folder`` as it is now."""
+    """Raise InputError unless the answer ``kept`` in ``path`` is one to the case ``folder`` as it is now.
+
+    A file that was put beside those of the case since then is none of its own.
+    """
     cure = "name another folder with --out, or delete it so that the case is answered again."
     if FILES not in kept:
         raise InputError(f"{path} does not say to which files it is the answer (an earlier version's): {cure}")
     then, now = kept[FILES], file_hashes(folder)
-    if changed := sorted(name for name in {*then, *now} if then.get(name) != now.get(name)):
+    if changed := [name for name, digest in then.items() if now.get(name) != digest]:
         raise InputError(f"{path} is the answer to another {changed[0]} than that in {folder}: {cure}")
 
 

@@ -15,6 +15,8 @@ from models.base import FloatArray
 from models.errors import InputError
 from models.mechanisms.table_force import TABLES
 from models.oscillator import acceleration, felt
+from models.piecewise import begun_at
+from models.pitch import pitch
 from models.runs import Request
 from models.shaking import Shaking
 from tests.models.mechanisms.cases import HOUSNER, WALL, by_lanes, by_reference, pulse
@@ -54,6 +56,15 @@ def test_without_gains_the_motion_is_the_same_object() -> None:
     both = felt(shaking, 0.3, -0.2, 2.0, 0.05).horizontal
     total = acceleration(shaking.horizontal, STEP, 2.0, 0.05)
     np.testing.assert_allclose(both, shaking.horizontal + 0.3 * (total - shaking.horizontal) - 0.2 * total)
+
+
+def test_a_motion_that_was_cut_goes_on_as_it_was_felt_and_so_does_the_pitch_of_the_table_under_it() -> None:
+    whole, first = Shaking(STEP, base()), 120
+    cut = begun_at(whole, first)
+    alone, after = felt(whole, 0.3, -0.2, 2.0, 0.05), felt(cut, 0.3, -0.2, 2.0, 0.05)
+    np.testing.assert_allclose(after.horizontal, alone.horizontal[first:], atol=1e-12)
+    for once, later in zip(pitch(alone, 3.0), pitch(after, 3.0), strict=True):
+        np.testing.assert_allclose(later, once[first:], atol=1e-10 * np.abs(once).max())
 
 
 @pytest.mark.parametrize("gain", ["motion", "force"])

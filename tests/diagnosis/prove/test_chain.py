@@ -96,6 +96,9 @@ def test_answers_to_other_cases_are_not_scored(folder: Path, tmp_path: Path) -> 
     out = tmp_path / "out"
     prove(folder, out, model="housner", jobs=1, say=print, answering=answer_by_title)
     scored = (out / "prove.json").read_bytes()
+    (folder / "case_02" / "README.md").write_text("the second wall\n")  # beside it, none of its own
+    prove(folder, out, model="housner", jobs=1, say=print, answering=answer_by_title)
+    assert (out / "prove.json").read_bytes() == scored
     changed = folder / "case_02" / "specimen.toml"
     changed.write_text(changed.read_text() + "# another wall\n")
     with pytest.raises(InputError, match=r"case_02\.json is the answer to another specimen\.toml.*--out"):
