@@ -16,7 +16,8 @@ SEED = 29
 """Its suite begins with a null and a hidden restitution, both at 1 % noise."""
 
 
-def test_cases_from_making_to_figures(tmp_path: Path) -> None:
+@pytest.mark.parametrize("answering", [weak_form.answer, diagnosed], ids=["weak_form", "diagnosed"])
+def test_cases_from_making_to_figures(answering: Answering, tmp_path: Path) -> None:
     first, second = suite(SEED)[:2]
     assert {first.kind, second.kind} == {"null", "single"} and first.noise == second.noise == 0.01
 
@@ -27,14 +28,14 @@ def test_cases_from_making_to_figures(tmp_path: Path) -> None:
             seed=SEED,
             cases=cases,
             minutes=10.0,
-            jobs=2,
+            jobs=1,
             run="a",
             say=said.append,
             answering=answering,
         )
 
     said: list[str] = []
-    figures = run(said, diagnosed, 1)
+    figures = run(said, answering, 1)
     assert figures["failed"] == []
     assert figures["by_kind"] == {first.kind: 1}
     assert figures["false_alarm" if first.kind == "null" else "class_first"] == float(first.kind != "null"), said

@@ -13,22 +13,21 @@ import pytest
 from diagnosis import calibrate, diagnose
 from diagnosis.answer.assembly import screened
 from diagnosis.answer.heldout import Shown
-from diagnosis.answer.result import Beyond, Diagnosis, Unfit
+from diagnosis.answer.result import Beyond, Unfit
 from diagnosis.fit.setup import measure
 from diagnosis.search.candidates import candidates
 from diagnosis.search.found import MISSING, Search
 from diagnosis.search.null import LEAST_P
 from models.errors import InputError
+from tests.diagnosis.answer.searched import searched
 from tests.diagnosis.made import SPECIMEN, TRUE, recording
 
-
-def diagnosed(effect: dict[str, dict[str, float]] | None, **options: object) -> Diagnosis:
-    training = [recording("train_1", 1, effect), recording("train_2", 2, effect)]
-    return diagnose(SPECIMEN, training, [recording("test_1", 3, effect)], **options)  # type: ignore[arg-type]
+LOSSY = 0.93
+"""Share of Housner's restitution that hidden impacts keep."""
 
 
 def test_nothing_missing() -> None:
-    found = diagnosed(None)
+    found = searched().answer
     assert found.verdict == "nothing_missing", found.statement
     alone = calibrate(SPECIMEN, [recording("train_1", 1), recording("train_2", 2)], profile=False)
     assert alone.misfit == pytest.approx(found.train.before, rel=1e-9)
@@ -41,11 +40,10 @@ def test_nothing_missing() -> None:
 
 
 def test_restitution_is_named_and_recovered() -> None:
-    truth = 0.93
-    found = diagnosed({"restitution": {"factor_on_housner": truth}})
+    found = searched(LOSSY).answer
     assert found.effects[0].name == "restitution", found.statement
     value = found.effects[0].parameters["factor_on_housner"]
-    assert value.low95 <= truth <= value.high95
+    assert value.low95 <= LOSSY <= value.high95
     assert value.high95 - value.low95 < 0.03
     assert found.p_value == found.effects[0].p_value < 1e-3 and found.effects[0].evidence > MISSING
     assert found.errors is not None and found.errors.scatter is not None and found.errors.scatter.estimate < 0.01
@@ -61,7 +59,8 @@ def test_a_stopped_search_gives_what_it_has() -> None:
         if text.startswith("looking for a second effect"):
             raise KeyboardInterrupt
 
-    found = diagnosed({"restitution": {"factor_on_housner": 0.93}}, progress=stop)
+    effect = {"restitution": {"factor_on_housner": LOSSY}}
+    found = diagnose(SPECIMEN, [recording("train_1", 1, effect)], progress=stop)
     assert not found.finished
     assert found.effects and found.effects[0].name == "restitution"
     assert "stopped" in found.statement
@@ -77,7 +76,7 @@ def test_an_answer_that_recordings_held_out_contradict_is_not_in_the_library(mon
         return 0.04, 0.07
 
     monkeypatch.setattr(import_module("diagnosis.answer.verdict"), "contradicted", worse)
-    found = diagnosed({"restitution": {"factor_on_housner": 0.93}})
+    found = searched(LOSSY).judged_again()
     assert judged == [("restitution",)]
     assert found.verdict == "not_in_library" and found.contradicted == (0.04, 0.07)
     assert found.effects[0].name == "restitution" and "recordings held out" in found.statement
@@ -97,7 +96,7 @@ def test_windows_far_from_the_noise_and_what_could_not_be_done_are_told(
         monkeypatch.setattr(import_module("diagnosis.answer.verdict"), "unfit_windows", lambda found: far)
     else:
         monkeypatch.setattr(import_module("diagnosis.answer.assembly"), "_horizons", refused)
-    found = diagnose(SPECIMEN, [recording("train_1", 1), recording("train_2", 2)])
+    found = searched().judged_again()
     if stage == "far":
         assert found.verdict == "not_in_library" and found.p_value == LEAST_P
         assert found.missing_force is not None or "train_1, 1.0 to 1.6 s (30 times)" in found.statement
@@ -115,7 +114,7 @@ def test_an_answer_that_needs_more_than_its_range_is_not_in_the_library(monkeypa
         return (needs,)
 
     monkeypatch.setattr(import_module("diagnosis.answer.verdict"), "beyond_ranges", more)
-    found = diagnosed({"restitution": {"factor_on_housner": 0.93}})
+    found = searched(LOSSY).judged_again()
     assert judged == [("restitution",)]
     assert found.verdict == "not_in_library" and found.beyond == (needs,)
     assert found.effects[0].name == "restitution" and "beyond the range of the library" in found.statement

@@ -2,17 +2,53 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from diagnosis import diagnose
+from diagnosis.answer.assembly import assemble
+from diagnosis.answer.statement import statement
+from diagnosis.answer.task import Task
+from diagnosis.errors.model import calibrated
+from diagnosis.fit.setup import measure
+from diagnosis.progress import Stages, silent
+from diagnosis.report import extend as extended
 from diagnosis.report import write_answer
+from diagnosis.search.candidates import candidates
+from diagnosis.search.found import Search
+from diagnosis.search.refit import Explanation, extend
 from grids.specimen import read_specimen
+from models.tables import KNOTS, row
 from tests.diagnosis.made import SPECIMEN, recording
 
 SUPPORT = {"table_force": {"oscillator_motion": 0.25, "oscillator_frequency": 3.4, "oscillator_damping": 0.05}}
+RATE = 0.6
+"""s-1, of a dashpot that works for rotations above zero only."""
+
+
+def test_a_law_takes_the_place_of_a_dashpot() -> None:
+    """A dashpot on both sides was named for one that works on one side: judged without its search."""
+    hidden = {"table_force": {row("damping", "above", k): -RATE for k in range(KNOTS)}}
+    training = [recording(f"train_{seed}", seed, hidden) for seed in (1, 2)]
+    measured = measure(SPECIMEN, training)
+    fitted, errors = calibrated(SPECIMEN, measured)
+    dashpot = next(one for one in candidates(measured, SPECIMEN) if one.name == "viscous_damping")
+    base = Explanation((), fitted)
+    named = extend(base, dashpot, dashpot.null + 1.0)
+    found = Search(base, (dashpot,), errors, singles=[named], tried=[named], best=named)
+    answer = assemble(Task(SPECIMEN, None, 0, silent, 0, True, Stages()), found, None)
+    assert answer.verdict == "not_in_library" and answer.missing_force is not None
+    assert not answer.effects and not answer.rivals
+    answer = replace(answer, statement=statement(answer, measured.model))
+    assert "With what was found" not in answer.statement
+    law = extended(SPECIMEN, answer).mechanisms["table_force"]
+    above, below = ([law[row("damping", side, k)] for k in range(KNOTS)] for side in ("above", "below"))
+    np.testing.assert_allclose(above, -RATE, rtol=0.02)
+    np.testing.assert_allclose(below, 0.0, atol=0.05 * RATE)
 
 
 def test_a_support_that_moves_takes_the_place_of_what_was_named(

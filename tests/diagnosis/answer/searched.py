@@ -1,0 +1,58 @@
+"""Searches whose answers are put together again: a test of what comes after a search need not repeat it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cache
+from importlib import import_module
+
+import pytest
+
+from diagnosis import diagnose
+from diagnosis.answer.assembly import assemble
+from diagnosis.answer.result import Diagnosis
+from diagnosis.answer.statement import statement
+from diagnosis.answer.task import Task
+from diagnosis.progress import Stages
+from diagnosis.search.budget import SEARCH, Budget
+from diagnosis.search.found import Search
+from diagnosis.search.ladder import Climbed
+from tests.diagnosis.made import SPECIMEN, recording
+
+LONG_AGO = -1e9
+"""s, the beginning of a budget of which nothing is left."""
+
+
+@dataclass(frozen=True)
+class Searched:
+    """An answer, and what it was put together from."""
+
+    answer: Diagnosis
+    task: Task
+    found: Search
+    climbed: Climbed | None
+
+    def judged_again(self) -> Diagnosis:
+        """The answer judged and put together anew, with no work left for further laws in a table."""
+        task = replace(self.task, stages=Stages())
+        found = replace(self.found, whole=Budget(SEARCH, LONG_AGO), not_tried=dict(self.found.not_tried))
+        answer = assemble(task, found, self.climbed)
+        return replace(answer, statement=statement(answer, found.measured.model))
+
+
+@cache
+def searched(factor_on_housner: float | None = None, held: bool = True) -> Searched:
+    """Two recordings of a block, whose impacts keep that share of Housner's restitution, and one that is held out."""
+    effect = None if factor_on_housner is None else {"restitution": {"factor_on_housner": factor_on_housner}}
+    training = [recording("train_1", 1, effect), recording("train_2", 2, effect)]
+    holdout = [recording("test_1", 3, effect)] if held else []
+    given: list[tuple[Task, Search, Climbed | None]] = []
+
+    def assembled(task: Task, found: Search, climbed: Climbed | None) -> Diagnosis:
+        given.append((task, found, climbed))
+        return assemble(task, found, climbed)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(import_module("diagnosis.answer.diagnose"), "assemble", assembled)
+        answer = diagnose(SPECIMEN, training, holdout)
+    return Searched(answer, *given[0])
