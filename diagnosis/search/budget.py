@@ -21,7 +21,7 @@ RESERVED = 80.0
 """s for effects that begin or end: they may explain everything."""
 LADDER = 70.0
 """s after which no further base model is tried."""
-SEARCH, ANSWER = 180.0, 220.0
+SEARCH, ANSWER = 150.0, 190.0
 """s of all searches together, calibration included, and of an answer with the law in a table that it may lack."""
 ENDED = "the search's budget of work ended before it"
 

@@ -190,15 +190,18 @@ def reshaped(explanation: Explanation) -> Explanation:
 def with_memory(explanation: Explanation) -> Explanation:
     """The same model refitted with the events before each window counted along its own motion, if that is better.
 
-    Counts and parameters depend on each other: repeated until the loss stays, stuck windows started again.
+    Counts and parameters depend on each other: repeated until the loss stays, stuck windows started again. A model that
+    remembers no events, or does not under these mechanisms, predicts the same however they are counted.
     """
     fitted = explanation.fitted
     for _ in range(RECOUNTS):
-        before = fitted.loss
-        point = fitted.point
-        measured = counted(fitted.misfit.predictor, point)
-        misfit = replace(fitted.misfit, predictor=replace(fitted.misfit.predictor, measured=measured))
-        fitted = fit_thoroughly(misfit, fitted.u, fitted.states)
+        before, predictor, point = fitted.loss, fitted.misfit.predictor, fitted.point
+        recounted = replace(predictor, measured=counted(predictor, point))
+        if recounted.measured is predictor.measured:
+            break
+        if np.array_equal(recounted.predict([point]), predictor.predict([point])):
+            break
+        fitted = fit_thoroughly(replace(fitted.misfit, predictor=recounted), fitted.u, fitted.states)
         if abs(before - fitted.loss) < 0.5:
             break
     return replace(explanation, fitted=fitted) if fitted.loss < explanation.loss else explanation

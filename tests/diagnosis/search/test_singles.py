@@ -81,8 +81,9 @@ def test_every_law_with_a_memory_counts_events_along_its_own_motion() -> None:
     found = Search(Explanation((), fitted), some, errors)
     refit_singles(found, silent)
     assert [single.names[0] for single in found.singles] == ["restitution", "degradation"]
-    worn = found.singles[1]
+    lossy, worn = found.singles
     assert with_memory(worn).loss > worn.loss - 0.5
+    assert with_memory(lossy) is lossy  # it remembers no impacts: nothing is fitted again
 
 
 def test_the_strongest_of_the_screen_come_before_what_has_no_slope_there() -> None:
