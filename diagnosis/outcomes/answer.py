@@ -84,6 +84,8 @@ class OutcomeDiagnosis:
     p_value: float
     misfit_p_value: float
     """Chance of residuals that hang together within groups as much, if the extended model is right."""
+    slope_p_value: float
+    """Chance of residuals that slope as much along any measure of the motion, if the extended model is right."""
     extended: Specimen
     posterior: Posterior
     runs: tuple[str, ...]

@@ -43,8 +43,8 @@ def assemble(found: Search, flags: FloatArray, rng: np.random.Generator, progres
     at = best(chosen.bank, flags)
     scatter = Estimate(float(SCATTERS[at.scatter]), *_ends(posterior.scatter), "1")
     compared = _compared(found, flags, measures, base, last)
-    explained = misfit > INADEQUATE and not worse_than_even(compared, EXTENDED)
-    explained = explained and chance_of_slopes(last, flags, measures, rng) > INADEQUATE
+    slope = chance_of_slopes(last, flags, measures, rng)
+    explained = min(misfit, slope) > INADEQUATE and not worse_than_even(compared, EXTENDED)
     answer = OutcomeDiagnosis(
         verdict=_verdict(found, explained),
         statement="",
@@ -58,6 +58,7 @@ def assemble(found: Search, flags: FloatArray, rng: np.random.Generator, progres
         scatter=scatter,
         p_value=found.p_value,
         misfit_p_value=misfit,
+        slope_p_value=slope,
         extended=_extended(found.specimen, found.chosen, estimates),
         posterior=posterior,
         runs=outcomes.runs,

@@ -58,6 +58,7 @@ def as_mapping(answer: OutcomeDiagnosis) -> dict[str, Any]:
         "scatter": entry(asdict(answer.scatter)),
         "p_value": answer.p_value,
         "misfit_p_value": answer.misfit_p_value,
+        "slope_p_value": answer.slope_p_value,
         "scores": {
             one.by: {**asdict(one.scores), "reliability": [asdict(b) for b in one.reliability]} for one in crossed
         },

@@ -29,7 +29,7 @@ def statement(answer: OutcomeDiagnosis, found: Search) -> str:
     if answer.rivals:
         parts += [f"Outcomes alone cannot tell {which}." for which in told_apart(answer.rivals, len(answer.effects))]
     if answer.verdict == "not_in_library":
-        parts.append(_left(answer))
+        parts.append(why_unexplained(answer))
         base = next(one for one in answer.compared if one.cross_validated)
         if swapped(base.chance, answer.overturned):
             parts.append(
@@ -56,17 +56,16 @@ def _opening(answer: OutcomeDiagnosis) -> str:
     return "No mechanism of the library improves the predictions, and the model does not explain the outcomes."
 
 
-def _left(answer: OutcomeDiagnosis) -> str:
+def why_unexplained(answer: OutcomeDiagnosis) -> str:
     """Why the outcomes count as unexplained."""
     if answer.misfit_p_value <= INADEQUATE:
         return (
             "That does not settle it: what is left hangs together within groups of runs "
             f"(p {_at_most(answer.misfit_p_value)}), so something that depends on the motion is not in the library."
         )
-    return (
-        "That does not settle it: what is left depends on the motion, or runs left out are predicted no better than "
-        "by a coin."
-    )
+    if answer.slope_p_value <= INADEQUATE:
+        return f"That does not settle it: what is left depends on the motion (p {_at_most(answer.slope_p_value)})."
+    return "That does not settle it: runs left out are predicted worse than by a coin."
 
 
 def _at_most(p: float) -> str:

@@ -124,6 +124,7 @@ def test_outcomes_turned_round_are_not_explained_and_asked_about() -> None:
     assert found.verdict == "not_in_library"
     assert found.predictor("base model").scores.log_loss.value > np.log(2.0)
     assert "are 0 and 1 swapped in column 'fell'?" in found.statement
+    assert found.slope_p_value < 0.01
 
 
 def test_too_few_runs_are_refused() -> None:
