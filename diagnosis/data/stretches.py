@@ -93,13 +93,18 @@ def arrange_stretches(
 
 
 def _refuse_beyond(model: Model, recording: Recording, points: Mapping[str, int]) -> None:
-    """Raise InputError where a channel is of a level that the model has not."""
+    """Raise InputError where a level that the model has not stands in the place of one that it has.
+
+    Levels above all those of the model are not compared: a rigid body is compared with the slab of a building.
+    """
     for name in recording.channels:
         level, count = level_of(name), points.get(stem(name), 0)
-        if level is not None and level >= count:
+        lacking = [k for k in range(count) if f"{stem(name)}_{k}" not in recording.channels]
+        if level is not None and level >= count and lacking:
             raise InputError(
                 f"{name} of {recording.name} is of level {level}, and model {model.name} has {count} here, numbered "
-                "from 0: correct the number of the level, or that of levels in the specimen."
+                f"from 0, of which {lacking[0]} is not recorded: correct the number of the level, or that of levels "
+                "in the specimen."
             )
 
 

@@ -92,6 +92,16 @@ def test_recordings_are_compared_by_the_levels_that_all_of_them_hold() -> None:
     assert left_out([turned, roof]) == {f"level_{what}_x_0": ("roof",) for what in ("displacement", "acceleration")}
 
 
+def test_a_rigid_body_is_compared_with_the_slab_of_a_building() -> None:
+    body = replace(SPECIMEN, parameters={"levels": 1.0, "total_mass": 2.0, "rubber_thickness": 0.2})
+    whole = made(0.0, integrated=False)
+    both, alone = measure(body, [whole]), measure(body, [held(whole, 0)])
+    assert both.channels == alone.channels and all(c.endswith("_0") for c in both.channels)
+    np.testing.assert_array_equal(both.values, alone.values)
+    with pytest.raises(InputError, match=r"is of level 1, .* has 1 here, numbered from 0, of which 0 is not recorded"):
+        measure(body, [held(whole, 1)])
+
+
 def test_levels_that_the_model_or_another_recording_has_not_are_refused() -> None:
     whole = made(0.0, integrated=True)
     with pytest.raises(InputError, match=r"level_displacement_x_2 of made is of level 2, .* isolated has 2 here"):
