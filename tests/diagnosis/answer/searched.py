@@ -41,11 +41,10 @@ class Searched:
 
 
 @cache
-def searched(factor_on_housner: float | None = None, held: bool = True) -> Searched:
+def searched(factor_on_housner: float | None = None) -> Searched:
     """Two recordings of a block, whose impacts keep that share of Housner's restitution, and one that is held out."""
     effect = None if factor_on_housner is None else {"restitution": {"factor_on_housner": factor_on_housner}}
     training = [recording("train_1", 1, effect), recording("train_2", 2, effect)]
-    holdout = [recording("test_1", 3, effect)] if held else []
     given: list[tuple[Task, Search, Climbed | None]] = []
 
     def assembled(task: Task, found: Search, climbed: Climbed | None) -> Diagnosis:
@@ -54,5 +53,5 @@ def searched(factor_on_housner: float | None = None, held: bool = True) -> Searc
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(import_module("diagnosis.answer.diagnose"), "assemble", assembled)
-        answer = diagnose(SPECIMEN, training, holdout)
+        answer = diagnose(SPECIMEN, training, [recording("test_1", 3, effect)])
     return Searched(answer, *given[0])

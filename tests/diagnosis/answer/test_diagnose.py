@@ -68,6 +68,7 @@ def test_a_stopped_search_gives_what_it_has() -> None:
 
 def test_an_answer_that_recordings_held_out_contradict_is_not_in_the_library(monkeypatch: pytest.MonkeyPatch) -> None:
     """From the judgement to verdict and statement, with the effects found still told."""
+    once = searched(LOSSY)  # before anything is replaced
     judged: list[tuple[str, ...]] = []
 
     def worse(found: Search, held: Shown) -> tuple[float, float]:
@@ -76,7 +77,7 @@ def test_an_answer_that_recordings_held_out_contradict_is_not_in_the_library(mon
         return 0.04, 0.07
 
     monkeypatch.setattr(import_module("diagnosis.answer.verdict"), "contradicted", worse)
-    found = searched(LOSSY).judged_again()
+    found = once.judged_again()
     assert judged == [("restitution",)]
     assert found.verdict == "not_in_library" and found.contradicted == (0.04, 0.07)
     assert found.effects[0].name == "restitution" and "recordings held out" in found.statement
@@ -87,6 +88,7 @@ def test_windows_far_from_the_noise_and_what_could_not_be_done_are_told(
     stage: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Of a block of which nothing else is missing: the verdict, its p-value and the reason."""
+    once = searched()
 
     def refused(*_: Any) -> Any:
         raise InputError("a run cannot be cut there")
@@ -96,7 +98,7 @@ def test_windows_far_from_the_noise_and_what_could_not_be_done_are_told(
         monkeypatch.setattr(import_module("diagnosis.answer.verdict"), "unfit_windows", lambda found: far)
     else:
         monkeypatch.setattr(import_module("diagnosis.answer.assembly"), "_horizons", refused)
-    found = searched().judged_again()
+    found = once.judged_again()
     if stage == "far":
         assert found.verdict == "not_in_library" and found.p_value == LEAST_P
         assert found.missing_force is not None or "train_1, 1.0 to 1.6 s (30 times)" in found.statement
@@ -106,6 +108,7 @@ def test_windows_far_from_the_noise_and_what_could_not_be_done_are_told(
 
 
 def test_an_answer_that_needs_more_than_its_range_is_not_in_the_library(monkeypatch: pytest.MonkeyPatch) -> None:
+    once = searched(LOSSY)
     judged: list[tuple[str, ...]] = []
     needs = Beyond("restitution", "factor_on_housner", 0.5, 0.4, "1", 60.0)
 
@@ -114,7 +117,7 @@ def test_an_answer_that_needs_more_than_its_range_is_not_in_the_library(monkeypa
         return (needs,)
 
     monkeypatch.setattr(import_module("diagnosis.answer.verdict"), "beyond_ranges", more)
-    found = searched(LOSSY).judged_again()
+    found = once.judged_again()
     assert judged == [("restitution",)]
     assert found.verdict == "not_in_library" and found.beyond == (needs,)
     assert found.effects[0].name == "restitution" and "beyond the range of the library" in found.statement
