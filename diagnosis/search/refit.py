@@ -9,6 +9,7 @@ import numpy as np
 
 from diagnosis.data.measured import Measured
 from diagnosis.fit.memory import counted
+from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.solver import ITERATIONS, Fitted, fit, fit_thoroughly
 from diagnosis.fit.starts import Origin, searched
 from diagnosis.search.candidates import Candidate
@@ -191,20 +192,24 @@ def with_memory(explanation: Explanation) -> Explanation:
     """The same model refitted with the events before each window counted along its own motion, if that is better.
 
     Counts and parameters depend on each other: repeated until the loss stays, stuck windows started again. A model that
-    remembers no events, or does not under these mechanisms, predicts the same however they are counted.
+    remembers no events, or does not under these mechanisms, predicts the same however they are counted. Where whole
+    runs are compared a fit creeps along its valley, and is taken further until the loss stays all the same.
     """
     fitted = explanation.fitted
     for _ in range(RECOUNTS):
         before, predictor, point = fitted.loss, fitted.misfit.predictor, fitted.point
         recounted = replace(predictor, measured=counted(predictor, point))
-        if recounted.measured is predictor.measured:
-            break
-        if np.array_equal(recounted.predict([point]), predictor.predict([point])):
+        if predictor.measured.stretches is None and _alike(recounted, predictor, point):
             break
         fitted = fit_thoroughly(replace(fitted.misfit, predictor=recounted), fitted.u, fitted.states)
         if abs(before - fitted.loss) < 0.5:
             break
     return replace(explanation, fitted=fitted) if fitted.loss < explanation.loss else explanation
+
+
+def _alike(one: Predictor, other: Predictor, point: Point) -> bool:
+    """Whether both predict the same at a point."""
+    return one.measured is other.measured or np.array_equal(one.predict([point]), other.predict([point]))
 
 
 def gain_by_window(before: Explanation, after: Explanation) -> FloatArray:
