@@ -26,7 +26,6 @@ PROOFS = (
     "benchmarks/test_fibre_wall.py::test_both_programs_move_a_wall_alike[bouc_wen]",
     "benchmarks/test_fibre_wall.py::test_both_programs_move_a_wall_alike[hardening]",
     "benchmarks/test_fibre_wall.py::test_both_programs_move_a_wall_alike[mullins]",
-    "benchmarks/test_power.py::test_white_noise_is_seen_for_what_it_is",
     "diagnosis/answer/test_building.py::test_a_sum_of_two_hysteretic_elements_is_told_from_one",
     "diagnosis/answer/test_diagnose.py::test_ctrl_c_after_the_search_leaves_the_answer[before and after]",
     "diagnosis/answer/test_diagnose.py::test_ctrl_c_after_the_search_leaves_the_answer[bootstrap]",

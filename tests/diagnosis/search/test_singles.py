@@ -10,13 +10,15 @@ import pytest
 
 from diagnosis.errors.model import calibrated, disturbance_about, estimate
 from diagnosis.fit.setup import base_fit, measure
-from diagnosis.fit.solver import fit
+from diagnosis.fit.solver import Fitted, fit
 from diagnosis.progress import silent
+from diagnosis.search import refit
 from diagnosis.search.candidates import candidates
 from diagnosis.search.found import Search
 from diagnosis.search.refit import Explanation, extend, with_memory
 from diagnosis.search.select import in_turn, led_by, refit_singles
 from diagnosis.search.weighing import evidence, reweighed
+from tests.diagnosis import buildings
 from tests.diagnosis.made import SPECIMEN, recording
 
 AWAY = -8.0
@@ -84,6 +86,20 @@ def test_every_law_with_a_memory_counts_events_along_its_own_motion() -> None:
     lossy, worn = found.singles
     assert with_memory(worn).loss > worn.loss - 0.5
     assert with_memory(lossy) is lossy  # it remembers no impacts: nothing is fitted again
+
+
+def test_fits_of_whole_runs_are_taken_further_though_nothing_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    body = Explanation(
+        (), base_fit(buildings.SPECIMEN, measure(buildings.SPECIMEN, [buildings.made("small", 1.0, 1)]), 0)
+    )
+    taken = []
+
+    def further(*at: object) -> Fitted:
+        taken.append(at)
+        return body.fitted
+
+    monkeypatch.setattr(refit, "fit_thoroughly", further)
+    assert with_memory(body) is body and len(taken) == 1
 
 
 def test_the_strongest_of_the_screen_come_before_what_has_no_slope_there() -> None:
