@@ -85,19 +85,24 @@ def extended(
 ) -> list[Explanation]:
     """Refits with one more mechanism, ``but`` one that was tried, best first: the strongest of a screen beside it.
 
-    ``widely``: those that explain much alone too, from where they stand alone. A law that carries part of what another
-    parameter carried so far (the yielding of a spring and its stiffness) has no score there before both have moved.
+    ``widely``: those that explain much alone too, from where they stand alone, and second elements of a kind, whatever
+    their scores. A law that carries part of what another parameter carried so far (the yielding of a spring and its
+    stiffness, one element of two) has no score there before both have moved.
     """
     if explains_all(explanation) and max((s.statistic for s in scores), default=0.0) < HOPELESS:
         return []
     fits = []
-    worth = worth_a_refit(scores, FEWEST_SECOND + (but is not None), SHARE_OF_SECOND)
-    for entry in [entry for entry in one_of_each(worth) if entry.candidate != but][:SECOND_TRIES]:
+    worth = one_of_each(worth_a_refit(scores, FEWEST_SECOND + (but is not None), SHARE_OF_SECOND))
+    tried = [entry for entry in worth if entry.candidate != but][:SECOND_TRIES]
+    for entry in tried:
         if found.affordable(entry.candidate.name):
-            tried = [extend(explanation, entry.candidate, at, QUICK) for at in starts_of(entry, scores)]
+            ways = [extend(explanation, entry.candidate, at, QUICK) for at in starts_of(entry, scores)]
             if entry.candidate.mechanism.beside:
-                tried.append(split(explanation, entry.candidate))
-            fits.append(best_of(tried))
+                ways.append(split(explanation, entry.candidate))
+            fits.append(best_of(ways))
+    for element in _second_elements(scores) if widely else ():
+        if element not in (but, *(entry.candidate for entry in tried)) and found.affordable(element.name):
+            fits.append(split(explanation, element))
     for single in _strong_alone(found, explanation) if widely else ():
         if not found.affordable(*single.names):
             continue
@@ -107,6 +112,11 @@ def extended(
             found.not_tried.setdefault(single.names[0], str(refusal))
     fits.sort(key=adjusted)
     return [again(e) if k < THOROUGH else e for k, e in enumerate(fits)]
+
+
+def _second_elements(scores: Sequence[Score]) -> list[Candidate]:
+    """Of each kind that a screen holds, the one that scores highest."""
+    return list({s.candidate.name: s.candidate for s in reversed(scores) if s.candidate.mechanism.beside}.values())
 
 
 def split(explanation: Explanation, candidate: Candidate) -> Explanation:

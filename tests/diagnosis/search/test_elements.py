@@ -10,11 +10,12 @@ import pytest
 
 from diagnosis.errors.model import calibrated
 from diagnosis.fit.setup import measure
-from diagnosis.search import exchange
+from diagnosis.search import beside, exchange
 from diagnosis.search.beside import seconds, split
 from diagnosis.search.candidates import Candidate, candidates, firsts
 from diagnosis.search.found import Search
 from diagnosis.search.refit import Explanation
+from diagnosis.search.screen import Score
 from tests.diagnosis.buildings import SPECIMEN, made
 
 FIRST = {"bouc_wen.post_yield_ratio": 0.25, "bouc_wen.yield_compression": 0.008, "bouc_wen.exponent": 1.0}
@@ -60,6 +61,30 @@ def test_split_in_two_the_element_is_where_it_was_before_the_shapes_move_apart(m
     new = [x.value(c) for x, c in zip(candidate.unknowns, start, strict=True)]
     assert values["bouc_wen.post_yield_ratio"] == pytest.approx(0.625) == new[0]
     assert values["bouc_wen.yield_compression"] == pytest.approx(0.008 / 3.0) and new[1] == pytest.approx(0.024)
+
+
+@pytest.mark.parametrize(("widely", "expected"), [(True, ["bouc_wen_2"]), (False, [])])
+def test_where_more_than_noise_is_left_no_score_keeps_the_element_from_being_split(
+    widely: bool, expected: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Both share what one did: the second has no score until the first has moved."""
+    found, explained, second = beside_the_first()
+    others = [c for c in found.candidates if c.name in ("mullins", "payne", "gain")]
+    column, asked = np.zeros((1, 1)), []
+    scores = [Score(c, 900.0 - k, (c.null,), column) for k, c in enumerate(others)] + [Score(second, 0.1, (), column)]
+
+    def tried(_: Explanation, candidate: Candidate) -> Explanation:
+        asked.append(candidate.name)
+        return explained
+
+    monkeypatch.setattr(beside, "extend", lambda apart, candidate, start, _: apart)
+    monkeypatch.setattr(beside, "split", tried)
+    monkeypatch.setattr(beside, "again", lambda one: one)
+    monkeypatch.setattr(beside, "explains_all", lambda _: False)
+    assert beside.extended(found, explained, scores, widely)
+    assert asked == expected
+    beside.extended(found, explained, scores, widely, but=second)
+    assert asked == expected
 
 
 def test_the_first_stays_while_a_further_one_stands_beside_it() -> None:
