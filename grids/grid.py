@@ -93,19 +93,15 @@ class Grid:
             for name, values in axis.sets.items()
         }
 
-    def rectangles(self, most_cells: int) -> list[Rectangle]:
-        """All cells, each once, in rectangles of at most ``most_cells``, nearly equal in size."""
-        return list(self._split([np.arange(size) for size in self.shape], most_cells))
-
     def count_blocks(self, most_cells: int) -> tuple[int, int]:
-        """How many `rectangles` of at most ``most_cells`` there would be, and how many coordinates they hold in all."""
+        """How many rectangles of at most ``most_cells`` all cells make, and how many coordinates they hold in all."""
         counts = list(self.shape)
         pieces = _pieces(counts, most_cells, [axis.name in self.apart for axis in self.axes])
         blocks = math.prod(pieces)
         return blocks, blocks * sum(-(-count // n) for count, n in zip(counts, pieces, strict=True))
 
     def new_rectangles(self, done: Sequence[Rectangle], most_cells: int) -> list[Rectangle]:
-        """The cells outside ``done``, each once, in rectangles of at most ``most_cells``.
+        """The cells outside ``done``, each once, in rectangles of at most ``most_cells``, nearly equal in size.
 
         ``done``: any rectangles of this grid that share no cell. Raises InputError for others.
         """

@@ -19,14 +19,14 @@ from tests.grids.shapes import SHAPES, cover, flat_indices, make_grid
 @given(SHAPES, st.integers(1, 3000), st.sets(st.integers(0, 4)))
 def test_a_partition_holds_each_cell_once(shape: list[int], most: int, apart: set[int]) -> None:
     grid = make_grid(shape, frozenset(f"a{d}" for d in apart))
-    rectangles = grid.rectangles(most)
+    rectangles = grid.new_rectangles([], most)
     assert np.all(cover(grid, rectangles) == 1)
     assert max(r.size for r in rectangles) <= most
 
 
 @given(st.integers(100, 100_000), st.integers(100, 100_000))
 def test_rectangles_of_one_axis_are_balanced(cells: int, most: int) -> None:
-    sizes = [r.size for r in make_grid([cells]).rectangles(most)]
+    sizes = [r.size for r in make_grid([cells]).new_rectangles([], most)]
     assert max(sizes) - min(sizes) <= 1
     assert len(sizes) == -(-cells // most)
 
@@ -40,7 +40,7 @@ def test_an_extension_holds_the_new_cells_once(shape: list[int], data: st.DataOb
         axes.append(Axis(axis.name, axis.values[kept], "1", ""))
     old = Grid(tuple(axes))
     most = data.draw(st.integers(1, 500))
-    done = [Rectangle.from_json(json.loads(json.dumps(r.as_json()))) for r in old.rectangles(most)]
+    done = [Rectangle.from_json(json.loads(json.dumps(r.as_json()))) for r in old.new_rectangles([], most)]
     new = grid.new_rectangles(done, data.draw(st.integers(1, 500)))
     assert np.all(cover(grid, [*done, *new]) == 1)
 
@@ -59,13 +59,13 @@ def test_a_study_extended_again_and_again(steps: list[list[int]]) -> None:
 @given(SHAPES, st.integers(1, 40), st.integers(1, 500), st.randoms(use_true_random=False))
 def test_any_blocks_that_are_left_are_completed(shape: list[int], most: int, again: int, random: random.Random) -> None:
     grid = make_grid(shape)
-    done = [r for r in grid.rectangles(most) if random.random() < 0.5]
+    done = [r for r in grid.new_rectangles([], most) if random.random() < 0.5]
     assert np.all(cover(grid, [*done, *grid.new_rectangles(done, again)]) == 1)
 
 
 def test_an_extension_takes_cells_together() -> None:
     """A finished grid cut in many blocks leaves one rectangle for each axis that grew, not one a block."""
-    old = make_grid([4, 5, 6]).rectangles(7)
+    old = make_grid([4, 5, 6]).new_rectangles([], 7)
     assert len(make_grid([6, 5, 9]).new_rectangles(old, 1000)) == 2
 
 
@@ -87,19 +87,19 @@ def test_cases_set_several_names_and_keep_their_rectangle() -> None:
     grid = Grid((case, Axis("pga", np.array([1.0, 2.0, 3.0]), "m s-2", "")))
     assert grid.coordinates([4]).keys() == {"width", "mass", "pga"}
     assert grid.coordinates([4])["mass"] == 2.0
-    second = grid.rectangles(3)[1]
+    second = grid.new_rectangles([], 3)[1]
     assert second.coordinates["case"] == ("B",)
     assert grid.points(second) == {"width": [0.3], "mass": [2.0], "pga": [1.0, 2.0, 3.0]}
 
 
 def test_what_cannot_be_computed_together_lies_in_rectangles_apart() -> None:
     grid = make_grid([40, 3, 50], frozenset({"a1"}))
-    assert all(len(r.coordinates["a1"]) == 1 for r in grid.rectangles(2000))
+    assert all(len(r.coordinates["a1"]) == 1 for r in grid.new_rectangles([], 2000))
 
 
 def test_no_axes_is_one_cell() -> None:
     grid = Grid(())
-    (only,) = grid.rectangles(10)
+    (only,) = grid.new_rectangles([], 10)
     assert grid.size == only.size == 1
     assert flat_indices(grid, only).tolist() == [0]
 

@@ -21,7 +21,7 @@ from tests.study.plans import small_plan
 @given(SHAPES, st.integers(1, 300))
 def test_blocks_are_counted_without_being_made(shape: list[int], most: int) -> None:
     grid = make_grid(shape)
-    rectangles = grid.rectangles(most)
+    rectangles = grid.new_rectangles([], most)
     blocks, coordinates = grid.count_blocks(most)
     assert blocks == len(rectangles)
     assert coordinates >= sum(len(values) for r in rectangles for values in r.coordinates.values())

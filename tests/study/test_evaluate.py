@@ -84,7 +84,7 @@ def test_every_kind_of_axis_reaches_the_cube(plan: Plan, tmp_path: Path) -> None
 
 def test_keys_tell_what_matters_and_nothing_else() -> None:
     plan = small_plan()
-    (block,) = plan.grid.rectangles(10**6)
+    (block,) = plan.grid.new_rectangles([], 10**6)
     key = block_key(plan, Setting.of(plan), block)
     longer = small_plan(name="other", pga="linspace = [0.1, 1.0, 10], unit = 'g'")
     assert block_key(longer, Setting.of(longer), block) == key
