@@ -40,6 +40,19 @@ def gather(recordings: Sequence[Recording], windows: Sequence[Window], channels:
     return {"values": values, "mask": mask, "sigma": sigma, "base": base}
 
 
+def refuse_moved(recordings: Sequence[Recording]) -> None:
+    """Raise InputError where channels of one name are read at different places: one place is taken for all."""
+    first: dict[str, Recording] = {}
+    for recording in recordings:
+        for name, place in recording.places.items():
+            known = first.setdefault(name, recording)
+            if known.places[name] != place:
+                raise InputError(
+                    f"{name} is the {known.places[name].meaning}, in {known.name}, and the {place.meaning}, in "
+                    f"{recording.name}: give it another name in one of them."
+                )
+
+
 def refuse_dead(recordings: Sequence[Recording], channels: Sequence[str]) -> None:
     """Raise InputError where a channel reads the same throughout."""
     for recording in recordings:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import models
+from diagnosis.data.gathered import refuse_moved
 from diagnosis.data.measured import Measured, arrange, identification_of
 from diagnosis.data.pose import with_rotations
 from diagnosis.data.stretches import arrange_stretches
@@ -40,6 +41,7 @@ def measure(specimen: Specimen, recordings: Sequence[Recording], reference_peak:
     """
     if not recordings:
         raise InputError("no recording to learn from: name at least one.")
+    refuse_moved(recordings)
     model = models.get(specimen.model)
     declared = identification_of(model)
     values = {u.name: u.start for u in of_specimen(specimen, model)} | fixed_values(specimen)

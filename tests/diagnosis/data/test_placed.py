@@ -106,6 +106,19 @@ def test_a_channel_on_a_body_that_the_model_lacks_is_refused() -> None:
         measure(UNKNOWN, [other])
 
 
+def test_a_gauge_that_was_moved_under_its_name_is_refused_and_not_read_where_it_was() -> None:
+    before, after = recorded(("rotation_1", "string")), recorded(("rotation_1",))
+    low = replace(PLACES["string"], z=0.9)
+    channels = {**after.channels, "string": 0.6 * before.channels["string"]}
+    after = replace(after, name="after", channels=channels, places={"string": low})
+    said = r"string is the .* at \(0, 1\.5\) m.*, in run, and .* at \(0, 0\.9\) m.*, in after"
+    with pytest.raises(InputError, match=said):
+        measure(UNKNOWN, [before, after])
+    lower = {"string_low" if name == "string" else name: x for name, x in after.channels.items()}
+    apart = replace(after, channels=lower, places={"string_low": low})
+    assert measure(UNKNOWN, [before, apart]).channels == ("rotation_1",)
+
+
 def test_what_a_channel_adds_is_the_width_of_the_intervals_without_it(by_gauges: Calibration) -> None:
     added = by_gauges.channels
     assert set(added) == {"lvdt_left", "lvdt_right", "top"}
