@@ -55,7 +55,7 @@ def own_error(measured: Measured, scale: float) -> FloatArray:
 def _correlation(measured: Measured, recording: int, channel: int, scale: float, count: int) -> FloatArray:
     """Of the function at lags of 0 to ``count`` - 1 means."""
     if scale != AS_MOTION:
-        return np.asarray(np.exp(-0.5 * (measured.recordings[0].time_step * np.arange(count) / scale) ** 2))
+        return np.asarray(np.exp(-0.5 * (measured.recordings[recording].time_step * np.arange(count) / scale) ** 2))
     x = measured.recordings[recording].channels[measured.channels[channel]]
     spectrum = np.abs(np.fft.rfft(x, 2 * x.size)) ** 2  # padded, so that what wraps around is zero
     found = np.fft.irfft(spectrum)[: min(count, x.size)]

@@ -138,6 +138,18 @@ def test_a_model_s_own_error_goes_with_the_recording_and_is_shared_by_its_levels
     assert correlation == pytest.approx(1.0, abs=1e-9)
 
 
+def test_a_model_s_own_error_lasts_as_long_in_a_recording_of_other_samples() -> None:
+    m = measure(SPECIMEN, [made(0.0, integrated=False), replace(made(0.0, integrated=False, seed=2), name="other")])
+    first, second = m.recordings
+    m = replace(m, recordings=(first, replace(second, time_step=2.0 * first.time_step)))
+    columns = own_error(m, 0.3)
+    for r, recording in enumerate(m.recordings):
+        one = columns[np.flatnonzero(m.recording_of == r)[1], 0]
+        covariance = one @ one.T
+        expected = np.exp(-0.5 * (5.0 * recording.time_step / 0.3) ** 2)
+        assert np.mean(np.diagonal(covariance, 5)) / covariance[0, 0] == pytest.approx(expected, rel=0.01)
+
+
 def test_a_model_s_own_error_is_correlated_as_the_motion_is() -> None:
     m = measure(SPECIMEN, [made(0.0, integrated=False)])
     w, c = 1, m.channels.index("level_displacement_x_0")
