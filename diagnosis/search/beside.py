@@ -55,17 +55,20 @@ def _heavy(entry: Score, scores: Sequence[Score]) -> bool:
 
 
 def seconds(found: Search, explanation: Explanation) -> list[Score]:
-    """The screen of mechanisms of other classes beside those of an explanation, and of further elements of a kind."""
-    others = [c for c in found.candidates if may_join(c, explanation)]
-    return score(linearise_about(explanation.fitted), others, found.not_tried)
+    """The screen of what may stand beside the effects of an explanation."""
+    return score(linearise_about(explanation.fitted), joinable(found, explanation), found.not_tried)
 
 
-def may_join(candidate: Candidate, explanation: Explanation) -> bool:
-    """Whether it is of another class than the effects of an explanation, or a further element of one of them."""
-    first = candidate.mechanism.beside
-    if first:
-        return first in explanation.names and candidate.name not in explanation.names
-    return candidate.effect_class not in explanation.classes
+def joinable(found: Search, explanation: Explanation) -> list[Candidate]:
+    """The candidates of other classes than the effects of an explanation, and further elements of one of them."""
+
+    def joins(candidate: Candidate) -> bool:
+        first = candidate.mechanism.beside
+        if first:
+            return first in explanation.names and candidate.name not in explanation.names
+        return candidate.effect_class not in explanation.classes
+
+    return [candidate for candidate in found.candidates if joins(candidate)]
 
 
 def one_of_each(scores: Sequence[Score]) -> list[Score]:

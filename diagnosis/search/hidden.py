@@ -19,7 +19,7 @@ from diagnosis.search.beside import (
     FEWEST_SECOND,
     HOPELESS,
     SHARE_OF_SECOND,
-    may_join,
+    joinable,
     one_of_each,
     starts_of,
     worth_a_refit,
@@ -54,10 +54,9 @@ def hidden_beside(found: Search, best: Explanation, fits: Sequence[Explanation])
     """
     if left_over_white_noise(best, found.errors) < ADEQUATE:
         return []
-    others = [c for c in found.candidates if may_join(c, best)]
     if not found.affordable("what the errors hold beside what was found"):
         return []
-    _, white = against_white_noise(found, best, others)
+    _, white = against_white_noise(found, best, joinable(found, best))
     hopeful = [entry for entry in white if entry.statistic > HOPELESS]
     more = []
     for entry in hidden_by_errors(hopeful, {e.candidates[-1] for e in fits}, FEWEST_SECOND, SHARE_OF_SECOND):
