@@ -101,9 +101,10 @@ class Grid:
         return blocks, blocks * sum(-(-count // n) for count, n in zip(counts, pieces, strict=True))
 
     def new_rectangles(self, done: Sequence[Rectangle], most_cells: int) -> list[Rectangle]:
-        """The cells outside ``done``, each once, in rectangles of at most ``most_cells``, nearly equal in size.
+        """The cells outside ``done``, each once, in rectangles of at most ``most_cells``.
 
-        ``done``: any rectangles of this grid that share no cell. Raises InputError for others.
+        ``done``: any rectangles of this grid that share no cell; where there are none those found are nearly equal in
+        size. Raises InputError for others.
         """
         covered: list[tuple[IndexArray, ...]] = []
         for rectangle in done:
