@@ -11,8 +11,11 @@ from models.base import FloatArray
 from models.errors import InputError
 from models.lanes.arrays import Record
 from models.lanes.chunks import extremes
+from models.pitch import pitch
 from models.shaking import Shaking
 
+LONGEST_KEPT = 50_000
+"""Steps of a record, 2 MB, up to which it is kept for the next call."""
 MOST_STEPS = 20_000_000
 """Of one run: a day at 5 ms; a motion of that length takes a GB."""
 
@@ -38,6 +41,16 @@ def recorded(shaking: Shaking, per_sample: int, tail: float, more: Sequence[Floa
         if channel is not None:
             samples[row, : shaken + 1] = np.interp(fine, np.arange(channel.size), channel)
     return Record(samples, extremes(samples[:-1]), step, shaken, end)
+
+
+def pitched(shaking: Shaking, per_sample: int, tail: float, low_pass: float) -> Record:
+    """The same with psi and psi'' of a table that follows the shaking up to ``low_pass`` Hz (0: it does not pitch)."""
+
+    def make() -> Record:
+        return recorded(shaking, per_sample, tail, pitch(shaking, low_pass) if low_pass > 0.0 else (None, None))
+
+    short = per_sample * shaking.horizontal.size < LONGEST_KEPT
+    return shaking.once((__name__, per_sample, tail, low_pass), make) if short else make()
 
 
 def of_lanes(

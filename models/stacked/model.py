@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from models.base import FloatArray, Values
 from models.model import Model
+from models.observed import Observed
 from models.runs import Request, Run
 from models.stacked import declaration
 from models.stacked.identification import IDENTIFICATION
@@ -98,7 +99,7 @@ class Stacked(Model[Stack]):
 
         return run(coefficients, request)
 
-    def observe(self, coefficients: Stack, samples: FloatArray) -> dict[str, FloatArray]:
+    def observe(self, coefficients: Stack, samples: FloatArray) -> Observed:
         return observe(coefficients, samples)
 
     def poses(self, coefficients: Stack, samples: FloatArray) -> Mapping[str, FloatArray]:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache
 from typing import Any
 
 import numpy as np
 
 from models.base import FloatArray
+from models.observed import Observed
 from models.stacked.account import OVERTURNED_1, OVERTURNED_2
 from models.stacked.equation import vectors
 from models.stacked.stack import Stack
@@ -45,21 +47,27 @@ def settled_history(trace: FloatArray, table: FloatArray) -> FloatArray:
     return trace
 
 
-def observe(stack: Stack, trace: FloatArray) -> dict[str, FloatArray]:
+def observe(stack: Stack, trace: FloatArray) -> Observed:
     """The observables ``(n, samples)`` of states ``(n, samples, 4)``: theta_1, r and their rates."""
-    lanes = {name: np.asarray(value)[:, None] for name, value in vars(stack).items()}
-    wide = Stack(**lanes)
+    wide = stack.take((slice(None), None))
     q1, q2, w1, w2 = np.moveaxis(trace, -1, 0)
-    s1, s2 = np.where(q1 >= 0.0, 1.0, -1.0), np.where(q2 >= 0.0, 1.0, -1.0)
-    v = vectors(wide, s1, s2, (q1, q2), False)
-    pivot = s1 * wide.base_pivot
-    return {
-        "rotation_1": q1,
-        "rotation_2": q1 + q2,
-        "rotation_rate_1": w1,
-        "rotation_rate_2": w1 + w2,
-        "displacement_1_x": pivot + v.ax - wide.shift_1,
-        "displacement_2_x": pivot + v.dx - wide.shift_2,
-        "contact_1": ((q1 == 0.0) & (w1 == 0.0)).astype(float),
-        "contact_2": ((q2 == 0.0) & (w2 == 0.0)).astype(float),
-    }
+
+    @cache
+    def displacements() -> tuple[FloatArray, FloatArray]:
+        s1, s2 = np.where(q1 >= 0.0, 1.0, -1.0), np.where(q2 >= 0.0, 1.0, -1.0)
+        v = vectors(wide, s1, s2, (q1, q2), False)
+        pivot = s1 * wide.base_pivot
+        return pivot + v.ax - wide.shift_1, pivot + v.dx - wide.shift_2
+
+    return Observed(
+        {
+            "rotation_1": lambda: q1,
+            "rotation_2": lambda: q1 + q2,
+            "rotation_rate_1": lambda: w1,
+            "rotation_rate_2": lambda: w1 + w2,
+            "displacement_1_x": lambda: displacements()[0],
+            "displacement_2_x": lambda: displacements()[1],
+            "contact_1": lambda: ((q1 == 0.0) & (w1 == 0.0)).astype(float),
+            "contact_2": lambda: ((q2 == 0.0) & (w2 == 0.0)).astype(float),
+        }
+    )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -73,37 +74,37 @@ class Stack:
         floats: dict[str, Any] = {f.name: float(getattr(self, f.name)[lane]) for f in fields(self)}
         return replace(self, **floats)
 
-    @property
+    @cached_property
     def mass(self) -> FloatArray:
         """M = m1 + m2 in kg."""
         return self.mass_1 + self.mass_2
 
-    @property
+    @cached_property
     def centre(self) -> FloatArray:
         """Height in m of the mass centre of both as one body."""
         return (self.mass_1 * self.centre_1 + self.mass_2 * (self.height_1 + self.centre_2)) / self.mass
 
-    @property
+    @cached_property
     def shift(self) -> FloatArray:
         """The mass centre of both as one body, in m to the right of the middle."""
         return (self.mass_1 * self.shift_1 + self.mass_2 * self.shift_2) / self.mass
 
-    @property
+    @cached_property
     def half_width(self) -> FloatArray:
         """b in m of both as one body: from its mass centre to the nearer pivot of the base."""
         return self.base_pivot - np.abs(self.shift)
 
-    @property
+    @cached_property
     def half_width_2(self) -> FloatArray:
         """b in m of block 2: from its mass centre to the nearer pivot of the top joint."""
         return self.top_pivot - np.abs(self.shift_2)
 
-    @property
+    @cached_property
     def slenderness(self) -> FloatArray:
         """alpha = atan(b/h) in rad of both as one body."""
         return np.arctan2(self.half_width, self.centre)
 
-    @property
+    @cached_property
     def slenderness_2(self) -> FloatArray:
         """alpha in rad of block 2 on a base of its own."""
         return np.arctan2(self.half_width_2, self.centre_2)
@@ -129,21 +130,21 @@ class Stack:
             + self.mass_2 * ((self.height_1 + self.centre_2) ** 2 + arm_2**2)
         )
 
-    @property
+    @cached_property
     def frequency_parameter(self) -> FloatArray:
         """p = sqrt(M g R / I_O) in s-1 of both as one body, about the nearer pivot."""
         side = np.where(self.shift >= 0.0, 1.0, -1.0)
         radius = np.hypot(self.half_width, self.centre)
         return np.asarray(np.sqrt(self.mass * self.gravity * radius / self.corner_inertia(side)))
 
-    @property
+    @cached_property
     def frequency_parameter_2(self) -> FloatArray:
         """p in s-1 of block 2 on a base of its own."""
         radius = np.hypot(self.half_width_2, self.centre_2)
         corner = self.inertia_2 + self.mass_2 * radius**2
         return np.asarray(np.sqrt(self.mass_2 * self.gravity * radius / corner))
 
-    @property
+    @cached_property
     def momentum_restitution(self) -> FloatArray:
         """e of both as one body, the smaller of both directions; 1 - 2 M b^2/I_O without eccentricity."""
         far = np.maximum(self.corner_inertia(1.0), self.corner_inertia(-1.0))

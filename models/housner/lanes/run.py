@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -16,19 +15,15 @@ from models.housner.declaration import REST_VELOCITY
 from models.housner.lanes import rows as r
 from models.housner.lanes.advance import advance
 from models.housner.lanes.table import KNOTS
-from models.lanes.arrays import Record
-from models.lanes.record import recorded
+from models.lanes.record import pitched
 from models.lanes.tables import empty, filled, groups, logged, put
 from models.oscillator import felt
-from models.pitch import pitch
 from models.runs import Request, Run
 
 EVENTS = ("onset", "impact", "rest", "overturned")
 LARGEST_PHASE = 0.0075
 """Largest p h of a step (rad); the error of the rule falls with its fourth power."""
 JOINT_PHASE = 0.2
-LONGEST_KEPT = 50_000
-"""Steps of a record, 2 MB, up to which it is kept for the next call."""
 MODAL_PHASE = 0.15
 """Largest phase (rad) of a bending wall's mode in a step, at its frequency while the wall rocks."""
 
@@ -116,19 +111,17 @@ def run(block: Block, request: Request, refinement: int = 1) -> Run:
     """
     shaking = request.shaking
     found, steps = empty(request, r.N_RESULT, 3), 0
-    pitched = np.where(block.pitch_per_acceleration != 0.0, block.pitch_low_pass, 0.0)
+    low_pass = np.where(block.pitch_per_acceleration != 0.0, block.pitch_low_pass, 0.0)
     gains = block.oscillator_motion, block.oscillator_force
     drives = (gains[0] != 0.0) | (gains[1] != 0.0)
     driven = [np.where(drives, x, 0.0) for x in (*gains, block.oscillator_frequency, block.oscillator_damping)]
     steps_of = substeps(block, shaking.time_step) * refinement
-    for (per_sample, corner, *oscillator), lanes in groups(steps_of, pitched, *driven):
+    for (per_sample, corner, *oscillator), lanes in groups(steps_of, low_pass, *driven):
         whole = lanes.size == block.size
         part, asked = (block, request) if whole else (block.take(lanes), request.take(lanes))
         shaking = felt(request.shaking, *oscillator)
         asked = replace(asked, shaking=shaking)
-        make = partial(_record, asked, per_sample, corner)
-        short = per_sample * shaking.horizontal.size < LONGEST_KEPT
-        record = shaking.once((__name__, per_sample, request.tail, corner), make) if short else make()
+        record = pitched(shaking, per_sample, request.tail, corner)
         first, last = asked.steps(per_sample, record.end)
         tables = found if whole else empty(asked, r.N_RESULT, 3)
         general = None if part.plain else 1 if np.any(part.tabulated) else True
@@ -141,13 +134,6 @@ def run(block: Block, request: Request, refinement: int = 1) -> Run:
         if not whole:
             put(found, lanes, tables)
     return Run(outputs(block, found.result), found.trace, logged(found, EVENTS), steps)
-
-
-def _record(request: Request, per_sample: int, corner: float) -> Record:
-    """The shaking as the kernel reads it, with the pitch of a table that follows it up to ``corner`` Hz."""
-    shaking = request.shaking
-    psi = pitch(shaking, corner) if corner > 0.0 else (None, None)
-    return recorded(shaking, per_sample, request.tail, psi)
 
 
 def outputs(block: Block, result: NDArray[np.float64]) -> dict[str, NDArray[Any]]:

@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.base import FloatArray
-from models.lanes.record import recorded
+from models.lanes.record import pitched
 from models.lanes.tables import empty, filled, groups, logged, put
-from models.pitch import pitch
 from models.runs import Request, Run
 from models.stacked.account import N_ACCOUNT, outputs
 from models.stacked.declaration import REST_VELOCITY
@@ -101,19 +100,23 @@ def run(stack: Stack, request: Request, refinement: int = 1) -> Run:
     """
     found, steps = empty(request, r.N_RESULT, 4), 0
     shaking = request.shaking
-    pitched = np.where(stack.pitch_per_acceleration != 0.0, stack.pitch_low_pass, 0.0)
-    general = (pitched > 0.0) | (stack.coulomb > 0.0)
-    for (per_sample, corner, more), lanes in groups(substeps(stack, shaking.time_step) * refinement, pitched, general):
-        part, asked = stack.take(lanes), request.take(lanes)
-        psi = pitch(shaking, corner) if corner > 0.0 else (None, None)
-        record = recorded(shaking, per_sample, request.tail, psi)
+    low_pass = np.where(stack.pitch_per_acceleration != 0.0, stack.pitch_low_pass, 0.0)
+    general = (low_pass > 0.0) | (stack.coulomb > 0.0)
+    for (per_sample, corner, more), lanes in groups(substeps(stack, shaking.time_step) * refinement, low_pass, general):
+        whole = lanes.size == stack.size
+        part, asked = (stack, request) if whole else (stack.take(lanes), request.take(lanes))
+        record = pitched(shaking, per_sample, request.tail, corner)
         first, last = asked.steps(per_sample, record.end)
-        tables = empty(asked, r.N_RESULT, 4)
+        tables = found if whole else empty(asked, r.N_RESULT, 4)
         steps += advance(
             record, first, last, given_table(part, asked.scale, initial_state(asked.initial, part.size)), tables,
             per_sample if asked.history else 0, asked.history, True if request.linear else None,
             True if more else None,
         )  # fmt: skip
-        put(found, lanes, tables)
+        if not whole:
+            put(found, lanes, tables)
     account = found.result[:, :N_ACCOUNT]
-    return Run(outputs(stack, account), settled_history(found.trace, account), logged(found, EVENTS), steps)
+    samples = settled_history(found.trace, account)
+    if request.bare:
+        return Run({}, samples, ((),) * stack.size, steps)
+    return Run(outputs(stack, account), samples, logged(found, EVENTS), steps)
