@@ -53,8 +53,8 @@ def _imports(source: bytes) -> tuple[str, ...]:
 
 
 def source_hash(module: str, root: Path = _ROOT) -> str:
-    """Of every source that a kernel in ``module`` is compiled from, and of the compiler."""
-    digest = hashlib.sha256(numba.__version__.encode())
+    """Of every source that a kernel in ``module`` is compiled from, of the compiler and of how much it optimises."""
+    digest = hashlib.sha256(f"{numba.__version__} {int(numba.config.OPT)}".encode())
     for path in sources(module, root):
         digest.update(path.relative_to(root).as_posix().encode())
         digest.update(path.read_bytes())

@@ -5,6 +5,7 @@ import shutil
 from functools import lru_cache
 from pathlib import Path
 
+import numba
 import numpy as np
 import pytest
 
@@ -45,6 +46,15 @@ def test_a_change_of_any_source_of_a_kernel_is_another_hash(
         path.write_bytes(kept + b"\n# changed\n")
         assert compiler.source_hash(module, copied) != before, path.name
         path.write_bytes(kept)
+
+
+def test_kernels_optimised_more_or_less_are_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    """`make test` compiles at a lower level: a study must not meet these."""
+    found = set()
+    for level in (1, 3):
+        monkeypatch.setattr(numba.config, "OPT", level)
+        found.add(compiler.source_hash(KERNELS[0]))
+    assert len(found) == 2
 
 
 def test_what_no_kernel_is_made_of_changes_nothing(copied: Path) -> None:
