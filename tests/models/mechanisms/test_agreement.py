@@ -97,7 +97,7 @@ def test_the_onset_under_a_table_that_bends_within_the_step_is_that_of_the_refer
     def values() -> dict[str, float]:
         return {**WALL, **dotted("table_force", {"reach_base": (KNOTS - 1) * bend, **law})}
 
-    for _ in range(20):  # the row goes to just below the acceleration at which the block lifts
+    for _ in range(8):  # the row goes to just below the acceleration at which the block lifts
         onset = by_reference(values(), shaking, {}).outputs["onset_time"]
         bend = 0.998 * abs(float(np.interp(onset, shaking.time, shaking.horizontal)))
     slow = by_reference(values(), shaking, {}).outputs["onset_time"]
