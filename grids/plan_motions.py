@@ -96,6 +96,11 @@ def _distinct(motions: list[Motion]) -> tuple[Motion, ...]:
     for index, motion in enumerate(motions):
         if any(motion.name == other.name for other in motions[:index]):
             raise InputError(f"two motions are called '{motion.name}'; leave one out or rename its file.")
+        for other in motions[:index]:
+            if motion.fingerprint == other.fingerprint:  # statistics would take them for two records
+                raise InputError(
+                    f"'{other.name}' and '{motion.name}' are the same motion, sample for sample; leave one out."
+                )
     return tuple(motions)
 
 

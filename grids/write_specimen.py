@@ -7,16 +7,16 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from grids.law_table import LAW_FILE
+from grids.law_table import LAW_FILE, law_text
 from grids.recordings.placed import attributes
 from grids.specimen import Specimen
 from models.mechanisms import acting_on
 
 
-def specimen_text(specimen: Specimen) -> str:
+def specimen_text(specimen: Specimen, law_file: str = LAW_FILE) -> str:
     """The TOML that `grids.specimen.read_specimen` reads back equal: SI units, floats with all their digits.
 
-    A law in a table is named by its file, `grids.law_table.LAW_FILE`, which is written beside it.
+    A law in a table (`law_beside`) is named by its file, ``law_file``, which is to be written beside it.
     """
     head = {"title": specimen.title, "model": specimen.model}
     tables: dict[str, Mapping[str, Any]] = {
@@ -30,16 +30,24 @@ def specimen_text(specimen: Specimen) -> str:
     }
     parts = [_lines(head)]
     parts += [f"[{name}]\n{_lines(table)}" for name, table in tables.items() if table or name == "parameters"]
-    parts += [f"[channels.{name}]\n{_lines(attributes(place))}" for name, place in specimen.places.items()]
+    parts += [f"[channels.{_key(name)}]\n{_lines(attributes(place))}" for name, place in specimen.places.items()]
     for name, values in specimen.mechanisms.items():
         known = acting_on(specimen.model).get(name)
         named: Mapping[str, Any] = values
         if known is not None and known.tabulated is not None:
             beside = {key: values[key] for key in known.tabulated.oscillator if key in values}
-            named = {"file": LAW_FILE} | (beside if any(beside[key] for key in known.tabulated.oscillator[:2]) else {})
+            named = {"file": law_file} | (beside if any(beside[key] for key in known.tabulated.oscillator[:2]) else {})
         parts.append(f"[mechanisms.{name}]\n{_lines(named)}")
         parts += [f"[[mechanisms.{name}.stages]]\n{_lines(vars(one))}" for one in specimen.stages.get(name, ())]
     return "\n".join(parts)
+
+
+def law_beside(specimen: Specimen) -> str | None:
+    """The law in a table that `specimen_text` names, as the text of its file; None without one."""
+    for name, mechanism in acting_on(specimen.model).items():
+        if name in specimen.mechanisms and mechanism.tabulated is not None:
+            return law_text(specimen.mechanisms[name], mechanism.tabulated)
+    return None
 
 
 def _lines(table: Mapping[str, Any]) -> str:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -81,9 +82,13 @@ class Refined:
 def cells_of_a_block(folder: Path, measured: Callable[[], int]) -> int:
     """The size of blocks, fixed at the first start so that a run that goes on asks for the same blocks."""
     path = folder / "refinement.json"
-    if not path.exists():
-        write_text(path, json.dumps({"cells_per_block": measured()}) + "\n")
-    return int(json.loads(path.read_text("utf-8"))["cells_per_block"])
+    with suppress(OSError, ValueError, KeyError, TypeError):  # missing, or damaged: other sizes only compute anew
+        kept = int(json.loads(path.read_text("utf-8"))["cells_per_block"])
+        if kept > 0:
+            return kept
+    size = measured()
+    write_text(path, json.dumps({"cells_per_block": size}) + "\n")
+    return size
 
 
 def refine(

@@ -103,6 +103,9 @@ def position(cube: xr.Dataset, name: str, value: Any, nearest: bool = False) -> 
             raise InputError(f"axis '{name}' has no '{value}': {closest(str(value), words)}")
         return words.index(str(value))
     wanted = _number(axis, name, value)
+    same = np.flatnonzero(axis.values == wanted)
+    if same.size:  # inf too, from which nothing has a distance
+        return int(same[0])
     index = int(np.argmin(np.abs(axis.values - wanted)))
     if not nearest and abs(axis.values[index] - wanted) > SAME * abs(wanted):
         raise InputError(f"{name} = {value_shown(axis, wanted)} is not on the grid: {_neighbours(axis, wanted)}")

@@ -41,12 +41,11 @@ def acts(measured: Measured, action: Action) -> tuple[Located, ...]:
     whole, event = size.sum(axis=1), action.event if action.kind == "force" else None
     at_events = event is not None and share_at_events(whole, event) >= MOSTLY
     words = phases(measured, whole, action.motion, event)
-    unit = _unit(measured, action, at_events)
     found = []
     for r, recording in enumerate(measured.recordings):
         own = np.flatnonzero(measured.recording_of == r)
         for c, channel in enumerate(measured.channels):
-            level = LEAST * float(size[:, c].max())
+            level, unit = LEAST * float(size[:, c].max()), _unit(measured, action, channel, at_events)
             if not own.size or float(size[own, c].max()) <= 0.0:
                 continue
             line, compared, happens = (
@@ -114,11 +113,9 @@ def visited(measured: Measured, action: Action) -> Visited:
     step = measured.time_steps[:, None]
     at, over, at_unit = action.motion.coordinate, lead.replace("_", " "), unit
     if action.kind == "error":
-        what, value, of_value = (
-            f"error of {lead.replace('_', ' ')}",
-            action.amount[:, measured.lead],
-            unit,
-        )
+        compared = measured.channels[measured.lead]
+        what, value = f"error of {compared.replace('_', ' ')}", action.amount[:, measured.lead]
+        of_value = measured.unit_of(compared)
     elif share_at_events(size, action.event) >= MOSTLY:
         inside &= action.event
         without = np.roll(rate, -1, axis=1) - amount
@@ -142,9 +139,12 @@ def _relative(measured: Measured, action: Action) -> FloatArray:
     return np.where(measured.mask, size, 0.0)
 
 
-def _unit(measured: Measured, action: Action, at_events: bool) -> str:
+def _unit(measured: Measured, action: Action, channel: str, at_events: bool) -> str:
+    """Of an error as its channel has it, of a force or an impulse over the inertia of the coordinate it turns."""
+    if action.kind == "error":
+        return measured.unit_of(channel)
     unit = measured.unit_of(measured.identification.leads[0].channel)
-    return unit if action.kind == "error" else f"{unit} s-1" if at_events else f"{unit} s-2"
+    return f"{unit} s-1" if at_events else f"{unit} s-2"
 
 
 def _along(measured: Measured, own: NDArray[np.intp], samples: int, values: FloatArray) -> FloatArray:

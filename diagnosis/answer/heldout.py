@@ -161,7 +161,7 @@ def _over_noise(m: Measured, predicted: FloatArray, own: NDArray[np.intp], c: in
 
 
 def traces_of(shown: Shown, held_out: bool) -> list[Trace]:
-    """Measured and predicted channels over time, nan outside windows."""
+    """Measured and predicted channels over time, nan where nothing is compared."""
     m = shown.measured
     found = []
     for r, recording in enumerate(m.recordings):
@@ -172,7 +172,8 @@ def traces_of(shown: Shown, held_out: bool) -> list[Trace]:
                 trace = np.full(recording.time.size, np.nan)
                 for w in own:
                     window = m.windows[w]
-                    trace[window.first : window.first + window.samples] = predicted[w, c, : window.samples]
+                    here = np.where(m.mask[w, c], predicted[w, c], np.nan)[: window.samples]
+                    trace[window.first : window.first + window.samples] = here
                 pair.append(trace)
             found.append(
                 Trace(recording.name, channel, m.unit_of(channel), held_out, recording.time,
@@ -182,7 +183,7 @@ def traces_of(shown: Shown, held_out: bool) -> list[Trace]:
 
 
 def horizons(shown: Shown, before: Predictor, after: Predictor) -> dict[str, tuple[float, float]]:
-    """By recording: median seconds from a window's start until a prediction leaves the noise.
+    """By recording: median seconds from a window's start until a prediction leaves the noise; inf where it does not.
 
     ``before``, ``after``: what predicts the recordings learned from."""
     from scipy.ndimage import uniform_filter1d
@@ -195,9 +196,8 @@ def horizons(shown: Shown, before: Predictor, after: Predictor) -> dict[str, tup
         rest = np.where(longer.mask, predicted - longer.values, 0.0) / longer.sigma[..., None]
         smooth = uniform_filter1d(rest, AVERAGED, axis=-1)
         out = np.any(np.abs(smooth) > LEAVES, axis=1)
-        end = longer.mask.any(axis=1).sum(axis=1)
-        first = np.where(np.any(out, axis=1), np.argmax(out, axis=1), end)
-        times.append(first)
+        # the end of a recording is no end of the agreement
+        times.append(np.where(np.any(out, axis=1), np.argmax(out, axis=1), np.inf))
     found = {}
     for r, recording in enumerate(m.recordings):
         own = m.recording_of == r

@@ -96,17 +96,21 @@ def p_of_missing(
 ) -> float | None:
     """p-value of "something is missing"; None if a search was stopped early.
 
-    Of the strongest effect, else of the strongest suspect; of the model's own large error, of what is not the same
-    everywhere, or of ``unfit`` windows, if less.
+    Of the strongest effect, else of the strongest suspect, or that of `p_of_doubts`, if less.
     """
-    least = [max(left.p_value, LEAST_P)] if left.large else []
-    least += [LEAST_P] if unfit else []
-    least += [p_value(found, one.evidence) for one in flagged]
+    least = p_of_doubts(found, left, flagged, unfit)
     if gains:
         return min([*p_of_effects(found, gains, found.chosen.candidates), *least])
     if found.null is None or not finished:
         return None
     return min([p_value(found, max((found.gain(e) for e in found.singles), default=0.0)), *least])
+
+
+def p_of_doubts(found: Search, left: Inadequacy, flagged: Sequence[Constancy], unfit: Sequence[Unfit]) -> list[float]:
+    """p-values of the model's own large error, of what is not the same everywhere, and of ``unfit`` windows."""
+    least = [max(left.p_value, LEAST_P)] if left.large else []
+    least += [LEAST_P] if unfit else []
+    return least + [p_value(found, one.evidence) for one in flagged]
 
 
 def undecided(found: Search, p_missing: float | None) -> Undecided | None:

@@ -127,12 +127,13 @@ def _runs(sizes: FloatArray) -> FloatArray:
 
 
 def _above_10_hz(shown: Shown) -> bool:
-    """Whether most of what is missing lies above 10 Hz."""
+    """Whether most of what is missing, over the noise of each channel, lies above 10 Hz."""
     m = shown.measured
     above, whole = 0.0, 0.0
+    change = np.where(m.mask, shown.before - shown.after, 0.0) / m.sigma[..., None]
     for w, window in enumerate(m.windows):
         step = m.recordings[window.recording].time_step
-        missing = (shown.before - shown.after)[w, :, : window.samples]
+        missing = change[w, :, : window.samples]
         power = np.abs(np.fft.rfft(missing * np.hanning(window.samples), axis=1)) ** 2
         whole += float(power.sum())
         above += float(power[:, np.fft.rfftfreq(window.samples, step) > HIGH_HZ].sum())

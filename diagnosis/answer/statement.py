@@ -10,7 +10,7 @@ from diagnosis.answer.phases import EVERYWHERE, words_of
 from diagnosis.answer.result import Beyond, Diagnosis, Effect, Extrapolated, Fit, Located, Unfit
 from diagnosis.answer.rivals import nearly_as_much, told_apart
 from diagnosis.answer.untried import left_out, suspects_left_out
-from diagnosis.answer.when import comes_and_goes, held_text, when_text
+from diagnosis.answer.when import comes_and_goes, held_text, merged, when_text
 from diagnosis.data.measured import identification_of
 from diagnosis.fit.unknowns import effects
 from diagnosis.forces.constancy import BLOW, FOR_A_WHILE, Constancy
@@ -299,7 +299,7 @@ def _acts(places: Sequence[Located], words: Mapping[str, str], staged: Collectio
 
 
 def _in_recording(recording: str, places: Sequence[Located]) -> str:
-    spells = len({(place.start, place.end) for place in places})
+    spells = len(merged([(place.start, place.end) for place in places]))
     start, end = min(place.start for place in places), max(place.end for place in places)
     often = f", {spells} times" if spells > 1 else ""
     return f"in {recording} from {start:.1f} s to {end:.1f} s{often} ({sum(p.share for p in places):.0%} of it)"

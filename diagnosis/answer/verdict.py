@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from diagnosis.answer.constancy import Judged, judged
 from diagnosis.answer.heldout import Shown, compare
-from diagnosis.answer.judgement import contradicted, explains, p_of_missing, unfit_windows, verdict_of
+from diagnosis.answer.judgement import contradicted, explains, p_of_doubts, p_of_missing, unfit_windows, verdict_of
 from diagnosis.answer.ranges import beyond_ranges
 from diagnosis.answer.result import Beyond, Unfit, Verdict
 from diagnosis.answer.task import Task
@@ -75,10 +75,10 @@ def judge(task: Task, found: Search, climbed: Climbed | None) -> Judgement:
     gains = [climbed.gain] if climbed else stages.needed(lambda: evidence(found))
     p_value = p_of_missing(found, gains, errors.inadequacy, constancy.flagged, unfit, task.finished)
     if task.draws and task.finished and climbed is None:
-        score_p = p_value
+        score_p, doubtful = p_value, p_of_doubts(found, errors.inadequacy, constancy.flagged, unfit)
         p_value = stages.optional(
             "the bootstrap (the p-value is that of the score)",
-            lambda: bootstrapping.p_value(task.specimen, found, task.draws, task.seed, progress),
+            lambda: min([bootstrapping.p_value(task.specimen, found, task.draws, task.seed, progress), *doubtful]),
             lambda: score_p,
         )
     return Judgement(

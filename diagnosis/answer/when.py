@@ -22,6 +22,19 @@ from grids.stages import Stage
 from models.base import FloatArray
 from models.errors import InputError
 
+Spans = list[tuple[float, float]]
+
+
+def merged(spans: Sequence[tuple[float, float]]) -> Spans:
+    """The same times as intervals that do not touch, in order."""
+    found: Spans = []
+    for begin, end in sorted(spans):
+        if found and begin <= found[-1][1]:
+            found[-1] = (found[-1][0], max(end, found[-1][1]))
+        else:
+            found.append((begin, end))
+    return found
+
 
 def stages_of(explanation: Explanation, candidate: Candidate) -> tuple[EffectStage, ...]:
     """The stages of one of the explanation's effects with intervals of their instants; none of one that always acts."""

@@ -42,18 +42,21 @@ def response_noise(recording: Recording, channel: str) -> float:
     level = max(noise.sigma, RELATIVE_FLOOR * float(np.max(np.abs(values))))
     if noise.white or noise.lag_one < noise.lag_one_if_white:
         return level
-    density = density_level(values, recording.time_step)
+    stretches = still(values, recording.time_step)
+    if channel in recording.places and recording.places[channel].absolute:  # it holds the motion of the base
+        stretches = calm(stretches, recording)
+    density = density_level(values, recording.time_step, stretches)
     return max(level, density) if density < MOST * noise.sigma else level
 
 
-def density_level(values: FloatArray, time_step: float) -> float:
-    """Standard deviation of the white noise as dense below `BAND` as a channel's while it is still; 0 if never.
+def density_level(values: FloatArray, time_step: float, stretches: Sequence[slice]) -> float:
+    """Standard deviation of the white noise as dense below `BAND` as a channel's while it is still; 0 if it never is.
 
     With the periodogram P(f) = |sum_j (x_j - mean) exp(-2 pi i f t_j)|^2/n of n samples white noise has
     E P = sigma^2 at every frequency. A spectrum that is not flat is that of a motion.
     """
     found = []
-    for stretch in still(values, time_step):
+    for stretch in stretches:
         x = values[stretch]
         frequency = np.fft.rfftfreq(x.size, time_step)
         inside = (frequency > 0.0) & (frequency < BAND)

@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from diagnosis.answer.when import Spans, merged
 from diagnosis.prove.scores import Scored
 
-Spans = list[tuple[float, float]]
 LEARNED_FROM = "train_"
 """How the names of the recordings begin that an answer says where it acts in."""
 CYCLE = 1.0
@@ -37,17 +37,6 @@ def said_spans(case: Scored) -> dict[str, Spans]:
     for one in case.answer["located"]:
         found.setdefault(str(one["recording"]), []).append((float(one["start"]), float(one["end"])))
     return {name: merged(spans) for name, spans in found.items()}
-
-
-def merged(spans: Sequence[tuple[float, float]]) -> Spans:
-    """The same times as intervals that do not touch, in order."""
-    found: Spans = []
-    for begin, end in sorted(spans):
-        if found and begin <= found[-1][1]:
-            found[-1] = (found[-1][0], max(end, found[-1][1]))
-        else:
-            found.append((begin, end))
-    return found
 
 
 def _length(spans: Sequence[tuple[float, float]]) -> float:

@@ -35,9 +35,8 @@ def write_answer(
     """
     from diagnosis.report.page import report_page
     from diagnosis.report.pictures import pictures, write_figures
-    from grids.law_table import LAW_FILE, law_text
-    from grids.write_specimen import specimen_text
-    from models.mechanisms import acting_on
+    from grids.law_table import LAW_FILE
+    from grids.write_specimen import law_beside, specimen_text
     from study.store import write_text
 
     folder = Path(folder)
@@ -46,10 +45,10 @@ def write_answer(
     paths = [folder / name for name in ("diagnosis.json", "extended.toml", "report.html")]
     write_text(paths[0], diagnosis_json(diagnosis))
     extended = extend(specimen, diagnosis)
-    for name, mechanism in acting_on(extended.model).items():
-        if name in extended.mechanisms and mechanism.tabulated is not None:
-            write_text(folder / LAW_FILE, law_text(extended.mechanisms[name], mechanism.tabulated))
-            paths.append(folder / LAW_FILE)
+    law = law_beside(extended)
+    if law is not None:
+        write_text(folder / LAW_FILE, law)
+        paths.append(folder / LAW_FILE)
     write_text(paths[1], specimen_text(extended))
     fit = write_fit(diagnosis, folder / "fit.nc")
     if diagnosis.posterior:

@@ -18,11 +18,13 @@ from diagnosis.data.measured import identification_of
 from diagnosis.data.windows import ABOVE_NOISE
 from diagnosis.errors.words import error_lines
 from diagnosis.fit.unknowns import effects
+from diagnosis.forces.constancy import BLOW
 from diagnosis.report import words
 from grids.recordings import CHANNELS, Recording, noise_levels
 from grids.recordings.levels import stem
 from grids.specimen import Specimen
 from models.base import Mechanism
+from models.model import Model
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -89,7 +91,7 @@ def report_page(
             rivals=_rivals(diagnosis, known),
             channels=short,
             phases=words_of(declared),
-            forces={kind.name: kind.meaning for kind in declared.forces},
+            forces=_forces(diagnosis, model),
             recordings=[_read_row(r, held) for held, rs in ((False, train), (True, holdout)) for r in rs],
             horizons=_horizons(diagnosis),
             windows=_window_counts(diagnosis.windows),
@@ -102,6 +104,13 @@ def report_page(
             held_out_names={trace.recording for trace in diagnosis.traces if trace.held_out},
         )
     )
+
+
+def _forces(diagnosis: Diagnosis, model: Model[Any]) -> dict[str, str]:
+    """What may be left over, by name: the forces of the model that explains the recordings, and a blow."""
+    other = [models.get(diagnosis.other_model.model)] if diagnosis.other_model else []
+    kinds = [kind for one in (model, *other) for kind in identification_of(one).forces]
+    return {kind.name: kind.meaning for kind in kinds} | {BLOW: "a blow, or a sensor that was knocked"}
 
 
 @functools.cache
@@ -189,7 +198,7 @@ def _horizons(diagnosis: Diagnosis) -> list[tuple[str, ...]]:
 
 def _horizon(seconds: float) -> str:
     if seconds >= HORIZON:
-        return f"over {HORIZON:g} s"
+        return f"to the end, or over {HORIZON:g} s"
     return f"{seconds:.2f} s" if seconds >= 0.01 else "under 0.01 s"
 
 

@@ -10,11 +10,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from grids.motions.measures import PREFIX as OF_MOTIONS
 from grids.targets import MOTION, Target, Targets
 from grids.units import factor_to_si, to_si
 from models.errors import InputError
 
 MOST_POINTS = 10_000_000
+
+OF_COMMANDS = (MOTION, "unknown", "computed", "bin", "level")
+"""What cubes and commands call by these names."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,9 +104,9 @@ class Request:
 
     def own_name(self) -> str:
         """The name of an axis of cases or samples, which must not mean anything else."""
-        if self.name in self.taken or self.name == MOTION:
+        if self.name in self.taken or self.name in OF_COMMANDS or self.name.startswith(OF_MOTIONS):
             raise InputError(
-                f"{self.where}: this name is taken by a parameter or an output; "
+                f"{self.where}: this name is taken by a parameter, an output or a command; "
                 "call an axis of cases or samples for example 'case'."
             )
         if not self.name.isidentifier():

@@ -28,7 +28,9 @@ def calibrate(
     ],
     out: Annotated[
         Path | None,
-        typer.Option(help="Specimen file to write, with the fitted values; NAME.posterior.nc beside NAME.toml."),
+        typer.Option(
+            help="Specimen file to write, with the fitted values; beside NAME.toml NAME.posterior.nc, and NAME.law.csv."
+        ),
     ] = None,
     at_strain: Annotated[
         float | None,
@@ -47,7 +49,7 @@ def calibrate(
     if out is not None:
         if out.suffix.lower() != ".toml":
             raise InputError(f"--out {out}: a specimen is written as TOML; end the name in .toml.")
-        keep_inputs([out, samples_beside(out)], [specimen, *recordings])
+        keep_inputs([out, samples_beside(out), law_of(out)], [specimen, *recordings])
     from rich.console import Console
 
     from grids.plausibility import suspicions_of_specimen
@@ -87,11 +89,14 @@ def write(wall: Specimen, found: Calibration, out: Path, at_strain: float | None
     """The calibrated specimen as a file, and beside it samples of what was found."""
     from diagnosis.answer.calibration import specimen_at, specimen_of
     from diagnosis.report.posterior_file import write_posterior
-    from grids.write_specimen import specimen_text
+    from grids.write_specimen import law_beside, specimen_text
     from study.store import write_text
 
     chosen = specimen_of(wall, found) if at_strain is None else specimen_at(wall, found, "strain", at_strain)
-    write_text(out, specimen_text(chosen))
+    write_text(out, specimen_text(chosen, law_of(out).name))
+    law = law_beside(chosen)
+    if law is not None:
+        write_text(law_of(out), law)
     typer.echo(f"written: {out}", err=True)
     if found.posterior and at_strain is None:
         path = write_posterior(found.posterior, models.get(wall.model), wall.title, samples_beside(out))
@@ -103,6 +108,11 @@ def write(wall: Specimen, found: Calibration, out: Path, at_strain: float | None
 def samples_beside(out: Path) -> Path:
     """Where the samples lie of the specimen at ``out``: a folder may hold those of other answers too."""
     return out.with_suffix(".posterior.nc")
+
+
+def law_of(out: Path) -> Path:
+    """Where the law in a table lies of the specimen at ``out``, if it has one."""
+    return out.with_suffix(".law.csv")
 
 
 def parameter_table(title: str, found: Calibration) -> Table:

@@ -16,6 +16,9 @@ from rocking.commands.recordings import read_recordings, stages, warn_of_stages
 if TYPE_CHECKING:
     from grids.specimen import Specimen
 
+FEWEST_DRAWS = 19
+"""Of a bootstrap: with so many none as large is a p-value of .05."""
+
 
 def diagnose(
     specimen: Annotated[Path, typer.Argument(help="Specimen file (TOML).")],
@@ -46,6 +49,11 @@ def diagnose(
 
     given = [specimen, *(recordings or []), *(holdout or []), *([outcomes] if outcomes else [])]
     keep_inputs(in_answer(out), given)
+    if 0 < bootstrap < FEWEST_DRAWS:
+        raise InputError(
+            f"--bootstrap {bootstrap}: so few draws tell no p-value below {1 / (1 + bootstrap):.2g}; "
+            f"give {FEWEST_DRAWS} or more, 99 for instance."
+        )
     wall = read_specimen(specimen)
     warn(suspicions_of_specimen(wall), strict)
     if outcomes is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -16,7 +17,7 @@ ANSWER = ("diagnosis.json", "extended.toml", "posterior.nc", "fit.nc", "report.h
 def keep_inputs(outputs: Iterable[Path], inputs: Iterable[Path]) -> None:
     """Raise InputError when a file to write is one of the ``inputs`` or lies in one that is a folder.
 
-    A table and the TOML that describes it are one input, whichever of them is named.
+    A table and the TOML that describes it are one input, whichever of them is named, and so are a specimen and its law.
     """
     read = [one.resolve() for path in inputs for one in _with_companions(path)]
     for output in outputs:
@@ -38,5 +39,8 @@ def in_answer(folder: Path) -> list[Path]:
 
 def _with_companions(path: Path) -> list[Path]:
     beside = {".csv": ".toml", ".txt": ".toml", ".toml": ".csv"}.get(path.suffix.lower())
-    companion = None if beside is None else path.with_suffix(beside)
-    return [path] if companion is None or not companion.exists() else [path, companion]
+    companions = [] if beside is None else [path.with_suffix(beside)]
+    if path.suffix.lower() == ".toml" and path.is_file():
+        laws = re.findall(r'^\s*file\s*=\s*["\'](.+)["\']', path.read_text("utf-8", "replace"), re.MULTILINE)
+        companions += [path.parent / name for name in laws]
+    return [path, *(one for one in companions if one.exists())]

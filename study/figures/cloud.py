@@ -31,8 +31,11 @@ def plot_cloud(
     strength = intensity(cells, measure)
     across, values = shown(strength)[0].ravel(), np.asarray(shown(cells[output])[0], dtype=float).ravel()
     status = cells["status"].values.ravel()
-    stands = ~np.isin(status, (*UNKNOWN, OVERTURNED)) & (values > 0.0)
-    ax.plot(across[stands], values[stands], ".", color=COLOURS[0], markersize=4, label=f"stands ({stands.sum()})")
+    standing = ~np.isin(status, (*UNKNOWN, OVERTURNED))
+    stands = standing & (values > 0.0)
+    at_zero = int(standing.sum() - stands.sum())
+    count = f"{standing.sum()}, {at_zero} of them at zero: not drawn" if at_zero else f"{standing.sum()}"
+    ax.plot(across[stands], values[stands], ".", color=COLOURS[0], markersize=4, label=f"stands ({count})")
     fallen = status == OVERTURNED
     ax.plot(
         across[fallen],

@@ -65,7 +65,11 @@ def set_title(ax: Axes, text: str) -> None:
 def positions(values: xr.DataArray) -> tuple[NDArray[np.float64], list[str] | None]:
     """Where the points of an axis lie, and the words to print there when it holds no numbers."""
     if values.dtype.kind in "iuf":
-        return np.asarray(shown(values)[0], dtype=float), None
+        numbers = np.asarray(shown(values)[0], dtype=float)
+        if np.all(np.isfinite(numbers)):
+            return numbers, None
+        # inf stands for no effect and lies nowhere on a scale: all points side by side
+        return np.arange(values.size, dtype=float), [literal(f"{number:.4g}") for number in numbers]
     return np.arange(values.size, dtype=float), [literal(str(v)) for v in values.values]
 
 

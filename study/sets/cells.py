@@ -93,6 +93,12 @@ def find_measure(name: str) -> Measure:
     raise InputError(f"'{name}' is no measure of a motion: {closest(name, NAMES)}")
 
 
+def given(cells: xr.Dataset, scale: str) -> Any:
+    """What a plan sets by that name, along an axis or for all cells; None where it does not."""
+    fixed: Mapping[str, float] = json.loads(cells.attrs.get("provenance", "{}")).get("setting", {}).get("fixed", {})
+    return cells[scale] if scale in cells.coords else fixed.get(scale)
+
+
 def intensity(cells: xr.Dataset, name: str) -> xr.DataArray:
     """The measure of the motion as it shook each cell: the record's, scaled with it.
 
@@ -101,20 +107,15 @@ def intensity(cells: xr.Dataset, name: str) -> xr.DataArray:
     measure = find_measure(name)
     if PREFIX + name not in cells.coords:
         raise InputError(f"this cube does not hold {PREFIX + name}: run the study again with this version")
-    fixed: Mapping[str, float] = json.loads(cells.attrs.get("provenance", "{}")).get("setting", {}).get("fixed", {})
-
-    def given(scale: str) -> Any:
-        return cells[scale] if scale in cells.coords else fixed.get(scale)
-
     factor = xr.ones_like(cells["status"], dtype=float)
-    if (pga := given("pga")) is not None:
+    if (pga := given(cells, "pga")) is not None:
         factor = factor * pga / cells[f"{PREFIX}pga"]
-    if (scale := given("motion_scale")) is not None:
+    if (scale := given(cells, "motion_scale")) is not None:
         factor = factor * scale
     values = cells[PREFIX + name] * factor**measure.power
     if name == "pga" and pga is not None:  # not by way of the record's, which would round it
         values = factor.copy(data=np.ones(factor.shape)) * pga * (1.0 if scale is None else scale)
-    stretch = given("time_scale")
+    stretch = given(cells, "time_scale")
     if stretch is not None and not np.all(np.asarray(stretch) == 1.0):
         if measure.stretch is None:
             raise InputError(f"{name} of motions stretched in time does not follow from the record's: take pga or pgv")

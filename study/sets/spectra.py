@@ -15,7 +15,7 @@ import xarray as xr
 
 from models.errors import InputError
 from study.selection import SAME, complete, place, select
-from study.sets.cells import MOTION
+from study.sets.cells import MOTION, given
 from study.sets.incremental import QUANTILES
 from study.status import OVERTURNED, ROCKING, UNKNOWN
 
@@ -82,6 +82,9 @@ def overturning_spectrum(cube: xr.Dataset, at: Mapping[str, Any] | None = None) 
             "t_moment": np.sqrt(cells["record_displacement_range"] / cells["record_pga"]),
         }
     )
+    stretch = given(cells, "time_scale")
+    if stretch is not None:  # both times are those of the motion as it shook the blocks
+        found["t_impulse"], found["t_moment"] = found["t_impulse"] * stretch, found["t_moment"] * stretch
     rows = found["smallest"].values
     curves = np.quantile(rows, QUANTILES, axis=0, method="inverted_cdf")
     found["quantile_curves"] = (("quantile", along), np.where(np.isnan(rows).any(axis=0), np.nan, curves))
@@ -109,6 +112,8 @@ def three_curves(p: xr.DataArray, t_impulse: xr.DataArray, t_moment: xr.DataArra
 def _taken(cube: xr.Dataset, at: Mapping[str, Any] | None, keep: tuple[str, ...]) -> tuple[xr.Dataset, str]:
     """The cells over motion (an axis of one where the cube has none) and ``keep``."""
     if MOTION not in cube.dims:
+        if MOTION in cube.coords and cube[MOTION].ndim:
+            raise InputError(f"the motion changes along '{cube[MOTION].dims[0]}': make it an axis of its own, motion")
         cube = cube.expand_dims(MOTION)
         cube = cube.assign_coords(
             {n: c.expand_dims(MOTION) for n, c in cube.coords.items() if str(n).startswith("record_")}

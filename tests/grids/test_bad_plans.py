@@ -157,6 +157,16 @@ BAD: dict[str, tuple[str, str, tuple[str, ...]]] = {
         "peak_rotation = { sobol = 8, seed = 1, parameters = { pga = [1, 2] } }",
         ("peak_rotation", "taken", "'case'"),
     ),
+    "cases called as maps call what is unknown": (
+        PGA,
+        "unknown = { cases = [{ label = 'A', pga = 1 }] }",
+        ("unknown", "taken", "'case'"),
+    ),
+    "cases called as a measure of a motion": (
+        PGA,
+        "record_pga = { cases = [{ label = 'A', pga = 1 }] }",
+        ("record_pga", "taken", "'case'"),
+    ),
     "no cases": (PGA, "case = { cases = [] }", ("case", "at least one")),
     "cases that differ": (
         PGA,

@@ -45,11 +45,12 @@ def test_attributes_say_all_of_a_place(place: Place) -> None:
     assert read_place("gauge", attributes(place)) == place
 
 
-def test_a_specimen_with_channels_is_written_and_read_back() -> None:
+@pytest.mark.parametrize("name", ["top", "oben_ä"])
+def test_a_specimen_with_channels_is_written_and_read_back(name: str) -> None:
     text = 'title = "b"\nmodel = "housner"\n[parameters]\nwidth = 0.4\nheight = 1.6\nmass = 1000.0\n'
-    text += '[channels.top]\nquantity = "acceleration"\nposition_z = "1.6 m"\ndirection = "across"\n'
+    text += f'[channels."{name}"]\nquantity = "acceleration"\nposition_z = "1.6 m"\ndirection = "across"\n'
     specimen = parse_specimen(text)
-    assert specimen.places["top"].relative_to == "absolute"
+    assert specimen.places[name].relative_to == "absolute"
     assert parse_specimen(specimen_text(specimen)) == specimen
 
 

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from grids.changes import compare, describe
+from grids.motions import read_motion
+from grids.motions.write import write_motion
 from grids.plan import Plan, parse_plan, read_plan
+from models.errors import InputError
 from tests.grids.fakes import FakeWall
 
 Write = Callable[[str, str], Path]
@@ -187,3 +191,12 @@ def test_adding_values_extends_and_anything_else_is_listed() -> None:
         changes = compare(old, new)
         assert changes.differences
         assert all(any(word in sentence for sentence in changes.differences) for word in words), changes
+
+
+def test_one_motion_under_two_names_is_refused(tmp_path: Path) -> None:
+    """Statistics over motions would count it twice."""
+    made = read_motion("ridgecrest_2019_clc")
+    for name in ("one", "other"):
+        write_motion(replace(made, name=name), tmp_path / f"{name}.nc")
+    with pytest.raises(InputError, match="are the same motion, sample for sample"):
+        read(plan("pga = { values = [1, 2] }").replace(PULSE, '[motion]\nfiles = ["one.nc", "other.nc"]\n'), tmp_path)

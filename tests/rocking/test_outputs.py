@@ -34,6 +34,8 @@ def inputs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("answer/extended.toml", "answer/posterior.nc", "study/cube.nc", "study/blocks/one.nc", "tests.csv"):
         Path(name).parent.mkdir(exist_ok=True)
         Path(name).write_text("kept")
+    Path("answer/law.csv").write_text("kept")
+    Path("answer/trial.toml").write_text('[mechanisms.table_force]\nfile = "law.csv"\n')
     Path("runs.toml").write_text('table = "tests.csv"')
 
 
@@ -52,6 +54,7 @@ def inputs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         "export study --out study/blocks/one.nc",
         "export study/cube.nc --out study/cube.nc",
         "diagnose answer/extended.toml shake_1.csv --out answer",
+        "diagnose answer/trial.toml shake_1.csv --out answer",
     ],
 )
 def test_an_output_over_an_input_is_refused_before_the_work(words: str) -> None:

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 import xarray as xr
 
+from grids.plan import parse_plan
 from models.errors import InputError
 from study.check import check
 from study.manifest import DamagedManifest, Manifest
@@ -20,7 +21,7 @@ from study.run import Report, run
 from study.seal import is_intact, seal
 from study.state import state
 from tests.study.cubes import assert_identical
-from tests.study.plans import small_plan
+from tests.study.plans import plan_text, small_plan
 
 Damage = Callable[[Path], object]
 
@@ -205,3 +206,11 @@ def test_a_seal_covers_name_and_bytes(tmp_path: Path) -> None:
     assert not is_intact(path, "a")
     seal(path, "a")
     assert is_intact(path, "a") and not is_intact(path, "b")
+
+
+def test_a_cube_older_than_its_plan_is_not_checked_against_it(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A run that extends a study and is stopped leaves the cube of before."""
+    wider = parse_plan(plan_text(pga="linspace = [0.05, 0.8, 16], unit = 'g'"), Path.cwd())
+    monkeypatch.setattr("study.check.load_plan", lambda folder: wider)
+    with pytest.raises(InputError, match=r"older than study\.toml"):
+        check(folder)

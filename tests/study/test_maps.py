@@ -17,8 +17,9 @@ import study.accessor  # noqa: F401
 from grids.samples import MEANING
 from models.errors import InputError
 from study.figures import plot_onset_map, plot_output_map, plot_overturning_map, plot_slices, save_figure
-from study.figures.style import geometric
+from study.figures.style import geometric, positions
 from study.maps import default_axes
+from study.selection import position
 from study.status import OVERTURNED, ROCKING, UNKNOWN
 from tests.study.cubes import known_cube
 
@@ -302,3 +303,14 @@ def test_an_axis_of_many_motions_shows_their_names() -> None:
     for drawn in (plot_output_map(cube, "peak_rotation"), plot_overturning_map(cube)):
         assert [text.get_text() for text in drawn.get_xticklabels()] == names
     matplotlib.pyplot.close("all")
+
+
+def test_a_value_without_end_is_a_point_of_its_axis() -> None:
+    """An effect that inf switches off: no scale has a place for it, so the points lie side by side."""
+    cube = known_cube(np.random.default_rng(1), (3, 5, 6)).assign_coords(aspect_ratio=[0.2, 0.5, np.inf])
+    cube["aspect_ratio"].attrs |= {"units": "1", "axis_of_study": "true"}
+    points, words = positions(cube["aspect_ratio"])
+    assert points.tolist() == [0.0, 1.0, 2.0] and words == ["0.2", "0.5", "inf"]
+    assert position(cube, "aspect_ratio", "inf") == 2 and position(cube, "aspect_ratio", 0.5) == 1
+    plot_overturning_map(cube, x="aspect_ratio", y="pga", at={"top_mass": float(cube["top_mass"][0])})
+    plt.close("all")

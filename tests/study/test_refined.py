@@ -98,3 +98,10 @@ def test_cells_of_a_failed_block_hold_the_fill_value() -> None:
     refined = Refined(np.arange(3), {"impacts": np.array([4.0, np.nan, 7.0])}, status, cast(Estimate, None))
     impacts = next(q for q in models.get("housner").outputs if q.name == "impacts")
     assert refined.values(impacts, -1, np.dtype(np.int32)).tolist() == [4, -1, 7]
+
+
+@pytest.mark.parametrize("kept", ['{"cells_per', '{"cells_per_block": 0}', "[]", '{"cells_per_block": null}'])
+def test_a_damaged_size_of_blocks_is_measured_anew(tmp_path: Path, kept: str) -> None:
+    (tmp_path / "refinement.json").write_text(kept)
+    assert cells_of_a_block(tmp_path, lambda: 7) == 7
+    assert cells_of_a_block(tmp_path, lambda: 9) == 7

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -127,3 +128,12 @@ def test_what_begins_acts_from_there_on(effect: Mapping[str, float]) -> None:
     assert min(place.start for place in carried_on) == begins
     assert max(place.end for place in carried_on) == measured.recordings[1].time[-1]
     assert sum(place.share for place in carried_on) == pytest.approx(1.0)
+
+
+def test_an_error_is_in_the_unit_of_its_channel() -> None:
+    recordings = [recording("a", 1), recording("b", 2)]
+    moving = [r.channels | {"displacement_1_x": 0.9 * r.channels["rotation_1"]} for r in recordings]
+    measured = measure(SPECIMEN, [replace(r, channels=own) for r, own in zip(recordings, moving, strict=True)])
+    late = action(Predictor(measured), Point({**TRUE, "delay.delay": 0.01}, measured.states), "delay")
+    units = {place.channel: place.unit for place in acts(measured, late)}
+    assert units == {"rotation_1": "rad", "displacement_1_x": "m"}

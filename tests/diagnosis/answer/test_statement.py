@@ -258,3 +258,11 @@ def test_a_force_of_another_base_model_is_told_in_its_own_words() -> None:
     )  # fmt: skip
     (meaning,) = (f.meaning for f in identification_of(models.get("interface")).forces if f.name == acting.parameter)
     assert f"What acts is a {meaning} that depends on the side" in statement(found, models.get("housner"))
+
+
+def test_one_spell_seen_by_two_channels_is_one() -> None:
+    first = Located("shake_1", "rotation_1", 1.0, 9.0, ("everywhere",), 0.6, "tilt", 0.01, "rad")
+    other = replace(first, channel="displacement_1_x", start=1.05, share=0.4)
+    later = replace(other, start=10.0, end=11.0)
+    assert "in shake_1 from 1.0 s to 9.0 s (100% of it)" in said(located=(first, other), effects=(TILT,))
+    assert "2 times" in said(located=(first, other, later), effects=(TILT,))

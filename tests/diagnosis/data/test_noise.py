@@ -73,6 +73,6 @@ def test_motion_without_noise_is_not_noise(seed: int) -> None:
 
 def test_nothing_still_no_level() -> None:
     time = np.arange(2000) * TIME_STEP
-    assert density_level(np.sin(2.0 * np.pi * 1.3 * time), TIME_STEP) == 0.0
-    assert density_level(np.zeros(2000), TIME_STEP) == 0.0
+    for values in (np.sin(2.0 * np.pi * 1.3 * time), np.zeros(2000)):
+        assert density_level(values, TIME_STEP, still(values, TIME_STEP)) == 0.0
     assert still(np.ones(10), TIME_STEP) == []

@@ -7,9 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.signal import butter, lfilter
 
 import models
 from diagnosis.answer.calibration import Calibration, calibrate
+from diagnosis.data.noise import response_noise
 from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.setup import measure
 from diagnosis.fit.unknowns import fixed_values
@@ -144,3 +146,13 @@ def test_a_rotation_is_never_taken_for_its_mirror_image() -> None:
     for seed in (5, 6):
         found = measure(UNKNOWN, [recorded(("lvdt_left", "lvdt_right"), seed=seed)]).recordings[0]
         assert np.max(np.abs(found.channels["rotation_1"] - true)) < 0.1 * np.max(np.abs(true))
+
+
+def test_the_noise_of_an_accelerometer_does_not_hold_the_shaking() -> None:
+    """Weak shaking before the strong one has a flat spectrum and a steady range, as what is still has."""
+    rng, step, sigma = np.random.default_rng(5), 0.005, 0.01
+    time = step * np.arange(2400)
+    weak = lfilter(*butter(4, 14.0, fs=1.0 / step), rng.normal(size=time.size))
+    base = weak * np.where(time < 5.0, 1.0, 8.0)
+    channels = {"base_acceleration_x": base, "top": base + sigma * rng.normal(size=time.size)}
+    assert response_noise(Recording("run", step, time, channels, places={"top": PLACES["top"]}), "top") < 5.0 * sigma

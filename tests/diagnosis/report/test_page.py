@@ -11,7 +11,8 @@ from typing import get_args
 
 import pytest
 
-from diagnosis.answer.result import Diagnosis, Verdict
+from diagnosis.answer.result import Diagnosis, OtherModel, Verdict
+from diagnosis.forces.constancy import BLOW, FOR_A_WHILE, Constancy
 from diagnosis.report.figures import plot_raster
 from diagnosis.report.page import report_page
 from diagnosis.report.pictures import drawings
@@ -160,3 +161,12 @@ def test_page_says_what_was_not_tried_and_why() -> None:
     assert "was not tried" not in render(diagnosis("missing"))
     page = render(replace(diagnosis("missing"), not_tried={"table_pitch": "no channel that it shows in"}))
     assert "table pitch: no channel that it shows in" in " ".join(outline(page).text)
+
+
+@pytest.mark.parametrize("other", [None, OtherModel("second_body", "stacked", {}, {}, 80.0, (), True, False)])
+def test_what_is_left_over_is_named_whichever_model_explains_the_recordings(other: OtherModel | None) -> None:
+    """A blow is no force of any model; another base model has forces of its own."""
+    port = "viscous_damping_top" if other else BLOW
+    left = Constancy(port, FOR_A_WHILE, 84.0, "from 2.52 s of shake_1")
+    page = render(replace(diagnosis("not_in_library"), constancy=(left,), other_model=other))
+    assert "from 2.52 s of shake_1" in page

@@ -15,7 +15,7 @@ from study.sets.cells import event_of, intensity
 from study.sets.fragility import fragility
 from study.sets.incremental import incremental
 from study.sets.sorting import area_under_curve, sorting
-from study.status import NOT_CONVERGED
+from study.status import NOT_CONVERGED, OVERTURNED, REST
 from tests.study.sets.simulated import DISPERSION, LEVELS, MEDIAN, capacities, cube_of
 
 CAPACITY = capacities(np.random.default_rng(5), 60)
@@ -167,3 +167,12 @@ def test_curves_begin_where_something_shakes() -> None:
 def test_a_misspelt_output_of_a_cloud_is_a_sentence() -> None:
     with pytest.raises(InputError, match="'peak_rotatoin' is no output of this cube: did you mean 'peak_rotation'"):
         plot_cloud(cube_of(np.array([2.5, 3.0])), "peak_rotatoin")
+
+
+def test_a_cloud_counts_what_stands_though_it_cannot_draw_it() -> None:
+    cube = cube_of(np.array([2.5, 3.0]))
+    still = cube.assign(peak_rotation=cube["peak_rotation"].where(cube["status"] != REST, 0.0))
+    assert (still["status"] == REST).any()
+    ax = plot_cloud(still, "peak_rotation")
+    standing, rest = int((still["status"] != OVERTURNED).sum()), int((still["status"] == REST).sum())
+    assert f"stands ({standing}, {rest} of them at zero: not drawn)" in [t.get_text() for t in ax.get_legend().texts]

@@ -125,3 +125,14 @@ def test_figures_and_refusals(cubes: dict[str, xr.Dataset]) -> None:
         overturning_spectrum(cube.isel(pga=3))
     with pytest.raises(InputError, match="along one axis"):
         overturning_spectrum(cube.isel(height=[2]))
+
+
+def test_curves_of_a_stretched_motion_are_those_of_the_motion_as_it_shook(cubes: dict[str, xr.Dataset]) -> None:
+    plain, slow = (overturning_spectrum(cubes["sine"].assign_coords(time_scale=scale)) for scale in (1.0, 2.0))
+    for time in ("t_impulse", "t_moment"):
+        np.testing.assert_allclose(slow[time], 2.0 * plain[time])
+
+
+def test_a_motion_that_cases_set_is_refused(cubes: dict[str, xr.Dataset]) -> None:
+    with pytest.raises(InputError, match="changes along 'height'"):
+        overturning_spectrum(cubes["sine"].assign_coords(motion=("height", ["a", "a", "b", "b", "b"])))

@@ -1,0 +1,55 @@
+"""What is told of recordings held out: how long predictions hold, and which of them extrapolate."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diagnosis.answer.extrapolated import extrapolated
+from diagnosis.answer.heldout import Shown, horizons
+from diagnosis.fit.prediction import Point, Predictor
+from diagnosis.fit.setup import measure
+from grids.recordings.base import Recording
+from models.kinematics import Place
+from tests.diagnosis.made import SPECIMEN, TRUE, recording
+
+GAUGE = Place("displacement", 1, -0.125, 0.0, "z")
+
+
+class Exact(Predictor):
+    """What was measured."""
+
+    def predict(self, *asked: object, **more: object) -> np.ndarray:
+        return self.measured.values[None].copy()
+
+
+def shown(*recordings: Recording) -> Shown:
+    """Recordings beside themselves as the prediction."""
+    measured = measure(SPECIMEN, recordings)
+    point = Point(TRUE, measured.states)
+    return Shown(measured, measured.values, measured.values, point, point)
+
+
+def test_the_end_of_a_recording_is_no_end_of_a_prediction() -> None:
+    one = shown(recording("a", 1))
+    (pair,) = horizons(one, Predictor(one.measured), Exact(one.measured)).values()
+    assert 0.0 < pair[0] < 3.0 and pair[1] == np.inf
+
+
+def gauged(name: str, gauge: str, size: float) -> Recording:
+    made = recording(name, 1)
+    left = size * made.channels["rotation_1"]
+    channels = {"base_acceleration_x": made.channels["base_acceleration_x"], gauge: 0.125 * np.abs(left)}
+    channels["rotation_1"] = left
+    return replace(made, channels=channels, places={gauge: GAUGE}, estimated=frozenset({"rotation_1"}))
+
+
+@pytest.mark.parametrize("name", ["left", "other"])
+def test_what_extrapolates_is_told_by_the_rotation_whatever_gauges_are_called(name: str) -> None:
+    learned, held = (shown(one) for one in (gauged("a", "left", 1.0), gauged("b", name, 2.0)))
+    (beyond,) = extrapolated(learned, held)
+    assert (beyond.recording, beyond.channel, beyond.unit) == ("b", "rotation_1", "rad")
+    assert beyond.peak == pytest.approx(2.0 * beyond.learned)
+    assert not extrapolated(held, learned)
