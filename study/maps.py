@@ -59,7 +59,7 @@ def output_map(
     Axes and selection as in `overturning_map`, the intensity selected like any other axis.
     """
     _check_output(cube, output)
-    x, y = default_axes(cube, x, y)
+    x, y = default_axes(cube, x, y, at)
     taken = complete(cube, at, (x, y), nearest=nearest)
     chosen = select(cube, taken)
     known = _over(chosen[output].where(~chosen["status"].isin(UNKNOWN)), x, y).compute()
@@ -68,7 +68,7 @@ def output_map(
 
 def status_map(cube: xr.Dataset, x: str | None = None, y: str | None = None, at: At | None = None) -> xr.DataArray:
     """The flags of ``status`` over ``x`` and ``y``, dimensions ``(y, x)``; axes and selection as in `output_map`."""
-    x, y = default_axes(cube, x, y)
+    x, y = default_axes(cube, x, y, at)
     return _over(select(cube, complete(cube, at, (x, y)))["status"], x, y).compute()
 
 
@@ -91,18 +91,21 @@ def slices(cube: xr.Dataset, output: str, x: str, at: At | None = None, *, neare
     return curves.assign_attrs(selection=place(cube, taken))
 
 
-def default_axes(cube: xr.Dataset, x: str | None, y: str | None) -> tuple[str, str]:
-    """``x`` and ``y``, or the first axes longer than one that are no intensity; then the intensity."""
+def default_axes(
+    cube: xr.Dataset, x: str | None, y: str | None, at: Mapping[str, Any] | None = None
+) -> tuple[str, str]:
+    """``x`` and ``y``, or the first axes longer than one that are no intensity; then the intensity. None of ``at``."""
     for axis in (x, y):
         if axis is not None:
             check_axis(cube, axis)
     long = [str(dim) for dim, size in cube.sizes.items() if size > 1]
     long = [name for name in long if name in (x, y) or not is_samples(cube, name)]
-    free = [*(d for d in long if d not in INTENSITIES), *(d for d in long if d in INTENSITIES)]
+    open_ones = [d for d in long if d not in (at or {})]
+    free = [*(d for d in open_ones if d not in INTENSITIES), *(d for d in open_ones if d in INTENSITIES)]
     x = x or next((d for d in free if d != y), None)
     y = y or next((d for d in free if d != x), None)
     if x is None or y is None:
-        raise InputError(f"a map needs two axes with several values, this cube has {len(long)}: draw slices")
+        raise InputError(f"a map needs two axes with several values, this cube has {len(open_ones)}: draw slices")
     if x == y:
         raise InputError(f"x and y are both '{x}': choose two axes")
     return x, y
@@ -135,7 +138,7 @@ def _map(
     verb: str,
 ) -> xr.DataArray:
     _check_overturns(cube)
-    x, y = default_axes(cube, x, y)
+    x, y = default_axes(cube, x, y, at)
     # a single intensity is no grid to search: then the map says yes or no
     searched = [i for i in INTENSITIES if cube.sizes.get(i, 1) > 1 and i not in (x, y, *(at or {}))][:1]
     among = over_samples(cube, at, (x, y))

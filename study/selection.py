@@ -55,7 +55,13 @@ def complete(
             f"axis '{SAMPLE}' holds {cube.sizes[SAMPLE]} equally likely walls, and this shows one: choose it, for "
             f"instance {SAMPLE}=0, or draw an overturning map or a fragility, which take all of them"
         )
-    return given | {name: cube[name].values[cube.sizes[name] // 2] for name in left}
+    return given | {name: _middle(cube[name]) for name in left}
+
+
+def _middle(axis: xr.DataArray) -> Any:
+    """The middle value, in whatever order the axis has them; of words the one in the middle of the list."""
+    values = np.sort(axis.values) if axis.dtype.kind in "iuf" else axis.values
+    return values[values.size // 2]
 
 
 def over_samples(cube: xr.Dataset, at: Mapping[str, Any] | None, shown: Collection[str]) -> list[str]:

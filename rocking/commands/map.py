@@ -28,8 +28,8 @@ def map_(
     from study.open import open_study
 
     cube = open_study(folder, lazy=True)
-    x, y = maps.default_axes(cube, x, y)
     at = read_selection(cube, select, nearest)
+    x, y = maps.default_axes(cube, x, y, at)
     home = out or (folder if folder.is_dir() else folder.parent)
     if output is not None:
         drawn = maps.output_map(cube, output, x, y, at)

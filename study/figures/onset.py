@@ -29,7 +29,7 @@ def plot_onset_map(
     Arguments as in `study.maps.onset_map`. Over PGA, a dashed line marks the onset acceleration of
     the wall under horizontal shaking alone.
     """
-    x, y = default_axes(cube, x, y)
+    x, y = default_axes(cube, x, y, at)
     ax = plot_map(onset_map(cube, x, y, at), words=("rocks", "does not rock"), ax=ax)
     if y == "pga" and "onset_acceleration" in cube.coords and not over_samples(cube, at, (x, y)):
         threshold = select(cube, complete(cube, at, (x, y)))["onset_acceleration"].squeeze()

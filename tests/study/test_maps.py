@@ -19,7 +19,7 @@ from models.errors import InputError
 from study.figures import plot_onset_map, plot_output_map, plot_overturning_map, plot_slices, save_figure
 from study.figures.style import geometric, positions
 from study.maps import default_axes
-from study.selection import position
+from study.selection import complete, position
 from study.status import OVERTURNED, ROCKING, UNKNOWN
 from tests.study.cubes import known_cube
 
@@ -314,3 +314,10 @@ def test_a_value_without_end_is_a_point_of_its_axis() -> None:
     assert position(cube, "aspect_ratio", "inf") == 2 and position(cube, "aspect_ratio", 0.5) == 1
     plot_overturning_map(cube, x="aspect_ratio", y="pga", at={"top_mass": float(cube["top_mass"][0])})
     plt.close("all")
+
+
+def test_what_is_selected_is_no_axis_of_a_map_and_the_middle_is_that_of_the_values() -> None:
+    cube = known_cube(np.random.default_rng(2))
+    assert default_axes(cube, None, None, {"aspect_ratio": 0.1}) == ("top_mass", "pga")
+    values = np.sort(cube["pga"].values)  # in the cube they are not sorted
+    assert complete(cube, {}, ("aspect_ratio", "top_mass"))["pga"] == values[values.size // 2]
