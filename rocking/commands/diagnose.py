@@ -16,6 +16,8 @@ from rocking.commands.recordings import read_recordings, stages, warn_of_stages
 if TYPE_CHECKING:
     from grids.specimen import Specimen
 
+FIGURES = "figures"
+"""Folder of the figures of an answer."""
 FEWEST_DRAWS = 19
 """Of a bootstrap: with so many none as large is a p-value of .05."""
 
@@ -106,6 +108,11 @@ def make_folder(out: Path) -> None:
     except OSError as error:
         why = (error.strerror or str(error)).lower()
         raise InputError(f"--out {out} cannot be made ({why}); name a folder elsewhere.") from None
+    for path in in_answer(out):
+        if path.is_dir():
+            raise InputError(f"{path} is a folder where the answer has a file; move it, or name another --out.")
+    if (out / FIGURES).exists() and not (out / FIGURES).is_dir():
+        raise InputError(f"{out / FIGURES} is a file where the answer has a folder; move it, or name another --out.")
     try:
         with TemporaryFile(dir=out):
             pass

@@ -13,7 +13,11 @@ from typer.testing import CliRunner, Result
 
 from diagnosis.answer.calibration import Calibration
 from diagnosis.fit.intervals import Estimate
+from grids.law_table import law_text
 from grids.specimen import read_specimen
+from models.housner.model import MODEL
+from models.mechanisms import acting_on
+from models.tables import row
 from rocking.commands import app
 from rocking.commands.calibrate import write
 
@@ -89,3 +93,34 @@ def test_samples_of_a_calibration_are_named_after_its_specimen() -> None:
         assert samples["width"].size == 5
     write(wall, replace(found, posterior={}), Path("answer/base.toml"), None)
     assert not Path("answer/base.posterior.nc").exists() and Path("answer/posterior.nc").exists()
+
+
+@pytest.mark.parametrize("taken", ["report.html", "figures"])
+def test_what_an_answer_cannot_write_over_is_said_before_the_work(taken: str) -> None:
+    path = Path("new") / taken
+    path.parent.mkdir()
+    if taken == "figures":
+        path.write_text("kept")
+    else:
+        path.mkdir()
+    refused = rocking("diagnose", "block.toml", "shake_1.csv", "--out", "new")
+    assert refused.exit_code == 2 and f"error: {path} is a f" in refused.stderr
+    assert sorted(Path("new").iterdir()) == [path]
+
+
+def test_few_draws_of_a_bootstrap_are_refused() -> None:
+    refused = rocking("diagnose", "block.toml", "shake_1.csv", "--out", "new", "--bootstrap", "3")
+    assert refused.exit_code == 2 and "19 or more" in refused.stderr
+
+
+def test_a_law_of_a_calibrated_specimen_lies_beside_it(tmp_path: Path) -> None:
+    law = {row("rotation", "above", 3): -0.1, "reach_rotation": 0.2}
+    tables = acting_on("housner")["table_force"].tabulated
+    assert tables is not None
+    Path("old.csv").write_text(law_text({**MODEL.mechanisms["table_force"].nulls, **law}, tables))
+    text = Path("block.toml").read_text() + '\n[mechanisms.table_force]\nfile = "old.csv"\n'
+    Path("lawful.toml").write_text(text)
+    wall, width = read_specimen("lawful.toml"), Estimate(0.25, 0.24, 0.26, "m", "")
+    write(wall, Calibration({"width": width}, np.eye(1), 0.1, 0.1, 1.0, 3), Path("answer/base.toml"), None)
+    assert read_specimen("answer/base.toml").mechanisms == wall.mechanisms
+    assert Path("answer/law.csv").read_text() == "kept"
