@@ -45,6 +45,7 @@ def acts(measured: Measured, action: Action) -> tuple[Located, ...]:
     for r, recording in enumerate(measured.recordings):
         own = np.flatnonzero(measured.recording_of == r)
         for c, channel in enumerate(measured.channels):
+            named = channel if action.kind == "error" else _turned(measured, c)
             level, unit = LEAST * float(size[:, c].max()), _unit(measured, action, channel, at_events)
             if not own.size or float(size[own, c].max()) <= 0.0:
                 continue
@@ -64,7 +65,7 @@ def acts(measured: Measured, action: Action) -> tuple[Located, ...]:
                 per_time = 1.0 if at_events or action.kind == "error" else recording.time_step
                 found.append(
                     Located(
-                        recording.name, channel, low * recording.time_step, (high + 1) * recording.time_step, words,
+                        recording.name, named, low * recording.time_step, (high + 1) * recording.time_step, words,
                         float(line[inside].sum()) / total, action.effect, float(amount) / per_time, unit,
                     )
                 )  # fmt: skip
@@ -137,6 +138,12 @@ def _relative(measured: Measured, action: Action) -> FloatArray:
     else:
         size = np.where(size > ROUNDING * float(np.max(np.abs(action.motion.rate))), size, 0.0)
     return np.where(measured.mask, size, 0.0)
+
+
+def _turned(measured: Measured, c: int) -> str:
+    """The coordinate that a force listed under a compared channel acts on, whether it was recorded or not."""
+    leads = [lead.channel for lead in measured.identification.leads if measured.standing_for(lead.channel) == c]
+    return leads[0] if leads else measured.channels[c]
 
 
 def _unit(measured: Measured, action: Action, channel: str, at_events: bool) -> str:

@@ -15,6 +15,7 @@ from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.setup import measure
 from diagnosis.forces.action import Action, action
 from grids.stages import Stage
+from models.kinematics import Place
 from tests.diagnosis.made import SPECIMEN, TRUE, recording
 
 SAMPLE = 0.005
@@ -137,3 +138,19 @@ def test_an_error_is_in_the_unit_of_its_channel() -> None:
     late = action(Predictor(measured), Point({**TRUE, "delay.delay": 0.01}, measured.states), "delay")
     units = {place.channel: place.unit for place in acts(measured, late)}
     assert units == {"rotation_1": "rad", "displacement_1_x": "m"}
+
+
+def test_a_force_turns_the_block_whatever_measured_it() -> None:
+    """Gauges are compared, the dashpot acts on the rotation, which was not recorded."""
+    gauge = Place("displacement", 1, 0.0, 1.5, "x")
+    moving = []
+    for one in (recording("a", 1), recording("b", 2)):
+        channels = {"base_acceleration_x": one.channels["base_acceleration_x"]}
+        moving.append(
+            replace(one, channels=channels | {"string": 1.5 * one.channels["rotation_1"]}, places={"string": gauge})
+        )
+    measured = measure(SPECIMEN, moving)
+    assert measured.channels == ("string",)
+    point = Point({**TRUE, "viscous_damping.rate": 0.3}, measured.states)
+    places = acts(measured, action(Predictor(measured), point, "viscous_damping"))
+    assert {(place.channel, place.unit) for place in places} == {("rotation_1", "rad s-2")}
