@@ -54,7 +54,7 @@ def check(
     cube = open_study(folder)
     plan = load_plan(folder)
     for axis in plan.grid.axes:
-        if cube.sizes[axis.name] != len(axis.values) or not np.all(cube[axis.name].values == axis.values):
+        if cube.sizes.get(axis.name) != len(axis.values) or not np.all(cube[axis.name].values == axis.values):
             raise InputError(f"cube.nc is older than study.toml (axis '{axis.name}'): run the plan again, then check")
     there = ~cube["status"].isin([NOT_RUN, FAILED]).values
     known = np.flatnonzero(there & (cube["computed"].values == 1) if "computed" in cube else there)
