@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 import xarray as xr
@@ -173,6 +174,7 @@ def test_a_cloud_counts_what_stands_though_it_cannot_draw_it() -> None:
     cube = cube_of(np.array([2.5, 3.0]))
     still = cube.assign(peak_rotation=cube["peak_rotation"].where(cube["status"] != REST, 0.0))
     assert (still["status"] == REST).any()
-    ax = plot_cloud(still, "peak_rotation")
+    texts = [text.get_text() for text in plot_cloud(still, "peak_rotation").get_legend().texts]
+    plt.close("all")
     standing, rest = int((still["status"] != OVERTURNED).sum()), int((still["status"] == REST).sum())
-    assert f"stands ({standing}, {rest} of them at zero: not drawn)" in [t.get_text() for t in ax.get_legend().texts]
+    assert f"stands ({standing}, {rest} of them at zero: not drawn)" in texts
