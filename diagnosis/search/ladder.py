@@ -6,7 +6,7 @@ the base model with the best mechanism leaves more than the sensors' noise. It i
 than the base model with all mechanisms found, each under the errors estimated with itself
 (`diagnosis.errors.comparison`): twice the log likelihood rises by what a further effect must bring, after the other
 model has paid for its parameters and for every state more that it starts a window from, and still does without the
-window that weighs most.
+window that weighs most, and under its own errors without that of every recording.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from diagnosis.search.budget import ENDED, LADDER, Budget
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.details import least
 from diagnosis.search.found import Search, adjusted, left_over_white_noise, price
-from diagnosis.search.refit import Explanation
+from diagnosis.search.refit import Explanation, gain_by_window
 from diagnosis.search.weighing import reweighed
 from grids.recordings.base import Recording
 from grids.specimen import Specimen
@@ -133,10 +133,25 @@ def climb(found: Search, tried: Sequence[tuple[Rung, Weighed]], *, decisive: boo
         start = _as_found(found.at_null or found, base=True)
         if inadequacy(best.errors).large or best.over(start)[0] < DECISIVE * before.over(start)[0]:
             return None
+    on = replace(best, explanation=reweighed(best.explanation, best.errors))
+    if _elsewhere(found, on) < found.more:
+        return None
     others = [one.explanation for _, one in tried if one is not best]
     errs = found.outside is not None or inadequacy(found.errors).large
-    after = _on(found, best, others)
+    after = _on(found, on, others)
     return None if decisive and _leaves_a_law(after) else Climbed(rung, found, after, evidence, errs)
+
+
+def _elsewhere(found: Search, best: Weighed) -> float:
+    """Gain over what was found without the window of each recording that weighs most, under the other model's errors.
+
+    What happens once in a recording, a blow to its base for instance, can be fitted by states that are free in its
+    window; left unexplained it makes the errors larger everywhere, so that each window gains by errors of its own.
+    """
+    gains = gain_by_window(reweighed(found.chosen, best.errors), best.explanation)
+    gains = gains - (adjusted(best.explanation) - best.explanation.loss) / gains.size
+    of = found.measured.recording_of
+    return float(gains.sum() - sum(max(gains[of == r].max(), 0.0) for r in np.unique(of)))
 
 
 def _leaves_a_law(found: Search) -> bool:
@@ -263,7 +278,7 @@ def _judged(explanation: Explanation, errors: Errors) -> Weighed:
 
 def _on(found: Search, best: Weighed, others: Sequence[Explanation]) -> Search:
     """The search with the other model, under the errors estimated with it."""
-    on = reweighed(best.explanation, best.errors)
+    on = best.explanation
     tried = [on, *(reweighed(other, best.errors) for other in others)]
     return replace(
         found, base=reweighed(found.base, best.errors), best=on, errors=best.errors, tried=tried, singles=[],

@@ -55,6 +55,17 @@ def recorded(model: str, rotations: int) -> Recording:
     return Recording("run", TIME_STEP, base.time, channels)
 
 
+def blown(seed: int, at: float) -> Recording:
+    """A pier whose base receives a blow that the recorded motion does not hold."""
+    base = motion(seed, duration=6.0, pga=3.0)
+    time = base.time
+    hit = Shaking(base.time_step, base.horizontal + 1.0 * ((time > at) & (time < at + 0.12)))
+    rotation = models.get("housner").simulate(PIER.parameters, hit, duration=base.duration).channels["rotation_1"]
+    noise = np.random.default_rng(seed).normal(size=rotation.size)
+    channels = {"base_acceleration_x": base.horizontal, "rotation_1": rotation + 0.01 * np.max(np.abs(rotation)) * noise}
+    return Recording(f"run_{seed}", base.time_step, time, channels)
+
+
 @cache
 def calibrated_fit(model: str, rotations: int) -> tuple[Fitted, Errors]:
     return calibrated(PIER, measure(PIER, [recorded(model, rotations)]))
@@ -190,3 +201,15 @@ def test_a_stuck_window_ends_no_worse_than_from_where_it_was_measured() -> None:
         scattered = fit(best, np.zeros(0), states, 0).window_losses
         stuck = scattered != found.window_losses
         assert stuck.sum() > 2 and np.all(scattered[stuck] < from_measured.window_losses[stuck] + 1.0)
+
+
+def test_a_blow_to_the_base_in_every_recording_is_no_second_body() -> None:
+    """States that are free in its window fit it, and every other window gains by the smaller errors alone."""
+    fitted, errors = calibrated(PIER, measure(PIER, [blown(seed, at) for seed, at in ((5, 3.9), (6, 4.5))]))
+    found, recordings = Search(Explanation((), fitted), (), errors), fitted.measured.recordings
+    rung = next(r for r in fitted.measured.identification.ladder if ladder._meant_for(r, recordings))
+    below = [ladder._plain(found.base)]
+    tried = ladder._weighed(ladder._fitted(rung, PIER, below, *below, recordings, 0))
+    gain, without_one = tried.over(ladder._as_found(found))
+    assert rung.name == "second_body" and gain > without_one > found.more
+    assert ladder.climb(found, [(rung, tried)], decisive=False) is None
