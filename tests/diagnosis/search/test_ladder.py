@@ -62,7 +62,10 @@ def blown(seed: int, at: float) -> Recording:
     hit = Shaking(base.time_step, base.horizontal + 1.0 * ((time > at) & (time < at + 0.12)))
     rotation = models.get("housner").simulate(PIER.parameters, hit, duration=base.duration).channels["rotation_1"]
     noise = np.random.default_rng(seed).normal(size=rotation.size)
-    channels = {"base_acceleration_x": base.horizontal, "rotation_1": rotation + 0.01 * np.max(np.abs(rotation)) * noise}
+    channels = {
+        "base_acceleration_x": base.horizontal,
+        "rotation_1": rotation + 0.01 * np.max(np.abs(rotation)) * noise,
+    }
     return Recording(f"run_{seed}", base.time_step, time, channels)
 
 
