@@ -129,6 +129,8 @@ def _rows(path: Path, layout: Layout) -> tuple[list[str], list[tuple[int, list[s
     if not rows:
         after = f" after the {layout.skip} that are skipped" if layout.skip else ""
         raise InputError(f"{path.name}: holds no lines of numbers{after}; was it written to its end?")
+    if layout.delimiter.isspace() and layout.delimiter != "\t":
+        _check_cells(path, rows)
     if not layout.header:
         return [], rows
     line, names = rows[0]
@@ -138,12 +140,28 @@ def _rows(path: Path, layout: Layout) -> tuple[list[str], list[tuple[int, list[s
             f"{path.name}: line {line} holds numbers where the names of the columns are expected; state "
             "header = false (columns by number), or skip the lines above the names"
         )
+    if len(rows) > 1 and all(_number(cell, mark) is None for cell in rows[1][1] for mark in ".,"):
+        raise InputError(
+            f"{path.name}: line {rows[1][0]} holds no number ({', '.join(rows[1][1])}); if it states units, state them "
+            f"in [columns], and skip = {rows[1][0]} with header = false (columns by number)"
+        )
     for number, cells in rows[1:]:
         if any(cells[len(names) :]):
             raise InputError(
                 f"{path.name}: line {number} has {len(cells)} cells, the header {len(names)}; {_cure(layout)}."
             )
     return names, rows[1:]
+
+
+def _check_cells(path: Path, rows: list[tuple[int, list[str]]]) -> None:
+    """Between white space an empty cell is not seen: the cells after it would move to the left."""
+    first, cells = rows[0]
+    for line, own in rows:
+        if len(own) != len(cells):
+            raise InputError(
+                f"{path.name}: line {line} has {len(own)} cells, line {first} {len(cells)}; write nan where "
+                "nothing was measured, or name the delimiter"
+            )
 
 
 def _cure(layout: Layout) -> str:

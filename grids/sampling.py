@@ -55,8 +55,15 @@ def _check_order(times: FloatArray, intervals: FloatArray, where: str) -> None:
             f"{where}: the clock goes from {times[back]:.6g} s to {times[back + 1]:.6g} s at sample "
             f"{back + 2}: it was reset or a line stands twice, split the record there"
         )
-    gap, usual = int(np.argmax(intervals)), float(np.median(intervals))
-    if intervals[gap] > 1.5 * usual:
+    usual = float(np.median(intervals))
+    wide = np.flatnonzero(intervals > 1.5 * usual)
+    if wide.size:
+        gap = int(wide[0])
+        if wide.size > 1 and np.ptp(intervals[gap:]) < JITTER * usual:
+            raise InputError(
+                f"{where}: the step changes from {usual:.6g} s to {float(np.median(intervals[gap:])):.6g} s at "
+                f"{times[gap]:.6g} s: split the record there, or resample it to one step"
+            )
         missing = round(float(intervals[gap]) / usual) - 1
         raise InputError(
             f"{where}: about {missing} sample(s) are missing between {times[gap]:.6g} s and "

@@ -6,6 +6,8 @@ model = "housner"
 width = "0.25 m"
 [tolerance]                       # one sigma: relative, or with the unit of the value ("2 mm")
 width = 0.005
+[measured]                        # what a tolerance is about where [parameters] holds another, fitted value
+width = "0.252 m"
 [calibrate]                       # unknown, with a range
 restitution = [0.7, 1.0]
 [motion]
@@ -70,6 +72,7 @@ class SpecimenFile(Schema):
     model: str
     parameters: dict[str, Any]
     tolerance: dict[str, float | str] = Field(default_factory=dict)
+    measured: dict[str, float | str] = Field(default_factory=dict)
     calibrate: dict[str, Any] = Field(default_factory=dict)
     motion: MotionTable = MotionTable()
     initial: dict[str, float | str] = Field(default_factory=dict)
@@ -83,6 +86,8 @@ class SpecimenFile(Schema):
 class Specimen:
     """A checked specimen in SI. ``calibrate`` holds (low, high); ``vertical`` None: the model decides.
 
+    ``tolerance``: one sigma, relative to what was `nominal`: ``measured``, of parameters that a fit has moved.
+
     ``stages``: when a mechanism acts, by its name; without an entry always.
     ``places``: instruments on the bodies that `simulate` writes and that a next experiment may ask for.
     ``reference_peak``: rotation (rad) that levels of instruments are given over; None: the largest of a run itself.
@@ -92,6 +97,7 @@ class Specimen:
     model: str
     parameters: Mapping[str, float]
     tolerance: Mapping[str, float] = field(default_factory=dict)
+    measured: Mapping[str, float] = field(default_factory=dict)
     calibrate: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     vertical: bool | None = None
     initial: Mapping[str, float] = field(default_factory=dict)
@@ -100,6 +106,11 @@ class Specimen:
     reference_peak: float | None = None
     stages: Mapping[str, tuple[Stage, ...]] = field(default_factory=dict)
     places: Mapping[str, Place] = field(default_factory=dict)
+
+    @property
+    def nominal(self) -> dict[str, float]:
+        """The parameters as the laboratory has measured them."""
+        return {**self.parameters, **self.measured}
 
 
 def read_specimen(path: str | Path) -> Specimen:
@@ -139,6 +150,7 @@ def parse_specimen(text: str, folder: Path = Path()) -> Specimen:
     check_laws(options, (), used)
     check_joints(model, options, (), known | calibrate.keys())
     check_vertical(model, file.motion.vertical)
+    measured = _measured(file, targets)
     fixed = {**parameters, **{f"{m}.{p}": v for m, values in mechanisms.items() for p, v in values.items()}}
     if not calibrate:
         of_wall = {n: v for n, v in fixed.items() if n.partition(".")[0] not in INSTRUMENTS}
@@ -147,7 +159,8 @@ def parse_specimen(text: str, folder: Path = Path()) -> Specimen:
         title=file.title,
         model=model.name,
         parameters=parameters,
-        tolerance=_tolerance(file, parameters, targets),
+        tolerance=_tolerance(file, {**parameters, **measured}, targets),
+        measured=measured,
         calibrate=calibrate,
         vertical=file.motion.vertical,
         initial=_initial(file, targets),
@@ -236,6 +249,17 @@ def _tolerance(file: SpecimenFile, parameters: Mapping[str, float], targets: Tar
     return tolerance
 
 
+def _measured(file: SpecimenFile, targets: Targets) -> dict[str, float]:
+    measured = {}
+    for name, value in file.measured.items():
+        where = f"[measured] {name}"
+        for table, known in (("parameters", file.parameters), ("tolerance", file.tolerance)):
+            if name not in known:
+                raise InputError(f"{where} is not in [{table}]; add it there, or leave it out here.")
+        measured[name] = targets.find(name, where).number(value, where)
+    return measured
+
+
 def _relative(value: float | str, nominal: float, unit: str, where: str) -> float:
     """A tolerance over the nominal value: numbers and per cent are that already, a text may have the value's unit."""
     try:
@@ -281,7 +305,11 @@ def state_unit(model: Model, name: str, where: str) -> str:
 
 
 def with_values(specimen: Specimen, values: Mapping[str, float]) -> Specimen:
-    """The specimen with these values of parameters, and of mechanisms by ``mechanism.parameter``."""
+    """The specimen with these values of parameters, and of mechanisms by ``mechanism.parameter``.
+
+    Tolerances stay those of what was measured.
+    """
+    moved = {name: specimen.nominal[name] for name in specimen.tolerance if name in values}
     parameters = dict(specimen.parameters)
     mechanisms = {name: dict(own) for name, own in specimen.mechanisms.items()}
     for name, value in values.items():
@@ -290,4 +318,5 @@ def with_values(specimen: Specimen, values: Mapping[str, float]) -> Specimen:
             mechanisms.setdefault(mechanism, {})[parameter] = value
         else:
             parameters[name] = value
-    return replace(specimen, parameters=parameters, mechanisms=mechanisms)
+    measured = {**specimen.measured, **moved}
+    return replace(specimen, parameters=parameters, mechanisms=mechanisms, measured=measured)

@@ -1,7 +1,7 @@
 """Units: what a user writes becomes SI once, where it is read.
 
 A number is already in SI; a string carries its unit: "1.8 m", "4.5 MPa", "5 deg", "2 t".
-`g` is the standard gravity 9.80665 m s-2 (3rd CGPM, 1901) where an acceleration is wanted and the
+`g` is the standard gravity where an acceleration is wanted and the
 gram elsewhere. Units are written as CF does ("m s-2") or with / * ^ ("m/s^2").
 """
 
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     import pint
 
 _NUMBER = re.compile(r"\s*([+-]?(?:inf|nan|(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?))\s*(.*?)\s*")
+STANDARD_GRAVITY = 9.80665
+"""m s-2 (3rd CGPM, 1901)."""
 SMALLEST, LARGEST = 1e-30, 1e30
 """Sizes (SI) beyond which a number is a mistake, and powers and products of several would leave floating point."""
 _EXPONENT = re.compile(r"(?<=[A-Za-zµμ])\s*(?:\^|\*\*)?\s*\(?([+-]?\d+)\)?")
@@ -41,7 +43,7 @@ def _quantity(text: str, gravity: bool) -> Any:
     plain = text.strip().replace("·", " ").replace("²", "2").replace("³", "3").replace("°", "deg")
     product = _PRODUCT.sub(" * ", _EXPONENT.sub(r"**(\1)", plain.replace("%", "percent")))
     if gravity:
-        product = re.sub(r"\bg\b", "standard_gravity", product)
+        product = re.sub(r"\bgal\b", "Gal", re.sub(r"\bg\b", "standard_gravity", product))  # else the gallon
     try:
         return _registry().Quantity(1.0, _registry().parse_units(product))
     except Exception as error:  # pint lets attribute, tokenizer and type errors through
@@ -63,10 +65,15 @@ def _factor(unit: str, si_unit: str) -> float | None:
 
 
 def factor_to_si(unit: str, si_unit: str, where: str) -> float:
-    """How many ``si_unit`` one ``unit`` is, for arrays in one unit.
+    """How many ``si_unit`` one ``unit`` is, for arrays in one unit: "g", "cm/s2", also with a factor, "1e-4 g".
 
-    Raises InputError for an unknown unit or one of another dimension.
+    Raises InputError, whose sentence opens with ``where``, for an unknown unit or one of another dimension.
     """
+    if unit == si_unit:  # that of the project's own files, without starting the unit library
+        return 1.0
+    with_factor = _NUMBER.fullmatch(unit)
+    if with_factor is not None and with_factor[2][:1].isalpha():
+        return to_si(unit, si_unit, f"{where}: unit")
     try:
         factor = _factor(unit, si_unit)
     except (ValueError, OverflowError):  # the latter from a number of hundreds of digits inside the unit

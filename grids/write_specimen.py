@@ -22,6 +22,7 @@ def specimen_text(specimen: Specimen, law_file: str = LAW_FILE) -> str:
     tables: dict[str, Mapping[str, Any]] = {
         "parameters": specimen.parameters,
         "tolerance": specimen.tolerance,
+        "measured": specimen.measured,
         "calibrate": specimen.calibrate,
         "motion": {} if specimen.vertical is None else {"vertical": specimen.vertical},
         "initial": specimen.initial,

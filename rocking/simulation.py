@@ -25,7 +25,7 @@ def simulate(
     specimen: Specimen | str | Path,
     motion: Motion | Recording | str | Path | None = None,
     *,
-    duration: float | None = None,
+    duration: float | str | None = None,
     integrator: str = "lanes",
     component: str | None = None,
     scale: float = 1.0,
@@ -34,20 +34,23 @@ def simulate(
 
     ``specimen`` and ``motion`` are what the readers return, or what they read: a specimen file; a
     shipped motion, a motion file, or a recording, whose measured base motion is used. Without a
-    motion, ``duration`` (s) of free motion from the specimen's initial state. The specimen says
+    motion, ``duration`` (in s, or "3 s") of free motion from the specimen's initial state. The specimen says
     whether the vertical component acts (default: the model's). Its instruments act on what is
     written; the motion is then what the accelerometers of the base read. Mechanisms with stages act as
     they say for a recording of that name. Channels at positions on the bodies are those of the specimen and of a
     recording. Raises InputError.
     """
-    from grids.recordings import Recording, read_recording
+    from grids.recordings import Recording
     from grids.specimen import read_specimen
+    from grids.units import to_si
     from study.history import simulate_specimen
 
     if isinstance(specimen, str | Path):
         specimen = read_specimen(specimen)
-    if duration is not None and not 0.0 < duration < math.inf:
-        raise InputError(f"duration is {duration!r} s: give a positive time")
+    if duration is not None:
+        duration = to_si(duration, "s", "duration")
+        if not 0.0 < duration < math.inf:
+            raise InputError(f"duration is {duration!r} s: give a positive time")
     if scale == 0.0:
         raise InputError("scale 0 leaves no motion; for free motion leave the motion out and give a duration")
     if not abs(scale) <= LARGEST_SCALE:
@@ -58,8 +61,8 @@ def simulate(
         _check_steps(duration, FREE_TIME_STEP)
         shaking = Shaking.silence(duration, FREE_TIME_STEP)
     else:
-        if isinstance(motion, str | Path) and is_recording(Path(motion)):
-            motion = read_recording(motion, base_only=True)
+        if isinstance(motion, str | Path):
+            motion = recording_of(motion) or motion
         shaking = _shaking(specimen, motion, component)
         if duration is not None:
             _check_steps(duration, shaking.time_step)
@@ -101,11 +104,27 @@ def _shaking(specimen: Specimen, motion: Motion | Recording | str | Path, compon
         if vertical is None:
             vertical = model.vertical_by_default and "base_acceleration_z" in motion.channels
         return motion.shaking(vertical, vertical_acts=acts)
+    if component is not None and not isinstance(motion, str | Path):
+        raise InputError(f"motion {motion.name} was read with its component: leave '{component}' out, or name the file")
     if isinstance(motion, str | Path):
         wanted = vertical if vertical is not None or model.vertical_by_default else False
         motion = read_motion(motion, component=component, vertical=wanted)
     use = model.vertical_by_default if vertical is None else vertical
     return (motion if use else motion.without_vertical()).shaking(vertical_acts=acts)
+
+
+def recording_of(motion: str | Path) -> Recording | None:
+    """The motion of the base of a recording, found where motions are; None of what is no recording."""
+    from grids.motions.locate import locate
+    from grids.recordings import read_recording
+
+    path = Path(motion)
+    if not path.is_file():
+        try:
+            path = locate(str(motion))[0]
+        except InputError:
+            return None  # the motion reader says what was looked for, or makes the motion
+    return read_recording(path, base_only=True) if is_recording(path) else None
 
 
 def is_recording(path: Path) -> bool:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 import numpy as np
 
 from diagnosis.answer.drift import FEWEST, Drift, drift_of, value_at
 from diagnosis.answer.heldout import frozen, relative_misfit
 from diagnosis.answer.posterior import posterior
+from diagnosis.data.given import recordings_of, specimen_of
 from diagnosis.data.measured import Measured
 from diagnosis.data.twice import refuse_twice
 from diagnosis.errors.model import Errors, calibrated
@@ -77,18 +79,19 @@ class Calibration:
 
 @one_thread
 def calibrate(
-    specimen: Specimen,
-    recordings: Sequence[Recording],
+    specimen: Specimen | str | Path,
+    recordings: Sequence[Recording | str | Path],
     *,
     profile: bool = True,
     seed: int = 0,
     progress: Progress = silent,
 ) -> Calibration:
-    """Fit the toleranced parameters and those of [calibrate]; no mechanism is looked for.
+    """Fit the toleranced parameters and those of [calibrate]; no mechanism is looked for. Files may be named.
 
     ``progress`` is called with (what is being done, share done). Raises InputError when nothing is
     uncertain or nothing can be compared.
     """
+    specimen, recordings = specimen_of(specimen), recordings_of(recordings)
     if not specimen.tolerance and not specimen.calibrate:
         raise InputError(
             f"nothing to calibrate in '{specimen.title}': no parameter has a [tolerance] or a range in [calibrate]; "
@@ -120,7 +123,7 @@ def calibrate(
     return replace(found, drifts=drifts, seen=(*map(str, seen), *weak), instruments=instruments)
 
 
-def specimen_of(specimen: Specimen, found: Calibration) -> Specimen:
+def calibrated_specimen(specimen: Specimen, found: Calibration) -> Specimen:
     """The specimen with the fitted values in the place of nominal ones and ranges."""
     seen = replace(specimen, mechanisms={**specimen.mechanisms, **found.instruments})
     fitted = with_values(seen, {name: value.estimate for name, value in found.parameters.items()})
@@ -138,8 +141,8 @@ def specimen_at(specimen: Specimen, found: Calibration, exposure: str, level: fl
             f"no calibrated parameter can be told at a {exposure}: give {FEWEST} tests or more, of a specimen whose "
             "layers are calibrated."
         )
-    whole = specimen_of(specimen, found)
-    values = {d.parameter: value_at(d, exposure, level) for d in known}
+    whole = calibrated_specimen(specimen, found)
+    values = {d.parameter: value_at(d, exposure, level) for d in found.drifts if d in known or d.drifts}
     title = f"{specimen.title}, at a {exposure} of {level:g}"
     return replace(whole, title=title, parameters={**whole.parameters, **values})
 

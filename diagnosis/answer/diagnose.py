@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 
 from diagnosis.answer.assembly import assemble
 from diagnosis.answer.heldout import as_far_as_followed
@@ -11,6 +12,7 @@ from diagnosis.answer.ladder import confirmed
 from diagnosis.answer.result import Diagnosis
 from diagnosis.answer.statement import statement
 from diagnosis.answer.task import Task
+from diagnosis.data.given import recordings_of, specimen_of
 from diagnosis.data.twice import refuse_twice
 from diagnosis.errors.model import calibrated
 from diagnosis.fit.one_thread import one_thread
@@ -31,21 +33,22 @@ from grids.specimen import Specimen
 
 @one_thread
 def diagnose(
-    specimen: Specimen,
-    training: Sequence[Recording],
-    holdout: Sequence[Recording] = (),
+    specimen: Specimen | str | Path,
+    training: Sequence[Recording | str | Path],
+    holdout: Sequence[Recording | str | Path] = (),
     *,
     bootstrap: int = 0,
     progress: Progress = silent,
     seed: int = 0,
 ) -> Diagnosis:
-    """What the model leaves out, from ``training``, shown on ``holdout``.
+    """What the model leaves out, from ``training``, shown on ``holdout``; files of either may be named.
 
     ``bootstrap``: draws of a parametric bootstrap for the p-value (0: the score's null distribution).
     ``progress`` is called with (what is being done, share done). A KeyboardInterrupt during the search
     ends it: the answer holds what was found so far and has ``finished`` false. One after the search leaves
     out what the answer can do without (``skipped``); a second one is raised. Raises InputError.
     """
+    specimen, training, holdout = specimen_of(specimen), recordings_of(training), recordings_of(holdout)
     refuse_twice(training, holdout)
     progress("calibrating the base model and the errors of the recordings", 0.02)
     whole = Budget(SEARCH)

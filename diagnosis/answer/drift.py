@@ -120,6 +120,13 @@ def value_at(found: Drift, name: str, level: float) -> float:
 
     Raises InputError beyond the tests, and where the property changes with something else.
     """
+    for known in found.curves:
+        low, high = float(known.values.min()), float(known.values.max())
+        if known.exposure.name == name and not low <= level <= high:
+            raise InputError(
+                f"{name} {level:g} lies beyond the tests, {low:.3g} to {high:.3g} for {found.parameter}: give one "
+                "between, or test further."
+            )
     if not found.drifts:
         return found.mean
     curve = next((c for c in found.with_what if c.exposure.name == name), None)
@@ -127,12 +134,6 @@ def value_at(found: Drift, name: str, level: float) -> float:
         others = " or ".join(c.exposure.meaning for c in found.with_what) or "nothing that these tests tell"
         raise InputError(
             f"{found.parameter} changes with {others} and not with the {name}: take the value of one test instead."
-        )
-    low, high = float(curve.values.min()), float(curve.values.max())
-    if not low <= level <= high:
-        raise InputError(
-            f"{name} {level:g} lies beyond the tests, {low:.3g} to {high:.3g} for {found.parameter}: give one between, "
-            "or test further."
         )
     return curve.at(level)
 

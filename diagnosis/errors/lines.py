@@ -14,8 +14,8 @@ from diagnosis.errors.components import Component
 from diagnosis.errors.likelihood import Piece, Solved, solve
 from models.base import FloatArray
 
-LOWEST, STEP, FINE, HIGHEST = 6.0, 0.2, 0.02, 48.0
-"""Hz; below, a line cannot be told from motion, above there are no averages; and less than half the sampling rate."""
+LOWEST, STEP, FINE = 6.0, 0.2, 0.02
+"""Hz; below, a line cannot be told from motion; the highest one is at half the sampling rate."""
 CLEAR = 8.0
 """Standard deviations over what is expected at which a line counts."""
 APART = 1.5
@@ -26,7 +26,7 @@ MOST = 2
 def lines(pieces: Sequence[Piece], channels: int, theta: FloatArray, weights: FloatArray) -> tuple[Component, ...]:
     """Lines beyond what the other components explain, at most MOST a channel, strongest first."""
     found: list[Component] = []
-    frequency = np.arange(LOWEST, min(HIGHEST, _fastest(pieces) - STEP), STEP)
+    frequency = np.arange(LOWEST, _fastest(pieces) + FINE, STEP)
     if not frequency.size:
         return ()
     solved = [solve(piece, theta) for piece in pieces]
@@ -36,7 +36,7 @@ def lines(pieces: Sequence[Piece], channels: int, theta: FloatArray, weights: Fl
             best = int(np.argmax(left))
             if left[best] < CLEAR:
                 break
-            near = frequency[best] + np.arange(-STEP, STEP, FINE)
+            near = np.minimum(frequency[best] + np.arange(-STEP, STEP, FINE), frequency[-1])
             sharp = near[int(np.argmax(_score(pieces, solved, c, near, weights)))]
             found.append(Component("hum", c, float(sharp)))
             left[np.abs(frequency - frequency[best]) < APART] = 0.0

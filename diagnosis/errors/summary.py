@@ -10,6 +10,7 @@ from diagnosis.data.averaging import RATE
 from diagnosis.data.measured import Measured
 from diagnosis.errors.adequacy import Inadequacy, Repeatability, density, inadequacy, repeatability
 from diagnosis.errors.components import WALK
+from diagnosis.errors.hum import in_the_samples
 from diagnosis.errors.likelihood import whitened
 from diagnosis.errors.model import Errors
 
@@ -83,9 +84,7 @@ def summary(errors: Errors, measured: Measured) -> ErrorModel:
     seconds = sum(p.time.size * float(np.min(np.diff(p.time))) for p in still) / max(len(measured.channels), 1)
     longest = max(float(r.time[-1]) for r in measured.recordings)
     return ErrorModel(
-        channels=tuple(
-            _channel(errors, c, name, measured.unit_of(name), longest) for c, name in enumerate(measured.channels)
-        ),
+        channels=tuple(_channel(errors, measured, c, name, longest) for c, name in enumerate(measured.channels)),
         scatter=repeatability(errors, declared.events) if declared else None,
         base_noise=measured.base_noise,
         inadequacy=inadequacy(errors),
@@ -93,17 +92,18 @@ def summary(errors: Errors, measured: Measured) -> ErrorModel:
     )
 
 
-def _channel(errors: Errors, channel: int, name: str, unit: str, seconds: float) -> ChannelErrors:
+def _channel(errors: Errors, measured: Measured, channel: int, name: str, seconds: float) -> ChannelErrors:
     own = [(c, float(t)) for c, t in zip(errors.components, errors.theta, strict=True) if c.channel == channel]
     scale = float(errors.unit[channel])
     fast = sum(t for c, t in own if c.kind in ("white", "low_pass") or (c.kind == "exponential" and c.scale < SLOW))
     slow = sum(t for c, t in own if c.kind == "exponential" and c.scale >= SLOW)
     slow += sum(t * (seconds / WALK if np.isinf(c.scale) else 1.0) for c, t in own if c.shared)
     growing = sum(t for c, t in own if c.kind == "growing")
-    hum = tuple(Line(c.scale, float(np.sqrt(2.0 * t)) * scale) for c, t in own if c.kind == "hum" and t > 0.0)
+    lines = [(*in_the_samples(measured, name, c.scale), t) for c, t in own if c.kind == "hum" and t > 0.0]
+    hum = tuple(Line(frequency, float(np.sqrt(2.0 * t)) * scale / left) for frequency, left, t in lines)
     return ChannelErrors(
         channel=name,
-        unit=unit,
+        unit=measured.unit_of(name),
         noise=float(np.sqrt(fast)) * scale,
         colour=_colour(errors, channel),
         drift=float(np.sqrt(slow)) * scale,

@@ -88,10 +88,11 @@ def of_specimen(specimen: Specimen, model: Model) -> tuple[Unknown, ...]:
     units |= {f"{m}.{p.name}": p.unit for m in known for p in known[m].addressable(model.name)}
     found = []
     for name, relative in specimen.tolerance.items():
-        nominal = specimen.parameters[name]
+        nominal = specimen.nominal[name]
         sd = abs(relative * nominal)
-        reach = WIDEST_PRIOR * sd
-        found.append(Unknown(name, units[name], nominal - reach, nominal + reach, nominal, sd, prior=(nominal, sd)))
+        low, high = nominal - WIDEST_PRIOR * sd, nominal + WIDEST_PRIOR * sd
+        start = min(max(specimen.parameters[name], low), high)
+        found.append(Unknown(name, units[name], low, high, start, sd, prior=(nominal, sd)))
     found += [in_range(name, units[name], low, high) for name, (low, high) in specimen.calibrate.items()]
     return tuple(found)
 

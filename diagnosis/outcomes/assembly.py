@@ -22,7 +22,7 @@ from diagnosis.outcomes.search import Found, Search
 from diagnosis.outcomes.statement import statement
 from diagnosis.outcomes.wrong import wrong_predictions
 from diagnosis.progress import Progress
-from grids.specimen import Specimen
+from grids.specimen import Specimen, with_values
 from models.base import FloatArray
 from study.provenance import commit, now, versions
 
@@ -176,18 +176,5 @@ def _estimate(unknown: Unknown, value: float, samples: FloatArray) -> Estimate:
 
 def _extended(specimen: Specimen, chosen: Found, estimates: Mapping[str, Estimate]) -> Specimen:
     """The specimen with the most probable values and every effect switched on."""
-    parameters = dict(specimen.parameters)
-    mechanisms = {name: dict(values) for name, values in specimen.mechanisms.items()}
-    for name, one in estimates.items():
-        mechanism, dot, parameter = name.partition(".")
-        if dot:
-            mechanisms.setdefault(mechanism, {})[parameter] = one.estimate
-        else:
-            parameters[name] = one.estimate
-    return replace(
-        specimen,
-        title=f"{specimen.title}, extended" if chosen.effects else specimen.title,
-        parameters=parameters,
-        calibrate={},
-        mechanisms=mechanisms,
-    )
+    fitted = with_values(specimen, {name: one.estimate for name, one in estimates.items()})
+    return replace(fitted, title=f"{specimen.title}, extended" if chosen.effects else specimen.title, calibrate={})

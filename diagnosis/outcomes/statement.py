@@ -5,6 +5,7 @@ from __future__ import annotations
 from diagnosis.answer.rivals import told_apart
 from diagnosis.outcomes.adequacy import INADEQUATE, swapped
 from diagnosis.outcomes.answer import Compared, OutcomeDiagnosis, Wrong
+from diagnosis.outcomes.ladder import SCATTERS
 from diagnosis.outcomes.search import Search
 from grids.units import with_unit
 
@@ -38,12 +39,17 @@ def statement(answer: OutcomeDiagnosis, found: Search) -> str:
             )
     parts.append(
         f"From run to run the motion's scale at which it overturns scatters by {answer.scatter.estimate:.0%} "
-        f"({answer.scatter.low95:.0%} to {answer.scatter.high95:.0%})."
+        f"({answer.scatter.low95:.0%} to {answer.scatter.high95:.0%}{_end(answer)})."
     )
     parts.append(_scores(answer))
     if not answer.finished and answer.effects:
         parts.append("The search was stopped; this is what was found until then.")
     return " ".join(parts)
+
+
+def _end(answer: OutcomeDiagnosis) -> str:
+    """Of the scatter: the largest one that is weighed is an end of what was tried, not of what may be."""
+    return ", the largest that was tried" if answer.scatter.high95 >= SCATTERS[-1] else ""
 
 
 def _opening(answer: OutcomeDiagnosis) -> str:

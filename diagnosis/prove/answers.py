@@ -78,7 +78,8 @@ def plain(found: Diagnosis) -> dict[str, Any]:
 def answer(folder: Path, path: Path, answering: Answering = diagnosed) -> dict[str, Any]:
     """The answer to ``folder``, from ``path`` if it is there already; else found, timed and written.
 
-    A failure is an answer too: verdict ``failed`` and its traceback. What Ctrl-C cut short is none: a
+    A failure is an answer too: verdict ``failed`` and its traceback; one of the machine (memory, disk) is not written,
+    so that the case is tried again. What Ctrl-C cut short is none: a
     KeyboardInterrupt, and nothing is written, or it would be kept for the final one. ``seconds`` are by the clock,
     ``processor_seconds`` those in which the process had a core: other work on the machine adds to the first alone.
     """
@@ -86,15 +87,18 @@ def answer(folder: Path, path: Path, answering: Answering = diagnosed) -> dict[s
         return read_json(path)
     files = file_hashes(folder)
     begin, used = time.perf_counter(), time.process_time()
+    keep = True
     try:
         found = answering(folder)
-    except Exception:
+    except Exception as error:
+        keep = not isinstance(error, MemoryError | OSError)
         found = {"verdict": "failed", "statement": traceback.format_exc(), **NOTHING}
     if not found.get("finished", True):
         raise KeyboardInterrupt
     taken = {"seconds": time.perf_counter() - begin, "processor_seconds": time.process_time() - used}
     whole = {**found, **taken, "sources": fingerprint(), FILES: files}
-    write_json(path, whole)
+    if keep:
+        write_json(path, whole)
     return whole
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from diagnosis.prove import figures, report
-from diagnosis.prove.answers import Answering, answer, check_same, diagnosed, read_json, sha256, write_json
+from diagnosis.prove.answers import Answering, answer, check_same, diagnosed, fingerprint, read_json, sha256, write_json
 from diagnosis.prove.cases import check_answer, check_files, check_key
 from diagnosis.prove.pool import processes
 from diagnosis.prove.scores import Scored
@@ -96,8 +96,8 @@ def prove(
                         f"in {answers}: start again, with --jobs 1 where memory is short."
                     ) from None
                 say(f"{running[done].name}: {found['verdict']}, {found['seconds']:.0f} s")
-    if waiting:
-        say(f"{len(waiting)} cases are left: start again to go on")
+    if left := [path for path in chosen if not (answers / f"{path.name}.json").is_file()]:
+        say(f"{len(left)} cases are left: start again to go on")
         return {}
     hashes = {path.name: sha256(answers / f"{path.name}.json") for path in chosen}
     write_json(out / HASHES, hashes)
@@ -108,6 +108,8 @@ def prove(
     (out / "wrong.txt").write_text(report.wrong(scored) + "\n", encoding="utf-8")
     figures.draw_all(scored, out)
     say(report.table(numbers, f"{folder.name}, {half}"))
+    for warning in report.warnings(numbers, fingerprint()):
+        say(warning)
     if wrong := report.wrong(scored):
         say(wrong)
     return numbers

@@ -57,6 +57,17 @@ def provenance(cases: Sequence[Scored]) -> dict[str, Any]:
     }
 
 
+def warnings(figures: Mapping[str, Any], sources: str) -> list[str]:
+    """Lines about answers that failed, and about those of other ``sources`` than the present ones."""
+    said = []
+    if figures["failed"]:
+        said.append(f"failed, counted as wrong: {', '.join(figures['failed'])} (the reason stands in their answers)")
+    others = sum(count for name, count in figures["sources"].items() if name != sources)
+    if others:
+        said.append(f"{others} of {figures['cases']} answers are those of another version: delete them for new ones")
+    return said
+
+
 def table(figures: Mapping[str, Any], title: str) -> str:
     """The shares with their intervals, a line each."""
     lines = [f"{title}: {figures['cases']} cases {figures['by_kind']}"]

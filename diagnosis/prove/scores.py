@@ -51,7 +51,9 @@ class Scored:
 
     @property
     def detected(self) -> bool:
-        """Whether the answer says that anything is missing beyond such instruments."""
+        """Whether the answer says that anything is missing beyond such instruments; one that failed is wrong anyhow."""
+        if self.verdict == "failed":
+            return self.kind in SILENT
         if self.verdict in ("missing", "cannot_tell_apart") and self.answer["effects"]:
             return bool(self.effects)
         return self.verdict != "nothing_missing"

@@ -15,15 +15,14 @@ from grids.stages import Stage
 def extend(specimen: Specimen, diagnosis: Diagnosis) -> Specimen:
     """The specimen with fitted parameters instead of nominal ones and every effect of the answer.
 
-    What was to be calibrated has its value now; tolerances stay for parameters that keep a name in
-    [parameters]. Where a mechanism was calibrated (``mechanism.parameter`` in [calibrate]), its value
-    stands among the mechanisms. Where the answer is another base model it is a specimen of that one, all its
-    parameters as fitted.
+    What was to be calibrated has its value now; tolerances stay, about what was measured. Where a mechanism was
+    calibrated (``mechanism.parameter`` in [calibrate]), its value stands among the mechanisms. Where the answer is
+    another base model it is a specimen of that one, all its parameters as fitted.
     """
     if diagnosis.other_model is not None:
         return _of_another_model(specimen, diagnosis, diagnosis.other_model)
     fitted_base = _with_base(specimen, diagnosis)
-    parameters, mechanisms = fitted_base.parameters, dict(fitted_base.mechanisms)
+    mechanisms = dict(fitted_base.mechanisms)
     known = library(models.get(specimen.model))
     stages = dict(specimen.stages)
     for effect in diagnosis.effects:
@@ -41,11 +40,9 @@ def extend(specimen: Specimen, diagnosis: Diagnosis) -> Specimen:
             stages[form] = tuple(Stage(**one) for one in acting)
     unknown = {name: ends for name, ends in specimen.calibrate.items() if name not in diagnosis.base}
     return replace(
-        specimen,
+        fitted_base,
         title=f"{specimen.title}, extended" if diagnosis.effects else specimen.title,
-        parameters=parameters,
         calibrate=unknown,
-        tolerance={name: value for name, value in specimen.tolerance.items() if name in parameters},
         mechanisms=mechanisms,
         stages=stages,
         reference_peak=diagnosis.reference_peak or specimen.reference_peak,
@@ -68,6 +65,7 @@ def _of_another_model(specimen: Specimen, diagnosis: Diagnosis, other: OtherMode
         model=other.model,
         parameters=other.parameters,
         tolerance={},
+        measured={},
         calibrate={},
         options=other.options,
         vertical=other.vertical,

@@ -222,7 +222,7 @@ def _parameters(diagnosis: Diagnosis, specimen: Specimen) -> list[Mapping[str, A
     for name, value in diagnosis.base.items():
         stated = ""
         if name in specimen.parameters:
-            stated = words.stated(specimen.parameters[name], value.unit)
+            stated = words.stated(specimen.nominal[name], value.unit)
             if name in specimen.tolerance:
                 stated += f" ± {words.stated(100 * specimen.tolerance[name], '1')} %"
         elif name in specimen.calibrate:

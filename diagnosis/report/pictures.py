@@ -59,7 +59,7 @@ def drawings(diagnosis: Diagnosis, specimen: Specimen, recordings: Sequence[Reco
     for law in diagnosis.visited:
         found[f"law_{law.effect}"] = partial(plot_visited, law)
     if any(specimen.parameters.get(name) for name in diagnosis.base):
-        found["parameters"] = partial(plot_parameters, diagnosis.base, specimen.parameters, specimen.tolerance)
+        found["parameters"] = partial(plot_parameters, diagnosis.base, specimen.nominal, specimen.tolerance)
     return found
 
 

@@ -14,7 +14,7 @@ from grids.motions import Motion
 from grids.motions.artificial import TOLERANCE, target_of
 from grids.motions.matching import MATCHED
 from grids.motions.spectrum import response_spectrum
-from grids.motions.units import STANDARD_GRAVITY as GRAVITY
+from grids.units import STANDARD_GRAVITY as GRAVITY
 from study.figures.style import COLOURS, set_log_ticks
 
 ROWS = (

@@ -15,8 +15,8 @@ import xarray as xr
 import models
 import rocking
 from grids.motions import Motion
-from grids.motions.units import STANDARD_GRAVITY as GRAVITY
 from grids.specimen import Specimen
+from grids.units import STANDARD_GRAVITY as GRAVITY
 
 HERE = Path(__file__).resolve().parent
 TAIL = 4.0

@@ -23,8 +23,7 @@ from grids.motions.base import Motion
 from grids.motions.eurocode8 import GROUNDS, ElasticSpectrum
 from grids.motions.matching import MATCHED, match
 from grids.motions.spectrum import response_spectrum
-from grids.motions.units import STANDARD_GRAVITY
-from grids.units import to_si
+from grids.units import STANDARD_GRAVITY, to_si
 from models.errors import InputError, nearest
 
 FloatArray = NDArray[np.float64]

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from grids.motions.base import Motion
-from grids.motions.units import STANDARD_GRAVITY
+from grids.units import STANDARD_GRAVITY
 from models.errors import InputError
 
 FloatArray = NDArray[np.float64]

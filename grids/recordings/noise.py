@@ -5,7 +5,8 @@ residual r = x - h * x. White noise of standard deviation sigma leaves
 
     std(r) = sigma sqrt(1 - h_0),        corr(r_i, r_i+1) = sum g_k g_k+1 / sum g_k^2,   g = delta - h,
 
-since h is a projection (sum h_k^2 = h_0). The median absolute deviation ignores impacts.
+since h is a projection (sum h_k^2 = h_0). The median absolute deviation ignores impacts. Steady lines are no noise of
+this kind, and are taken out of the residual first.
 """
 
 from __future__ import annotations
@@ -17,11 +18,14 @@ from functools import cache
 import numpy as np
 
 from grids.recordings.base import FloatArray, Recording
+from grids.recordings.lines import without_lines
 from models.errors import InputError
 
 WINDOW, DEGREE = 9, 4
 MAD_TO_SIGMA = 1.482602218505602
 """Of a normal distribution."""
+PASSED = 0.16
+"""Cycles a sample, from which on more than a hundredth of a power is left; what is left of a motion lies below."""
 OUTLIER = 4.0
 LAG_TOLERANCE = 0.1
 """Departure of the lag-one correlation that still counts as white, beside its own scatter 4/sqrt(n)."""
@@ -58,7 +62,7 @@ def noise_of(values: FloatArray) -> Noise:
     kernel = _high_pass()
     energy = float(kernel @ kernel)
     if_white = float(kernel[:-1] @ kernel[1:]) / energy
-    residual = np.convolve(values, kernel, mode="valid")
+    residual = without_lines(np.convolve(values, kernel, mode="valid"), PASSED)
     spread = MAD_TO_SIGMA * float(np.median(np.abs(residual - np.median(residual))))
     if spread <= 1e-12 * float(np.max(np.abs(values))):
         return Noise(0.0, if_white, if_white, True)

@@ -23,6 +23,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from string import Formatter
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,7 +46,7 @@ class OutcomeFile(Schema):
     overturned: str | None = None
     group: str | None = None
     component: str | None = None
-    statement: dict[str, str | float] = Field(default_factory=dict)
+    statement: dict[str, Any] = Field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -23,6 +23,8 @@ from models.kinematics import DIRECTIONS, REFERENCES, UNITS, Place
 KEYS = ("quantity", "body", "position_x", "position_z", "direction", "relative_to")
 MOST = 2
 """Bodies of a model."""
+FARTHEST = 50.0
+"""m, of a place from the middle of a body's underside: beyond, it is in another unit."""
 POINTLESS = ("rotation", "angular_velocity", "uplift", "compression")
 """Quantities that have no direction of their own to choose."""
 
@@ -86,6 +88,9 @@ def read_place(name: str, table: Mapping[str, Any]) -> Place:
             + (" or 'absolute'." if given.quantity == "acceleration" else ".")
         )
     x, z = (to_si(value, "m", f"{where}: position_{axis}") for axis, value in zip("xz", _position(given), strict=True))
+    for axis, value in (("x", x), ("z", z)):
+        if abs(value) > FARTHEST:
+            raise InputError(f"{where}: position_{axis} = {value:g} m is on no wall; give its unit, '{value:g} mm'.")
     return Place(given.quantity, int(given.body), x, z, direction, relative)
 
 

@@ -14,6 +14,8 @@ from grids.recordings.suspicions import suspicions_of
 from models.errors import InputError, nearest
 
 READERS = (netcdf, csv_toml)
+BASE = "base_"
+"""How the channels of the base's motion begin."""
 
 
 @np.errstate(over="ignore", invalid="ignore")  # what becomes infinite is a sample without a value
@@ -22,8 +24,9 @@ def read_recording(path: str | Path, *, base_only: bool = False) -> Recording:
 
     Samples without a value are cut off where they stand at the start or the end of the record;
     inside it they are an error, because a filled gap is not a measurement. A recording of a body that
-    overturned is cut before its fall, with a note. ``base_only``: the motion of the base is all that is wanted;
-    nothing is cut before a fall, and no response is asked for. Nothing is filtered, interpolated or detrended.
+    overturned is cut before its fall, with a note. ``base_only``: the motion of the base is all that is wanted and
+    returned, as long as its own channels have values, beyond a fall too. Nothing is filtered, interpolated or
+    detrended.
     Raises InputError with one sentence: file, channel, place, cure.
     """
     path = Path(path)
@@ -57,6 +60,8 @@ def _checked(name: str, raw: Raw, base_only: bool) -> Recording:
         raise InputError(
             f"has no {REQUIRED} (found: {found or 'no channel'}); name or map it so, zeros for free rocking."
         )
+    if base_only:
+        raw = replace(raw, channels={c: x for c, x in raw.channels.items() if c.startswith(BASE)}, levels=())
     if not base_only and not any(c in raw.places or CHANNELS[c].response for c in raw.channels):
         responses = [channel for channel, declared in CHANNELS.items() if declared.response]
         raise InputError(

@@ -21,8 +21,8 @@ from numpy.typing import NDArray
 from grids.recordings import flat_tops
 from grids.recordings.base import REQUIRED, FloatArray, Recording
 from grids.recordings.zero import zeros
+from grids.units import STANDARD_GRAVITY as GRAVITY
 
-GRAVITY = 9.80665
 SMOOTHING = 0.06
 """s; width of the local cubic that differentiates a rotation twice: several samples, well under a swing."""
 UPLIFTED = 0.2
@@ -61,11 +61,26 @@ class Rocking:
 
 def suspicions_of(recording: Recording) -> tuple[str, ...]:
     """The sentences about a recording, possibly none."""
-    found = [*_of_base(recording), *_of_levels(recording), *flat_tops.suspected(recording)]
+    found = [*_of_samples(recording), *_of_base(recording), *_of_levels(recording), *flat_tops.suspected(recording)]
     for name in ("rotation_1", "rotation_2"):
         if name in recording.channels:
             found += _of_rotation(name, recording)
     return tuple(found)
+
+
+def _of_samples(recording: Recording) -> Iterator[str]:
+    """Channels that stay at one value, and two that hold the same samples."""
+    seen: dict[bytes, str] = {}
+    for name, values in recording.channels.items():
+        for level, row in zip(recording.levels or ("",), np.atleast_2d(values), strict=False):
+            called = f"{name} of level {level}" if values.ndim == 2 else name
+            if not np.ptp(row):
+                if row[0]:
+                    yield f"{called} stays at {row[0]:.4g} throughout: was the sensor connected?"
+                continue
+            first = seen.setdefault(row.tobytes(), called)
+            if first != called:
+                yield f"{called} holds the samples of {first}: is one column named twice?"
 
 
 def _of_base(recording: Recording) -> Iterator[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import sys
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -14,12 +15,15 @@ from rocking.interrupts import INTERRUPTED, STOPPED, raise_interrupts
 
 if TYPE_CHECKING:
     import xarray as xr
+    from rich.console import Console
 
     from study.sets.cells import Event
 
 NumberT = TypeVar("NumberT", int, float)
 USER_ERROR = 2
 FAILURES = 1
+WIDE = 200
+"""Columns of a table that goes into a file or a pipe."""
 
 
 class Commands(TyperGroup):
@@ -52,6 +56,13 @@ def _refusal(error: OSError) -> str:
     full = error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
     cure = "make room there, or name another place." if full else "name another place, or make this one writable."
     return f"{error.filename}: {what}; {cure}"
+
+
+def console() -> Console:
+    """For tables: as wide as the terminal, and where there is none as wide as a table may get."""
+    from rich.console import Console
+
+    return Console(width=None if sys.stdout.isatty() else WIDE)
 
 
 SELECT = "AXIS=VALUE with its unit, for instance 'pga=0.3 g'"

@@ -9,7 +9,7 @@ import typer
 
 import models
 from models.errors import InputError
-from rocking.commands.base import STRICT, warn
+from rocking.commands.base import STRICT, console, warn
 from rocking.commands.outputs import keep_inputs
 from rocking.commands.recordings import read_recordings, stages, warn_of_stages
 
@@ -50,8 +50,6 @@ def calibrate(
         if out.suffix.lower() != ".toml":
             raise InputError(f"--out {out}: a specimen is written as TOML; end the name in .toml.")
         keep_inputs([out, samples_beside(out), law_of(out)], [specimen, *recordings])
-    from rich.console import Console
-
     from grids.plausibility import suspicions_of_specimen
     from grids.specimen import read_specimen
 
@@ -63,20 +61,20 @@ def calibrate(
         from diagnosis import calibrate as calibrate_recordings
 
         found = calibrate_recordings(wall, read, progress=progress)
-    console = Console()
-    console.print(parameter_table(wall.title, found))
+    show = console()
+    show.print(parameter_table(wall.title, found))
     if len(found.parameters) > 1:
-        console.print(correlation_table(found))
+        show.print(correlation_table(found))
     if found.channels:
-        console.print(channel_table(found))
+        show.print(channel_table(found))
     if found.by_recording:
-        console.print(drift_table(found))
+        show.print(drift_table(found))
     for seen in found.seen:
-        console.print(f"Seen in the recordings: {seen}.", highlight=False)
+        show.print(f"Seen in the recordings: {seen}.", highlight=False)
     for drift in found.drifts:
-        console.print(f"{drift}.", highlight=False)
-    console.print(profile_table(found))
-    console.print(
+        show.print(f"{drift}.", highlight=False)
+    show.print(profile_table(found))
+    show.print(
         f"misfit {100 * found.misfit:.3g} % of the signal, noise {100 * found.noise_floor:.3g} %, "
         f"{found.windows} windows",
         highlight=False,
@@ -87,12 +85,12 @@ def calibrate(
 
 def write(wall: Specimen, found: Calibration, out: Path, at_strain: float | None) -> None:
     """The calibrated specimen as a file, and beside it samples of what was found."""
-    from diagnosis.answer.calibration import specimen_at, specimen_of
+    from diagnosis.answer.calibration import calibrated_specimen, specimen_at
     from diagnosis.report.posterior_file import write_posterior
     from grids.write_specimen import law_beside, specimen_text
     from study.store import write_text
 
-    chosen = specimen_of(wall, found) if at_strain is None else specimen_at(wall, found, "strain", at_strain)
+    chosen = calibrated_specimen(wall, found) if at_strain is None else specimen_at(wall, found, "strain", at_strain)
     write_text(out, specimen_text(chosen, law_of(out).name))
     law = law_beside(chosen)
     if law is not None:
@@ -132,10 +130,10 @@ def parameter_table(title: str, found: Calibration) -> Table:
 
 def correlation_table(found: Calibration) -> Table:
     """The correlation of the estimates, below the diagonal."""
-    from rich.table import Table
+    from rich.table import Column, Table
 
     names = list(found.parameters)
-    table = Table("correlation", *names[:-1])
+    table = Table("correlation", *(Column(name, overflow="fold") for name in names[:-1]))
     for i, name in enumerate(names[1:], start=1):
         table.add_row(name, *(f"{found.correlation[i, j]:+.2f}" for j in range(i)))
     return table
@@ -169,18 +167,19 @@ def profile_table(found: Calibration) -> Table:
     """By how much twice the log likelihood falls when a parameter is held beside its estimate, all others refitted."""
     from rich.table import Table
 
-    points = max((at.size for at, _ in found.profiles.values()), default=0)
     caption = (
         "fall of 2 log likelihood, all others refitted: 3.84 marks 95 % where the model fits to the noise; "
         "the intervals are widened by what it leaves besides"
     )
-    table = Table("profile", "", caption=caption, caption_justify="left")
-    for _ in range(points):
-        table.add_column(justify="right")
+    table = Table("profile", caption=caption, caption_justify="left")
+    for head in ("held at", "fall"):
+        table.add_column(head, justify="right")
+    table.add_column("unit")
     for name, (at, fall) in found.profiles.items():
-        unit = found.parameters[name].unit
-        table.add_row(name, "held at" if unit == "1" else f"held at, {unit}", *(f"{value:.5g}" for value in at))
-        table.add_row("", "fall", *(f"{max(value, 0.0):.3g}" for value in fall), end_section=True)
+        for k, (value, lost) in enumerate(zip(at, fall, strict=True)):
+            unit = found.parameters[name].unit
+            last = k + 1 == at.size
+            table.add_row("" if k else name, f"{value:.5g}", f"{max(lost, 0.0):.3g}", unit, end_section=last)
     return table
 
 

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from rocking.commands.base import NEAREST, SELECT, read_event, read_selection
+from rocking.commands.base import NEAREST, SELECT, console, read_event, read_selection
 from rocking.commands.fragility import EXCEEDS
 
 
@@ -22,7 +22,6 @@ def cloud(
     out: Annotated[Path | None, typer.Option(help="Folder of the figures (default: the study's).")] = None,
 ) -> None:
     """Rank the measures of the motions by how well they sort outcomes; draw cloud.png and measures.png."""
-    from rich.console import Console
     from rich.table import Table
 
     from study.figures import plot_cloud, plot_sorting, save_figure
@@ -35,7 +34,7 @@ def cloud(
     table = Table("measure", "sorts (95 % interval)", "dispersion", title=f"{found.event}, {found.motions} motions")
     for name, area, low, high, spread in zip(found["measure"].values, *(found[v].values for v in found), strict=True):
         table.add_row(str(name), f"{area:.3f} ({low:.3f} to {high:.3f})", f"{spread:.3g}")
-    Console().print(table)
+    console().print(table)
     home = out or (folder if folder.is_dir() else folder.parent)
     across = measure or str(found["measure"].values[0])
     typer.echo(f"written: {save_figure(partial(plot_cloud, cube, output, across, at), home / 'cloud.png')}")

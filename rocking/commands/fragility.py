@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from rocking.commands.base import NEAREST, SELECT, read_event, read_selection
+from rocking.commands.base import NEAREST, SELECT, console, read_event, read_selection
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -40,7 +40,6 @@ def fragility(
 
 
 def _print(found: xr.Dataset, over: str | None) -> None:
-    from rich.console import Console
     from rich.table import Table
 
     from study.selection import value_shown
@@ -55,7 +54,7 @@ def _print(found: xr.Dataset, over: str | None) -> None:
         name = [value_shown(found[over], found[over].values[k])] if over else []
         median, spread = (_interval(one, what, by) for what, by in (("median", factor), ("dispersion", 1.0)))
         table.add_row(*name, median, spread, str(int(one["cells"])), str(one["why"].values))
-    Console().print(table)
+    console().print(table)
 
 
 def _interval(one: xr.Dataset, name: str, factor: float) -> str:

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from rocking.commands.base import STRICT, human_bytes, human_time, warn, whole
+from rocking.commands.base import STRICT, console, human_bytes, human_time, warn, whole
 
 
 def plan(
@@ -16,7 +16,6 @@ def plan(
     strict: Annotated[bool, typer.Option("--strict", help=STRICT)] = False,
 ) -> None:
     """Check a plan and print its axes, every value of its cells, blocks, bytes, memory a task and the time."""
-    from rich.console import Console
     from rich.table import Table
 
     from grids.entering import entering
@@ -40,8 +39,8 @@ def plan(
     for axis in checked.axes:
         ends = [f"{v:.6g}" if isinstance(v, float) else str(v) for v in axis.values[[0, -1]].tolist()]
         table.add_row(axis.name, str(axis.size), *ends, axis.unit)
-    console = Console()
-    console.print(table)
+    show = console()
+    show.print(table)
     total = sample.seconds_per_cell * checked.grid.size
     rows = {
         "motions": ", ".join(motion.name for motion in checked.motions),
@@ -53,11 +52,11 @@ def plan(
         f"({sample.cells} cells in {sample.seconds:.3f} s; compiling {human_time(sample.compile_seconds)})",
     }
     for name, text in rows.items():
-        console.print(f"{name:<14} {text}", highlight=False, soft_wrap=True)
+        show.print(f"{name:<14} {text}", highlight=False, soft_wrap=True)
     values = Table("value of all cells", "", "unit", "from", "meaning")
     for entry in entering(checked):
         value = entry.value if isinstance(entry.value, str) else f"{entry.value:.6g}"
         values.add_row(entry.name, value, entry.unit, entry.source, entry.meaning)
-    console.print(values)
+    show.print(values)
     for note in checked.notes:
-        console.print(f"note: {note}", highlight=False, soft_wrap=True)
+        show.print(f"note: {note}", highlight=False, soft_wrap=True)

@@ -42,15 +42,20 @@ def read_recordings(paths: Sequence[Path], held_out: Sequence[Path] = (), *, str
             )
         seen[recording.name] = path
         found.append(recording)
-        for note in recording.notes:
-            typer.echo(f"note: {recording.name}: {note}", err=True)
-        for suspicion in recording.suspicions:
-            typer.echo(f"suspicion: {recording.name}: {suspicion}", err=True)
+        say(recording)
     warn(suspicions_of_recordings(found), strict)
     for together in (found[: len(paths)], found[len(paths) :]):
         for channel, lacking in left_out(together).items():
             typer.echo(f"note: {channel} is not compared, because {', '.join(lacking)} lacks it", err=True)
     return found
+
+
+def say(recording: Recording) -> None:
+    """What was done to a recording and what looks wrong with it, on stderr."""
+    for note in recording.notes:
+        typer.echo(f"note: {recording.name}: {note}", err=True)
+    for suspicion in recording.suspicions:
+        typer.echo(f"suspicion: {recording.name}: {suspicion}", err=True)
 
 
 def warn_of_stages(specimen: Specimen, recordings: Sequence[Recording], strict: bool, alone: bool = False) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from rocking.commands.base import NEAREST, SELECT, read_event, read_selection, whole
+from rocking.commands.base import NEAREST, SELECT, console, read_event, read_selection, whole
 from rocking.commands.fragility import EXCEEDS
 from rocking.commands.run import run
 
@@ -56,7 +56,6 @@ def sensitivity(
 
 
 def _print(found: xr.Dataset, output: str) -> None:
-    from rich.console import Console
     from rich.table import Table
 
     from study.sensitivity.table import what_to_tune
@@ -67,7 +66,7 @@ def _print(found: xr.Dataset, output: str) -> None:
     table = Table(*rows[0], title=f"{output}: mean {float(one['mean'][0]):.4g} over {found.points} points, {of}")
     for row in rows[1:]:
         table.add_row(*row)
-    Console().print(table)
+    console().print(table)
     motion, parameters = float(one["share_of_motion"]), float(one["share_of_parameters"])
     if motion >= 0.0:
         typer.echo(f"of the variance over motions and parameters: the motion alone {motion:.0%}, ", nl=False)

@@ -9,7 +9,7 @@ import typer
 
 from rocking.commands.base import STRICT, number, warn
 from rocking.commands.outputs import keep_inputs
-from rocking.commands.recordings import warn_of_stages
+from rocking.commands.recordings import say, warn_of_stages
 
 
 def simulate(
@@ -35,9 +35,9 @@ def simulate(
     """Simulate a specimen and write every observable over time, and the events."""
     from grids.motions.locate import split_source
     from grids.plausibility import suspicions_of_peak, suspicions_of_specimen
-    from grids.recordings import Recording, read_recording
+    from grids.recordings import Recording
     from grids.specimen import read_specimen, with_mechanism
-    from rocking.simulation import is_recording
+    from rocking.simulation import recording_of
     from rocking.simulation import simulate as simulate_history
     from study.figures.save import check_suffix
     from study.history import write_history
@@ -49,9 +49,9 @@ def simulate(
     if displacement_high_pass is not None:
         wall = with_mechanism(wall, "integrated_displacement", {"high_pass_hz": displacement_high_pass})
     warn(suspicions_of_specimen(wall), strict)
-    shaken: Recording | str | None = motion
-    if motion is not None and is_recording(Path(motion)):
-        shaken = read_recording(motion, base_only=True)
+    shaken: Recording | str | None = None if motion is None else recording_of(motion) or motion
+    if isinstance(shaken, Recording):
+        say(shaken)
         warn_of_stages(wall, [shaken], strict, alone=True)
     history = simulate_history(wall, shaken, duration=duration, integrator=integrator, component=component, scale=scale)
     warn(suspicions_of_peak("the motion", float(abs(history["base_acceleration_x"]).max())), strict)

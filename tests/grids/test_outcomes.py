@@ -91,3 +91,14 @@ def test_an_empty_cell_in_the_name_of_a_motion_is_no_motion(tmp_path: Path) -> N
     plain = DESCRIPTION.replace("{test:0>3}", "{number:0>3}")
     with pytest.raises(InputError, match="run '12' has an empty cell in column 'number'"):
         read_outcomes(written(tmp_path, "test,motion,fell,number\n1,a,0,1\n12,a,1,\n", plain))
+
+
+def test_a_statement_names_the_columns_of_a_table(tmp_path: Path) -> None:
+    """A CSV needs more than a unit: columns, whether it has a header, lines to be skipped."""
+    stated = DESCRIPTION.replace("shaking.npz:run_{test:0>3}", "run_{test}.csv").partition("[statement]")[0]
+    stated += '[statement]\ntime_step = "0.01 s"\nheader = false\n'
+    stated += '[statement.columns]\nacceleration_x = { column = 1, unit = "cm/s2" }\n'
+    path = written(tmp_path, description=stated)
+    for run in ("1", "12", "3"):
+        (tmp_path / f"run_{run}.csv").write_text("\n".join([f"{run}.0"] * 20))
+    np.testing.assert_allclose([motion.pga for motion in read_outcomes(path).motions], [0.01, 0.12, 0.03])

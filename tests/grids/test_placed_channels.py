@@ -64,6 +64,7 @@ def test_a_specimen_with_channels_is_written_and_read_back(name: str) -> None:
         ({"direction": "up"}, "direction"),
         ({"relative_to": "absolute"}, "subtract"),
         ({"position_x": "12 kg"}, "position_x"),
+        ({"position_x": -200.0}, "'-200 mm'"),
         ({"quantity": "uplift"}, "no direction"),
         ({"poition_x": 1.0}, "position_x"),
     ),

@@ -12,6 +12,7 @@ import pytest
 from grids.data_folder import data_folder
 from grids.motions import read_motion
 from grids.recordings import noise_of, read_recording
+from grids.recordings.lines import without_lines
 from models.errors import InputError
 
 STEP, COUNT, GRAVITY = 0.005, 3000, 9.80665
@@ -376,3 +377,34 @@ def test_the_table_of_the_page_is_read_as_the_page_maps_it(written: Callable[[st
     assert found.time_step == 0.005 and found.levels == ("0", "1")
     assert found.channels["rotation_1"][-1] == pytest.approx(np.radians(0.5))
     assert found.channels["level_acceleration_x"][:, -1] == pytest.approx([0.2 * GRAVITY, 0.3 * GRAVITY])
+
+
+@pytest.mark.parametrize("frequency", [30.0, 50.0, 60.0, 70.0, 88.3])
+def test_hum_is_no_noise(frequency: float) -> None:
+    """A steady line three times the noise, wherever the local polynomial leaves it."""
+    rng, time = np.random.default_rng(6), np.arange(1600) * 0.005
+    values = 0.05 * np.sin(7.0 * time) + rng.normal(0, 1e-4, time.size)
+    found = noise_of(values + 3e-4 * np.sin(2 * np.pi * frequency * time + 0.3))
+    assert found.white and found.sigma == pytest.approx(noise_of(values).sigma, rel=0.05)
+
+
+@pytest.mark.parametrize("samples", [300, 5000])
+def test_noise_has_no_lines(samples: int) -> None:
+    for seed in range(20):
+        values = np.random.default_rng(seed).normal(size=samples)
+        assert without_lines(values) is values
+
+
+def test_a_motion_of_the_base_is_used_where_the_sensors_of_the_body_fail(tmp_path: Path) -> None:
+    lost = np.where(np.arange(ROTATION.size) < ROTATION.size // 3, ROTATION, np.nan)
+    path = stored(tmp_path, dataset(rotation_1=(lost, "rad")))
+    found = read_recording(path, base_only=True)
+    assert found.time.size == ROTATION.size and set(found.channels) == {"base_acceleration_x"}
+    assert read_recording(path).time.size < ROTATION.size
+
+
+def test_a_dead_channel_and_one_named_twice_are_suspected(tmp_path: Path) -> None:
+    dead = read_recording(stored(tmp_path, dataset(rotation_2=(0 * ROTATION + 0.02, "rad"))))
+    assert any("rotation_2 stays at 0.02 throughout" in said for said in dead.suspicions)
+    twice = read_recording(stored(tmp_path, dataset(rotation_2=(ROTATION, "rad"))))
+    assert any("rotation_2 holds the samples of rotation_1" in said for said in twice.suspicions)

@@ -52,3 +52,51 @@ def test_a_folder_is_no_recording(tmp_path: Path) -> None:
     (tmp_path / "shake.csv").mkdir()
     with pytest.raises(InputError, match=r"shake.csv is a folder; name a file in it"):
         read_recording(tmp_path / "shake.csv")
+
+
+def test_an_empty_cell_between_white_space_is_told_from_the_next_one(written: Callable[[str, str], Path]) -> None:
+    """A row that lacks a cell would give its rotation to the base."""
+    written("test_4.toml", TOML.replace("[columns]", 'delimiter = " "\n[columns]'))
+    rows = [f"{a} {r} 0.5" for a, r in VALUES]
+    rows[7] = f"{VALUES[7][1]} 0.5"
+    with pytest.raises(InputError, match=r"line 9 has 2 cells, line 1 3; write nan where nothing was measured"):
+        read_recording(written("test_4.csv", "\n".join(["acc inc x", *rows])))
+    rows[7] = f"{VALUES[7][0]} {VALUES[7][1]} nan"
+    assert read_recording(written("test_4.csv", "\n".join(["acc inc x", *rows]))).time.size == len(VALUES)
+
+
+def test_a_row_of_units_is_named_as_one(written: Callable[[str, str], Path]) -> None:
+    written("test_4.toml", TOML)
+    rows = [f"{a},{r}" for a, r in VALUES]
+    with pytest.raises(InputError, match=r"line 2 holds no number \(m/s2, rad\); .* skip = 2 with header = false"):
+        read_recording(written("test_4.csv", "\n".join(["acc,inc", "m/s2,rad", *rows])))
+    by_number = (
+        TOML.replace('"acc"', "1").replace('"inc"', "2").replace("[columns]", "skip = 2\nheader = false\n[columns]")
+    )
+    written("test_4.toml", by_number)
+    table = "\n".join(["acc,inc", "m/s2,rad", *rows])
+    assert read_recording(written("test_4.csv", table)).time.size == len(VALUES)
+
+
+def test_a_sampling_rate_that_changes_is_told_from_lost_samples(written: Callable[[str, str], Path]) -> None:
+    written("test_4.toml", TOML.replace('time_step = "5 ms"', 'time = { column = "t", unit = "s" }'))
+
+    def read(times: np.ndarray) -> None:
+        rows = [f"{t:.6f},{a},{r}" for t, (a, r) in zip(times, VALUES, strict=True)]
+        read_recording(written("test_4.csv", "\n".join(["t,acc,inc", *rows])))
+
+    steps = np.where(np.arange(len(VALUES)) < 250, 0.005, 0.010)
+    with pytest.raises(InputError, match=r"the step changes from 0.005 s to 0.01 s at 1.25 s: split"):
+        read(np.cumsum(steps))
+    steps = np.where(np.arange(len(VALUES)) == 250, 0.015, 0.005)
+    with pytest.raises(InputError, match=r"about 2 sample\(s\) are missing"):
+        read(np.cumsum(steps))
+
+
+@pytest.mark.parametrize(("unit", "factor"), [("1e-3 g", 9.80665e-3), ("gal", 0.01), ("cm/s2", 0.01)])
+def test_a_recording_knows_the_units_that_a_motion_knows(
+    unit: str, factor: float, written: Callable[[str, str], Path]
+) -> None:
+    written("test_4.toml", TOML.replace("m/s2", unit))
+    found = read_recording(written("test_4.csv", "\n".join(["acc,inc", *(f"{a},{r}" for a, r in VALUES)])))
+    assert found.channels["base_acceleration_x"][3] == pytest.approx(factor * float(VALUES[3][0]))

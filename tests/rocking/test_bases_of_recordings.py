@@ -55,3 +55,18 @@ def test_a_description_that_is_not_utf_8_is_named(name: str, tmp_path: Path) -> 
     (tmp_path / "run.toml").write_bytes('title = "Größe"'.encode("latin-1") + COLUMNS.encode())
     with pytest.raises(InputError, match=r"run.toml is not UTF-8 text; save it as UTF-8"):
         rocking.simulate(SPECIMEN, tmp_path / name)
+
+
+def test_a_recording_is_one_wherever_it_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """By a path into the data folder as by its own: the same samples, between them the same motion."""
+    (tmp_path / "runs").mkdir()
+    own = rocking.simulate(SPECIMEN, stored(tmp_path / "runs" / "run.nc"), duration=0.3)
+    monkeypatch.setenv("ROCKING_DATA", str(tmp_path))
+    assert rocking.simulate(SPECIMEN, "runs/run.nc", duration=0.3).equals(own)
+
+
+def test_what_a_motion_cannot_be_asked_for_is_refused() -> None:
+    motion = rocking.read_motion("ridgecrest_2019_clc")
+    with pytest.raises(InputError, match="was read with its component: leave 'north' out"):
+        rocking.simulate(SPECIMEN, motion, component="north")
+    assert rocking.simulate(SPECIMEN, motion, duration="300 ms").sizes["time"] == round(0.3 / motion.time_step) + 1

@@ -21,11 +21,11 @@ from grids.motions.readers.base import (
     read_text,
     vertical_sign,
 )
-from grids.motions.units import STANDARD_GRAVITY
 from grids.sampling import check_step, parse_numbers
+from grids.units import STANDARD_GRAVITY
 from models.errors import InputError
 
-_NUMBER = r"([-+]?\d*\.?\d+(?:[eE][-+]?\d+)?)"
+_NUMBER = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?)(?![\w.])"
 _NPTS = (re.compile(r"NPTS\s*=\s*(\d{1,9})\b", re.I), re.compile(rf"^\s*(\d{{1,9}})\s+{_NUMBER}\s*,?\s*NPTS", re.I))
 _DT = (re.compile(rf"DT\s*=\s*{_NUMBER}", re.I), re.compile(rf"^\s*\d+\s+{_NUMBER}\s*,?\s*NPTS", re.I))
 _RSN = re.compile(r"RSN\d+_", re.I)
@@ -58,7 +58,7 @@ def _read_one(path: Path) -> tuple[str, float, FloatArray]:
     if not component:
         raise InputError(f"{path.name}: line 2 does not end with the component: write it after the last comma")
     samples = check_samples(values * STANDARD_GRAVITY, path.name)
-    return component, check_step(float(step[1]), path.name), samples
+    return component, check_step(float(re.sub("[dD]", "e", step[1])), path.name), samples
 
 
 def heading_of(path: Path) -> tuple[str, str]:

@@ -20,17 +20,25 @@ LARGEST = 200.0
 """Peak in m s-2 beyond which the unit must be wrong (the strongest records reach about 45)."""
 
 _VARIABLES = ("base_acceleration_", "acceleration_")
-_UP = {"up", "u", "v", "ver", "vert", "vertical", "vrt", "ud", "updown", "z", "upward"}
+_UP_ALONE = {"u", "v"}
+_UP = {"up", "ver", "vrt", "ud", "updown", "z", "upward"}
 _DOWN = {"down", "dwn", "dn", "downward"}
-_SEED_CHANNEL_UP = re.compile(r"[beh][nlh]z")
+_HORIZONTAL = {"n", "e", "s", "w", "x", "y", "h", "ns", "sn", "ew", "we", "north", "east"}
+_UP_BY_FORM = re.compile(r"vert[a-z]*|a(cc)?z|v(el)?z|[bcdefghlms][ghlmn]z")
+"""Vertical in several languages, az and vz, and the codes of SEED: band, instrument, orientation."""
 
 
 def vertical_sign(component: str) -> int:
     """+1 for a vertical component positive up, -1 for one positive down, 0 for a horizontal one."""
-    word = re.sub(r"[^a-z]", "", component.lower())
-    if word in _DOWN:
-        return -1
-    return 1 if word in _UP or _SEED_CHANNEL_UP.fullmatch(word) else 0
+    words = re.findall(r"[a-z]+", component.lower())
+    if "".join(words) in _UP_ALONE:
+        return 1
+    for word in ("".join(words), *(words if _HORIZONTAL.isdisjoint(words) else ())):
+        if word in _DOWN:
+            return -1
+        if word in _UP or _UP_BY_FORM.fullmatch(word):
+            return 1
+    return 0
 
 
 def component_name(variable: str) -> str | None:

@@ -21,8 +21,8 @@ from grids.motions.readers.base import (
     fixed_width,
     read_text,
 )
-from grids.motions.units import acceleration_factor
 from grids.sampling import check_step
+from grids.units import factor_to_si
 from models.errors import InputError
 
 _CHANNEL = re.compile(r"^Chan\s+\d+:\s*(\S+)", re.I)
@@ -55,7 +55,7 @@ def _read(path: Path, key: str | None, statement: Mapping[str, Any]) -> Record:
             rate = float(points[2])
             if rate <= 0.0:
                 raise InputError(f"{where}: header says {rate:g} samples per second: the file is damaged")
-            samples = check_samples(values * acceleration_factor(points[3], where), where)
+            samples = check_samples(values * factor_to_si(points[3], "m s-2", where), where)
             components.append((name or str(len(components) + 1), check_step(1.0 / rate, where), samples))
     if not components:
         raise InputError(

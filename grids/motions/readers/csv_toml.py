@@ -12,7 +12,7 @@ from typing import Any
 
 from grids.columns import Layout, read_columns, read_layout
 from grids.motions.readers.base import Reader, Record, assemble, check_samples, component_name
-from grids.motions.units import acceleration_factor
+from grids.units import factor_to_si
 from models.errors import InputError
 
 
@@ -23,7 +23,7 @@ def _read(path: Path, key: str | None, statement: Mapping[str, Any]) -> Record:
         raise InputError(f"{where}: a motion is linear between samples; leave between_samples = 'band_limited' out.")
     named = {name: column for name, column in layout.columns.items() if component_name(name)}
     layout = layout.model_copy(update={"columns": named or layout.columns})
-    channels = read_columns(path, layout, lambda _, unit, where: acceleration_factor(unit, where))
+    channels = read_columns(path, layout, lambda _, unit, where: factor_to_si(unit, "m s-2", where))
     components = [
         (component_name(name) or name, channels.time_step, check_samples(values, f"{path.name}: {name}"))
         for name, values in channels.values.items()

@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 
 from grids.motions.readers.base import Reader, Record, assemble, check_samples, component_name
-from grids.motions.units import acceleration_factor
 from grids.netcdf_file import read_netcdf
 from grids.sampling import uniform_step
 from grids.units import factor_to_si
@@ -52,7 +51,7 @@ def _read(path: Path, key: str | None, statement: Mapping[str, Any]) -> Record:
             component_name(name) or name,
             step,
             check_samples(
-                np.asarray(one.values) * acceleration_factor(one.attributes["units"], f"{path.name}: {name}"),
+                np.asarray(one.values) * factor_to_si(one.attributes["units"], "m s-2", f"{path.name}: {name}"),
                 f"{path.name}: {name}",
             ),
         )

@@ -21,10 +21,9 @@ import numpy as np
 from grids.files import Schema, check, parse_toml
 from grids.files import read_text as read_utf8
 from grids.motions.readers.base import FloatArray, Reader, Record, assemble, check_samples, vertical_sign
-from grids.motions.units import STANDARD_GRAVITY, acceleration_factor
 from grids.netcdf_file import MORE_BYTES, TIMES_THE_FILE
 from grids.sampling import check_step, parse_numbers
-from grids.units import to_si
+from grids.units import STANDARD_GRAVITY, factor_to_si, to_si
 from models.errors import InputError, nearest
 
 PGA_TOLERANCE = 0.01
@@ -156,7 +155,7 @@ def _read(path: Path, key: str | None, statement: Mapping[str, Any]) -> Record:
     else:
         line = _index_line(path, split_key(keys[0])[0])
     if stated is not None:
-        factor = acceleration_factor(stated.unit, path.name)
+        factor = factor_to_si(stated.unit, "m s-2", path.name)
         step = check_step(to_si(stated.time_step, "s", f"{path.name}: time_step"), path.name)
     elif line is not None:
         factor = 1.0

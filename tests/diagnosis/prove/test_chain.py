@@ -117,3 +117,34 @@ def test_an_answer_that_does_not_say_to_which_files_is_not_scored(folder: Path, 
 def test_folders_of_one_name_have_their_own_answers() -> None:
     assert default_folder(Path("/a/first/cases"), "all", None) == Path("results/prove/first_cases")
     assert default_folder(Path("/a/second/cases"), "odd", "housner") == Path("results/prove/second_cases_odd_housner")
+
+
+def without_memory(folder: Path) -> dict[str, Any]:
+    if folder.name == "case_02":
+        raise MemoryError
+    return answer_by_title(folder)
+
+
+def without_solution(folder: Path) -> dict[str, Any]:
+    if folder.name == "case_02":
+        raise ArithmeticError("no solution")
+    return answer_by_title(folder)
+
+
+def test_what_the_machine_refused_is_tried_again(folder: Path, tmp_path: Path) -> None:
+    lines: list[str] = []
+    out = tmp_path / "out"
+    assert prove(folder, out, model="housner", say=lines.append, answering=without_memory) == {}
+    assert lines[-1] == "1 cases are left: start again to go on"
+    assert prove(folder, out, model="housner", say=lines.append, answering=answer_by_title)["class_first"] == 0.5
+
+
+def test_failures_and_answers_of_other_versions_are_said(folder: Path, tmp_path: Path) -> None:
+    lines: list[str] = []
+    out = tmp_path / "out"
+    found = prove(folder, out, model="housner", say=lines.append, answering=without_solution)
+    assert found["detected"] == 0.5 and any(line.startswith("failed, counted as wrong: case_02") for line in lines)
+    kept = out / "answers" / "case_01.json"
+    kept.write_text(json.dumps({**json.loads(kept.read_text()), "sources": "earlier"}))
+    prove(folder, out, model="housner", say=lines.append, answering=without_solution)
+    assert any(line.startswith("1 of 3 answers are those of another version") for line in lines)

@@ -9,6 +9,7 @@ import pytest
 from grids.data_folder import data_folder
 from grids.motions import find, list_shipped, read_motion
 from grids.motions.intensity import velocity_and_displacement
+from grids.motions.readers.base import vertical_sign
 from grids.motions.write import write_motion
 from grids.netcdf_lock import NETCDF_LOCK
 from models.errors import InputError
@@ -250,3 +251,25 @@ def test_a_first_line_of_numbers_is_no_header(files):
         read_motion(files.folder / "bare.csv")
     (files.folder / "bare.toml").write_text(table.format("header = false\n"))
     assert read_motion(files.folder / "bare.csv").horizontal.size == 50
+
+
+@pytest.mark.parametrize("step", ["1.E-2", "1.0D-02", ".01", "0.0100", "1e-2"])
+def test_at2_step_in_any_notation(files, step):
+    path = files.at2("NEW_000.AT2", files.north, "000", header=f"NPTS=  600, DT=  {step} SEC")
+    assert read_motion(path).time_step == 0.01
+
+
+@pytest.mark.parametrize(
+    "name", ["HGZ", "HNZ", "az", "acc_z", "vz", "Vertikal", "z (up)", "a_up", "UD1", "V", "acc UD"]
+)
+def test_names_of_vertical_components(name):
+    assert vertical_sign(name) == 1
+
+
+@pytest.mark.parametrize("name", ["HGN", "HNE", "N", "x", "acc_x", "000", "N00E_v2", "h1_up_x", "Transversal", "S80E"])
+def test_names_of_horizontal_components(name):
+    assert vertical_sign(name) == 0
+
+
+def test_a_component_that_points_down():
+    assert vertical_sign("acc_down") == vertical_sign("DWN") == -1
