@@ -5,7 +5,7 @@ deviation ``noise`` (a share of the peak) whatever its colour:
 
     ar1            a share of the variance is AR(1), coefficient .8 to .95 from sample to sample
     pink           a share of the variance has a density in proportion to 1/f
-    hum            a line is added, amplitude .3 to 1 % of the peak
+    hum            a line is added, amplitude .3 to 1 % of the peak, 8 to 65 Hz: that of the mains among them
     proportional   white noise of 1 to 3 % of the present rotation is added
     drift          .2 to .5 % of the peak over a recording, linear or half a cosine, other in each
 
@@ -36,7 +36,7 @@ NAMED_RIGHTLY = {"drift": ("drift",), "ac_coupling": ("base_filter",), "filter":
 """Effects of the catalogue whose name is a right answer where nothing but the imperfection is there."""
 COLOURED = (0.5, 1.0)
 AR_COEFFICIENT = (0.8, 0.95)
-HUM_HZ = (8.0, 40.0)
+HUM_HZ = (8.0, 65.0)
 HUM = (0.003, 0.01)
 PROPORTIONAL = (0.01, 0.03)
 DRIFT = (0.002, 0.005)
