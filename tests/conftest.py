@@ -61,11 +61,13 @@ SLOW = (
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    slow = [HERE / path for path in SLOW]
+    listed = [HERE / path for path in SLOW]
+    files = {item.path for item in items}  # of thousands of tests a few hundred
+    slow = {file for file in files if any(path == file or path in file.parents for path in listed)}
     for item in items:
         if item.nodeid.removeprefix("tests/").startswith(PROOFS):
             item.add_marker(pytest.mark.proof)
-        if any(item.path == path or path in item.path.parents for path in slow):
+        if item.path in slow:
             item.add_marker(pytest.mark.slow)
     # short files last: of two processes neither waits long for the other
     items.sort(key=lambda item: item.get_closest_marker("slow") is None)

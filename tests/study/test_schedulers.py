@@ -11,8 +11,10 @@ import sys
 import time
 from collections.abc import Callable, Collection, Iterator, Sequence
 from concurrent.futures import Future
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import netCDF4
@@ -132,9 +134,20 @@ def one_model() -> Iterator[None]:
         yield
 
 
+@contextmanager
+def of_one_worker() -> Iterator[Cluster]:
+    """Starting another takes seconds, and nothing here asks for it but a worker that hangs."""
+    with TemporaryDirectory() as folder:
+        found = Cluster(Path(folder), workers=1)
+        try:
+            yield found
+        finally:
+            found.stop()
+
+
 @pytest.fixture(scope="module")
 def cluster() -> Iterator[Cluster]:
-    with dask_cluster() as found:
+    with of_one_worker() as found:
         yield found
 
 
@@ -327,7 +340,7 @@ def test_without_any_worker_the_run_ends_with_a_sentence(tmp_path: Path, monkeyp
             for worker in lost.workers:
                 worker.kill()
 
-    with dask_cluster() as lost, pytest.raises(WorkerLost, match=r"no worker is left.*run again to continue"):
+    with of_one_worker() as lost, pytest.raises(WorkerLost, match=r"no worker is left.*run again to continue"):
         run(small_plan(block_seconds=0.005), results=tmp_path, scheduler=lost.address, progress=stop)
 
 

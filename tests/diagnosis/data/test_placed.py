@@ -66,12 +66,12 @@ def test_rotations_are_estimated_from_gauges_and_not_compared() -> None:
 
 def test_a_calibration_by_gauges_finds_the_block(by_gauges: Calibration) -> None:
     true = {"width": TRUE["width"], "height": TRUE["height"], "restitution": SHARE}
-    again = [calibrate(UNKNOWN, [recorded(BY_GAUGES, seed=k)], profile=False) for k in range(4, 7)]
+    again = calibrate(UNKNOWN, [recorded(BY_GAUGES, seed=4)], profile=False)
     off = [
         (c.parameters[name].estimate - value) / ((c.parameters[name].high95 - c.parameters[name].low95) / 3.92)
-        for c in (by_gauges, *again) for name, value in true.items()
+        for c in (by_gauges, again) for name, value in true.items()
     ]  # fmt: skip
-    assert np.sqrt(np.mean(np.square(off))) < 1.6  # in deviations, over four draws of the noise
+    assert np.sqrt(np.mean(np.square(off))) < 1.6  # in deviations, over two draws of the noise
     assert by_gauges.misfit < 1.2 * by_gauges.noise_floor
 
 

@@ -57,9 +57,9 @@ def away(axis: int, size: float) -> np.ndarray:
 
 
 def test_windows_of_two_bodies_come_back_from_most_states() -> None:
-    """Each of the four moved up or down: 480 above the minimum where stuck ones are not fitted, 10 where they are."""
+    """Each of the four moved, up or down: 480 above the minimum where stuck ones are not fitted, 10 where they are."""
     best = of_a_stack()
-    starts = [away(axis, size) for axis in range(4) for size in (-4.0, 4.0)]
+    starts = [away(axis, size) for axis, size in enumerate((-4.0, 4.0, -4.0, 4.0))]
     above = [fit_thoroughly(best.misfit, best.u, states).loss - best.loss for states in starts]
     assert min(fit(best.misfit, best.u, states).loss for states in starts) > best.loss + 1e4
     assert np.median(above) < 100.0

@@ -48,17 +48,19 @@ def made(name: str, seed: int, changes: Sequence[tuple[float, Mapping[str, float
     return Recording(name, TIME_STEP, time, {"base_acceleration_x": base, "rotation_1": seen})
 
 
-def searched(recordings: Sequence[Recording], shortest: float | None = None) -> tuple[Search, list[Search]]:
+def searched(
+    recordings: Sequence[Recording], shortest: float | None = None, among: Sequence[str] = FEW
+) -> tuple[Search, list[Search]]:
     """What an ordinary search that found nothing goes on with, and what the search for beginnings yields.
 
-    ``shortest`` (s): of a spell that is no blow.
+    ``shortest`` (s): of a spell that is no blow; ``among``: mechanisms that are searched for.
     """
     measured = measure(SPECIMEN, recordings)
     if shortest is not None:
         assert measured.lengths is not None
         measured = replace(measured, lengths=replace(measured.lengths, shortest=shortest))
     fitted, errors = calibrated(SPECIMEN, measured)
-    some = tuple(c for c in candidates(measured, SPECIMEN) if c.name in FEW)
+    some = tuple(c for c in candidates(measured, SPECIMEN) if c.name in among)
     found = Search(Explanation((), fitted), some, errors)
     opened = linearise_about(fitted)
     found.scores = score(opened, some)

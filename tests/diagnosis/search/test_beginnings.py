@@ -54,7 +54,8 @@ def test_what_begins_in_the_second_recording_is_named_with_its_instant(
 @pytest.mark.parametrize(("factor", "instant"), [(0.93, 4.0), (0.92, 5.0)])
 def test_a_law_of_impacts_that_changes_is_found_where_the_base_bends_to_the_mean(factor: float, instant: float) -> None:
     """Errors estimated about the base take the change for scatter of impacts, and its score is nothing under these."""
-    _, yielded = searched([made("a", 13, []), made("b", 6, [(instant, {"restitution.factor_on_housner": factor})])])
+    changed = made("b", 6, [(instant, {"restitution.factor_on_housner": factor})])
+    _, yielded = searched([made("a", 13, []), changed], among=("restitution", "offset"))
     best = yielded[-1].best
     assert best is not None and best.names == ("restitution",)
     spell = best.candidates[0].spell
@@ -68,7 +69,7 @@ def test_what_acts_for_too_short_a_time_is_said_and_not_named() -> None:
         made("a", 13, []),
         made("b", 6, [(4.0, {"viscous_damping.rate": 1.5}), (7.0, {"viscous_damping.rate": 0.0})]),
     ]
-    found, yielded = searched(recordings, shortest=10.0)
+    found, yielded = searched(recordings, 10.0, ("viscous_damping", "tilt"))
     assert yielded == [] and found.best is None and found.blow is not None and found.blow.evidence > 20.0
     _, begins, _, _, ends, _, _, where = found.blow.stronger.split()
     assert float(begins) == pytest.approx(4.0, abs=0.7) and float(ends) == pytest.approx(7.0, abs=0.7)

@@ -36,7 +36,7 @@ class Unfinished(Search):
 @pytest.fixture(scope="module")
 def found() -> Search:
     """With every mechanism refitted alone, under the errors of the true model."""
-    measured = measure(SPECIMEN, [recording(f"run_{seed}", seed, TRUE) for seed in (1, 2)])
+    measured = measure(SPECIMEN, [recording("run_1", 1, TRUE)])
     some = {one.name: one for one in candidates(measured, SPECIMEN) if one.name in (*TRUE, *OTHERS)}
     base = Explanation((), base_fit(SPECIMEN, measured))
     true = base
@@ -59,11 +59,23 @@ def exchanged_from(found: Search, best: Explanation) -> Explanation:
     return search.best
 
 
-def test_an_effect_gives_way_to_one_that_explains_more_beside_the_other(found: Search) -> None:
+def test_an_effect_gives_way_to_one_that_explains_more_beside_the_other(
+    found: Search, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """And others are tried again beside what stays once its company has changed."""
+    asked: list[tuple[str, ...]] = []
+
+    def noted(found: Search, rest: Explanation, scores: list[Score], widely: bool, but: Candidate) -> list[Explanation]:
+        asked.append(rest.names)
+        return extended(found, rest, scores, widely, but)
+
+    monkeypatch.setattr(exchange, "extended", noted)
     best = exchanged_from(found, taken(found, "tilt", "velocity_restitution"))
     assert set(best.names) == set(TRUE)
     assert best.fitted.values["restitution.factor_on_housner"] == pytest.approx(0.9, abs=0.01)
     assert best.fitted.values["tilt.tilt"] == pytest.approx(0.01, abs=0.001)
+    assert asked.count(("velocity_restitution",)) == asked.count(("restitution",)) > 0
+    assert asked.count(("tilt",)) == 2 * asked.count(("restitution",))
 
 
 def test_effects_are_exchanged_one_after_the_other_where_what_stands_explains_enough(
@@ -109,22 +121,6 @@ def test_the_least_sure_effect_is_questioned_first(found: Search, monkeypatch: p
     standing = asked[::2]  # from where the others stand; fitted anew in between, for nothing completes this search
     assert {rest.names for rest in standing} == {(name,) for name in TRUE}
     assert standing[0].loss < standing[1].loss
-
-
-def test_others_are_tried_again_beside_what_stays_once_its_company_has_changed(
-    found: Search, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    asked: list[tuple[str, ...]] = []
-
-    def noted(found: Search, rest: Explanation, scores: list[Score], widely: bool, but: Candidate) -> list[Explanation]:
-        asked.append(rest.names)
-        return extended(found, rest, scores, widely, but)
-
-    monkeypatch.setattr(exchange, "extended", noted)
-    best = exchanged_from(found, taken(found, "tilt", "velocity_restitution"))
-    assert set(best.names) == set(TRUE)
-    assert asked.count(("velocity_restitution",)) == asked.count(("restitution",)) > 0
-    assert asked.count(("tilt",)) == 2 * asked.count(("restitution",))
 
 
 def test_what_the_budget_left_untried_is_tried_at_the_end(found: Search, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -35,7 +35,8 @@ def engaged(name: str, seed: int, effect: str, value: float, null: float) -> Rec
 
 @pytest.fixture(scope="module")
 def dashpot() -> tuple[Search, list[Search]]:
-    return searched([engaged(name, seed, "viscous_damping.rate", 0.6, 0.0) for name, seed in (("a", 1), ("b", 6))])
+    recordings = [engaged(name, seed, "viscous_damping.rate", 0.6, 0.0) for name, seed in (("a", 1), ("b", 6))]
+    return searched(recordings, among=("viscous_damping", "tilt"))
 
 
 def test_a_dashpot_that_engages_in_every_test_is_named_with_its_instants(dashpot: tuple[Search, list[Search]]) -> None:

@@ -54,12 +54,15 @@ NOT_HERE = {
 
 BY_THE_REFERENCE = "restitution"
 """Recorded by the plain reference: what is fitted is not what made it."""
+TOLD_BY_TWO = ("sliding", "eccentricity")
+"""Recorded twice: under the first motion alone hardly anything rocks, or a lean does as well."""
 
 
 @cache
 def base(name: str) -> Explanation:
     effect, integrator = {name: EFFECTS[name]}, "reference" if name == BY_THE_REFERENCE else "lanes"
-    recordings = [recording(f"train_{k}", k, effect, integrator=integrator) for k in (1, 2)]
+    seeds = (1, 2) if name in TOLD_BY_TWO else (1,)
+    recordings = [recording(f"train_{k}", k, effect, integrator=integrator) for k in seeds]
     return Explanation((), base_fit(SPECIMEN, measure(SPECIMEN, recordings), 0))
 
 
@@ -71,8 +74,13 @@ def test_every_mechanism_of_the_block_and_its_sensors_is_here() -> None:
 @pytest.mark.parametrize("name", EFFECTS)
 def test_a_simulated_effect_is_seen_and_recovered(name: str) -> None:
     before = base(name)
-    own = [c for c in candidates(before.measured, SPECIMEN) if c.name == name]
+    own = [c for c in candidates(before.measured, SPECIMEN) if c.name == name and c.held.items() <= _held(name).items()]
     assert_recovered(before, own, _truth(name, before))
+
+
+def _held(name: str) -> dict[str, float]:
+    """The true whole numbers, such as the order of a filter (those of others are in `test_variants`)."""
+    return {f"{name}.{parameter}": value for parameter, value in EFFECTS[name].items()}
 
 
 def _truth(name: str, before: Explanation) -> float:

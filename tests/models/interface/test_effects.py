@@ -84,9 +84,9 @@ def test_null_equals_base(name: str) -> None:
 @pytest.mark.parametrize("name", TYPICAL)
 def test_kernel_equals_reference(name: str) -> None:
     one = wall({**SHORT, **typical(name)})
-    slow = reference.run(one, asked(SHAKING, duration=0.3), 1e-5)
+    slow = reference.run(one, asked(SHAKING, duration=0.2), 1e-5)
     for refinement, share in ((1, 3e-2), (8, 3e-3)):
-        fast = lanes.run(one, asked(SHAKING, duration=0.3), refinement)
+        fast = lanes.run(one, asked(SHAKING, duration=0.2), refinement)
         size = np.maximum(np.max(np.abs(slow.samples[0]), axis=0), 1e-9)
         apart = np.max(np.abs(fast.samples[0] - slow.samples[0]), axis=0) / size
         assert np.all(apart[:2] < share), apart

@@ -53,7 +53,7 @@ def drive(values: dict[str, float], turns: list[float], steps: int = 60) -> tupl
 
 
 @pytest.mark.parametrize("name", LAWS)
-@settings(max_examples=5, deadline=None)
+@settings(max_examples=2, deadline=None)
 @example(turns=[0.115234375, 0.0])
 @given(turns=TURNS)
 def test_closed_cycles_never_give_energy_back(name: str, turns: list[float]) -> None:
@@ -65,7 +65,7 @@ def test_closed_cycles_never_give_energy_back(name: str, turns: list[float]) -> 
 
 
 @pytest.mark.parametrize("name", sorted(set(LAWS) - {"payne"}))
-@settings(max_examples=5, deadline=None)
+@settings(max_examples=2, deadline=None)
 @example(turns=[0.115234375, 0.0])
 @given(turns=TURNS)
 def test_what_is_put_in_is_stored_or_lost_at_any_time(name: str, turns: list[float]) -> None:

@@ -31,9 +31,9 @@ SHAKING = Shaking(0.01, 3.0 * np.sin(2 * np.pi * 2.5 * 0.01 * np.arange(41)))
 @pytest.mark.parametrize("name", LAWS)
 def test_lanes_agree_with_the_reference(name: str) -> None:
     one = wall({**SHORT, **GIVEN[name]})
-    slow = reference.run(one, asked(SHAKING, duration=0.4), 1e-5).samples[0].T
+    slow = reference.run(one, asked(SHAKING, duration=0.25), 1e-5).samples[0].T
     for refinement, share in ((1, 2e-3), (4, 5e-4)):
-        fast = lanes.run(one, asked(SHAKING, samples=41), refinement).samples[0].T
+        fast = lanes.run(one, asked(SHAKING, samples=26), refinement).samples[0].T
         error = np.max(np.abs(fast - slow)[:4], axis=1) / np.max(np.abs(slow)[:4], axis=1)
         assert np.max(error) < share
 

@@ -12,7 +12,7 @@ from models.stacked.reference import run as reference
 from tests.models.stacked.walls import B, random_walls
 from tests.models.strategies import random_motion
 
-WALLS = 10
+WALLS = 6
 
 
 @pytest.mark.parametrize("dry", [0.0, 0.6])

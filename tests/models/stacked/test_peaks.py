@@ -38,14 +38,14 @@ def peaks_hold(values: dict[str, float], shaking: Shaking, scale: float, duratio
 
 @given(st.integers(1, 130))
 @example(130)
-@settings(max_examples=12)
+@settings(max_examples=4)
 def test_a_pulse_that_is_cut_short(samples: int) -> None:
     peaks_hold(OUTWARDS, PULSE, 1.0, 0.01 * samples)
 
 
 @given(SEEDS)
 @example(262145)
-@settings(max_examples=12)
+@settings(max_examples=4)
 def test_random_walls_and_durations(seed: int) -> None:
     rng = np.random.default_rng(seed)
     values, shaking = random_wall(rng), random_motion(rng, duration=3.0)
