@@ -65,6 +65,8 @@ PROOFS = (
     "diagnosis/search/test_variants.py::test_the_likeliest_order_is_taken_and_its_interval_holds_those_that_fit_as_well[10.0",
     "grids/motions/test_artificial.py::test_every_motion_reaches_the_spectrum[2-C-7]",
     "models/housner/test_free_rocking.py::test_peaks_of_free_rocking[newmark]",
+    "models/housner/test_thresholds.py::test_brackets_of_the_other_integrators[0.2-shaking1-3.53181386758823-True-newmark]",
+    "models/housner/test_thresholds.py::test_brackets_of_the_other_integrators[0.25-shaking2-7.434272303919999-False-newmark]",
     "models/interface/test_effects.py::test_a_bending_wall_that_is_turned_starts_straight[reference-1000.0-0.06]",
     "models/interface/test_lanes.py::test_lanes_agree_with_the_reference_on_random_walls[toe_held",
     "models/interface/test_reference.py::test_free_rocking_without_dashpots_conserves_energy[midpoint_held]",
