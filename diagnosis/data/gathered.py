@@ -31,6 +31,8 @@ def gather(recordings: Sequence[Recording], windows: Sequence[Window], channels:
         for c, name in enumerate(channels):
             values[w, c, : window.samples] = recording.channels[name][part]
             mask[w, c, : window.samples] = True
+            lost = recording.lost.get(name, np.zeros(0, np.intp)) - window.first
+            mask[w, c, lost[(lost >= 0) & (lost < window.samples)]] = False
             if name in recording.places and recording.places[name].order:  # a difference over both neighbours
                 mask[w, c, 0] = False
                 mask[w, c, window.samples - 1] &= window.first + window.samples < recording.time.size

@@ -52,8 +52,9 @@ class Recording:
     ``levels``: the number of each row's level. ``places``: what channels measure that are no standard ones.
     ``estimated``: channels that were not recorded but follow from those that were. ``band_limited``: the base motion is
     smooth between samples, as a logger's is; else linear, as a simulation's (`models.shaking.Shaking`). ``time``
-    (n_times,) starts at 0 s. ``notes`` say what was done while reading, ``suspicions`` what looks wrong with the data
-    but may be right; ``source``: the file and what it says of itself.
+    (n_times,) starts at 0 s. ``lost``: samples of channels that hold no measurement and are not compared. ``notes``
+    say what was done while reading, ``suspicions`` what looks wrong with the data but may be right; ``source``: the
+    file and what it says of itself.
     """
 
     name: str
@@ -67,6 +68,7 @@ class Recording:
     places: Mapping[str, Place] = field(default_factory=dict)
     estimated: frozenset[str] = frozenset()
     band_limited: bool = False
+    lost: Mapping[str, NDArray[np.intp]] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         lines = [

@@ -40,7 +40,8 @@ def cut_before_fall(recording: Recording) -> Recording:
         raise InputError(f"{said}: {kept} samples before the fall are too few to compare; leave the recording out.")
     channels = {name: values[..., :kept] for name, values in recording.channels.items()}
     note = f"{said}; cut at {recording.time[kept - 1]:.4g} s, before the fall"
-    return replace(recording, time=recording.time[:kept], channels=channels, notes=(*recording.notes, note))
+    lost = {name: at[at < kept] for name, at in recording.lost.items()}
+    return replace(recording, time=recording.time[:kept], channels=channels, lost=lost, notes=(*recording.notes, note))
 
 
 def _falls(name: str, recording: Recording) -> Iterator[tuple[int, str]]:

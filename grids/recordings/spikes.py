@@ -1,0 +1,100 @@
+"""Spikes: one or two samples of a rotation or displacement that stand alone, as a loose plug or a lost bit leaves them.
+
+A cubic through two samples on either side foretells what a body that moves would have read. Where a rotation turns at
+an impact its slope jumps, and the cubic is off by less than half the steps beside; a spike is off by many of them, and
+by many deviations of the noise. It is bridged by the cubic, so that rates and starts can be read off, and is not
+compared: what is bridged is no measurement.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from grids.recordings.base import FloatArray, Recording
+from grids.recordings.noise import MAD_TO_SIGMA, WINDOW, noise_of
+
+UNITS = ("rad", "m")
+"""Of positions: velocities and accelerations have true spikes, at impacts."""
+LEAST, STEEP, OF_PEAK, QUANTA = 12.0, 3.0, 0.01, 3.0
+"""Deviations of the noise, steps beside it, share of the largest reading and digits that a spike exceeds."""
+WIDEST, BESIDE, AROUND = 2, 4, 65
+MOST = 0.01
+"""Share of the samples beyond which they are no spikes but what the channel is like."""
+SHOWN = 3
+
+
+def without_spikes(recording: Recording) -> Recording:
+    """The recording with its spikes bridged, named in `Recording.lost` and in a note; as it is without any."""
+    channels, lost, notes = dict(recording.channels), dict(recording.lost), []
+    for name in recording.responses:
+        if recording.channel(name).unit not in UNITS or channels[name].ndim > 1:
+            continue
+        at = spikes(channels[name])
+        if not at.size:
+            continue
+        bridged = _bridged(channels[name], at)
+        bridged.flags.writeable = False
+        channels[name], lost[name] = bridged, at
+        where = ", ".join(f"{t:.4g} s" for t in recording.time[at[:SHOWN]]) + (" ..." if at.size > SHOWN else "")
+        notes.append(f"{at.size} sample(s) of {name} stand alone ({where}): they are taken for spikes and not compared")
+    return replace(recording, channels=channels, lost=lost, notes=(*recording.notes, *notes)) if notes else recording
+
+
+def spikes(values: FloatArray) -> NDArray[np.intp]:
+    """Which samples (n,) of a position are spikes."""
+    if values.size < 2 * WINDOW + 2:
+        return np.zeros(0, np.intp)
+    steps = np.diff(np.unique(values))
+    least = max(
+        LEAST * noise_of(values).sigma, OF_PEAK * float(np.max(np.abs(values))),
+        QUANTA * float(np.min(steps, initial=np.inf)) if steps.size else np.inf,
+    )  # fmt: skip
+    found: set[int] = set()
+    while len(found) <= MOST * values.size:
+        left = _bridged(values, np.array(sorted(found), np.intp))
+        runs = sorted((run for width in range(1, WIDEST + 1) for run in _alone(left, width, least)), reverse=True)
+        taken: list[int] = []  # the samples beside a spike are off too, by less
+        for _, first, width in runs:
+            if found.isdisjoint(range(first, first + width)) and all(abs(first - one) > BESIDE for one in taken):
+                taken.append(first)
+                found.update(range(first, first + width))
+        if not taken:
+            return np.array(sorted(found), np.intp)
+    return np.zeros(0, np.intp)
+
+
+def _alone(x: FloatArray, width: int, least: float) -> Iterator[tuple[float, int, int]]:
+    """Runs of this ``width`` that are off what both sides foretell, to one side: by how much, first sample, width."""
+    from scipy.ndimage import median_filter
+
+    last = x.size - width - 2
+    first = np.arange(2, last + 1)
+    beside = np.stack([x[first - 2], x[first - 1], x[first + width], x[first + width + 1]])
+    off = np.stack([x[first + k] - _weights(width, k) @ beside for k in range(width)])
+    steep = STEEP * np.maximum(np.abs(beside[1] - beside[0]), np.abs(beside[3] - beside[2]))
+    size = np.min(np.abs(off), axis=0)
+    usual = LEAST * MAD_TO_SIGMA * median_filter(np.abs(off[0]), AROUND)  # noise may grow with the rotation
+    clear = (size > np.maximum(np.maximum(least, steep), usual)) & (np.abs(np.sum(np.sign(off), axis=0)) == width)
+    for at in np.flatnonzero(clear).tolist():
+        yield float(size[at]), int(first[at]), width
+
+
+def _weights(width: int, k: int) -> FloatArray:
+    """Of the cubic through samples at -2, -1, ``width``, ``width`` + 1 at the place ``k``."""
+    places = np.array([-2.0, -1.0, width, width + 1.0])
+    return np.array([np.prod([(k - o) / (p - o) for o in places if o != p]) for p in places])
+
+
+def _bridged(values: FloatArray, at: NDArray[np.intp]) -> FloatArray:
+    """The samples with those ``at`` in runs on the cubic through two on either side of each run."""
+    found = values.copy()
+    for run in np.split(at, np.flatnonzero(np.diff(at) > 1) + 1) if at.size else ():
+        first, width = int(run[0]), run.size
+        beside = found[[first - 2, first - 1, first + width, first + width + 1]]
+        for k in range(width):
+            found[first + k] = _weights(width, k) @ beside
+    return found

@@ -1,0 +1,71 @@
+"""Samples that stand alone are marked as lost; motion, impacts and noise are not."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from diagnosis.fit.setup import measure
+from grids.recordings import read_recording
+from grids.recordings.spikes import spikes
+from tests.diagnosis.made import SPECIMEN, recording
+
+RUN = recording("run", 1)
+ROTATION = RUN.channels["rotation_1"]
+PEAK = float(np.max(np.abs(ROTATION)))
+AT = (300, 707, 708, 1100)
+
+
+def spiked(rotation: np.ndarray) -> np.ndarray:
+    found = rotation.copy()
+    found[[300, 1100]] += 0.3 * PEAK * np.array([1.0, -1.0])
+    found[[707, 708]] = -0.8 * PEAK
+    return found
+
+
+def test_spikes_are_told_from_motion() -> None:
+    assert spikes(spiked(ROTATION)).tolist() == list(AT)
+    assert spikes(7.0 * spiked(ROTATION)).tolist() == spikes(-spiked(ROTATION)).tolist() == list(AT)
+
+
+@pytest.mark.parametrize("noise", ["none", "white", "growing", "digits"])
+def test_motion_and_noise_hold_no_spike(noise: str) -> None:
+    """Nor the bends of a rotation without noise at its impacts, or where the noise grows with it."""
+    for seed in range(1, 6):
+        plain = recording("run", seed, noise=0.0).channels["rotation_1"]
+        rng = np.random.default_rng(seed)
+        added = {"white": 0.02 * PEAK, "growing": 0.03 * np.abs(plain)}.get(noise, 0.0)
+        values = plain + added * rng.normal(size=plain.size)
+        if noise == "digits":
+            values = np.round(values / (0.02 * PEAK)) * 0.02 * PEAK
+        assert not spikes(values).size
+
+
+def test_a_channel_full_of_spikes_is_like_that() -> None:
+    values = ROTATION.copy()
+    values[::40] += 0.3 * PEAK
+    assert not spikes(values).size
+
+
+def test_what_stands_alone_is_not_compared(tmp_path: Path) -> None:
+    channels = {
+        "base_acceleration_x": ("time", RUN.channels["base_acceleration_x"], {"units": "m s-2"}),
+        "rotation_1": ("time", spiked(ROTATION), {"units": "rad"}),
+    }
+    path = tmp_path / "run.nc"
+    xr.Dataset(channels, coords={"time": ("time", RUN.time, {"units": "s"})}).to_netcdf(path)
+    found = read_recording(path)
+    assert found.lost["rotation_1"].tolist() == list(AT)
+    assert any("4 sample(s) of rotation_1 stand alone (1.5 s, 3.535 s, 3.54 s ...)" in note for note in found.notes)
+    bridged = found.channels["rotation_1"][list(AT)]
+    np.testing.assert_allclose(bridged, ROTATION[list(AT)], atol=6.0 * 0.01 * PEAK)
+    measured = measure(SPECIMEN, [found])
+    inside = {
+        k for k in AT for w, mask in zip(measured.windows, measured.mask, strict=True)
+        if 0 <= k - w.first < w.samples and not mask[0, k - w.first]
+    }  # fmt: skip
+    held = {k for k in AT for w in measured.windows if 0 <= k - w.first < w.samples}
+    assert inside == held and held
