@@ -103,7 +103,8 @@ def to_si(value: object, si_unit: str, where: str) -> float:
         number, unit = float(match[1]), match[2]
         if not unit and si_unit not in _ONE:
             raise InputError(
-                f"{where} = '{value}' has no unit; write '{match[1]} {si_unit}' or {match[1]} without quotes."
+                f"{where} = '{value}' has no unit; write '{match[1]} {si_unit}' "
+                f"(in a file also {match[1]} without quotes)."
             )
         number *= factor_to_si(unit, si_unit, f"{where} = '{value}'")
     else:

@@ -32,15 +32,12 @@ class State:
             if self.tally is None
             else f"cube.nc is written; {tally_line(self.tally)}"
         )
-        if not self.cells:  # refined: its blocks follow from what was found
-            return f"{self.folder}: refined study, {self.blocks_done} blocks\n{cube}"
-        share = self.cells_done / self.cells
-        lines = [
-            f"{self.folder}: {self.blocks_done} of {self.blocks} blocks, "
-            f"{self.cells_done} of {self.cells} cells ({share:.1%})",
-            f"failed blocks: {len(self.failures)}",
-            cube,
-        ]
+        if self.cells:
+            done = f"{self.blocks_done} of {self.blocks} blocks, {self.cells_done} of {self.cells} cells"
+            done += f" ({self.cells_done / self.cells:.1%})"
+        else:  # refined: its blocks follow from what was found
+            done = f"refined study, {self.blocks_done} blocks"
+        lines = [f"{self.folder}: {done}", f"failed blocks: {len(self.failures)}", cube]
         if self.damaged:
             lines.append(f"damaged blocks: {len(self.damaged)} ({', '.join(self.damaged[:3])}): run the plan again")
         lines += [f"  failed/{key}.txt: {text.strip().splitlines()[-1]}" for key, text in self.failures.items()]

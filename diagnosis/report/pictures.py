@@ -51,7 +51,7 @@ def drawings(diagnosis: Diagnosis, specimen: Specimen, recordings: Sequence[Reco
         found[f"errors_{channel.channel}"] = partial(plot_errors, channel)
     found["fits"] = partial(plot_fits, diagnosis.train, diagnosis.holdout)
     for trace in diagnosis.traces:
-        found[f"{trace.recording}_{trace.channel}"] = partial(plot_before_after, trace)
+        found[f"fit_{trace.recording}_{trace.channel}"] = partial(plot_before_after, trace)
     if diagnosis.windows and diagnosis.traces:
         found["worst_window"] = partial(plot_worst_window, diagnosis.traces, diagnosis.windows)
     if diagnosis.missing_force and diagnosis.missing_force["terms"]:

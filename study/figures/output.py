@@ -10,11 +10,14 @@ import xarray as xr
 from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
+from matplotlib.patches import Patch
 
 from study.figures.map_figure import ascending, draw_legend, frame
 from study.figures.outcomes import marked
 from study.figures.style import MAP_COLOURS, label, shown
 from study.maps import output_map, status_map
+
+BLANK = "#e4e4e4"
 
 
 def plot_output_map(
@@ -27,7 +30,7 @@ def plot_output_map(
     ax: Axes | None = None,
 ) -> Axes:
     """Draw an output over two axes in colours; overturned cells, whose values (a peak rotation of pi/2) would hide
-    the others, and cells without an answer have a colour of their own each, which the legend explains.
+    the others, and cells without an answer or a value have a colour of their own each, which the legend explains.
 
     Arguments as in `study.maps.output_map`.
     """
@@ -41,6 +44,11 @@ def plot_output_map(
         ax.figure.colorbar(drawn, ax=ax).set_label(label(values))
     for outcome in outcomes:
         ax.pcolormesh(*borders, np.ma.masked_not_equal(status, outcome.flag), cmap=ListedColormap([outcome.colour]))
-    if outcomes:
-        draw_legend(ax, [outcome.patch() for outcome in outcomes])
+    handles = [outcome.patch() for outcome in outcomes]
+    blank = np.isnan(ordered) & ~np.isin(status, [outcome.flag for outcome in outcomes])
+    if blank.any():  # of a refined study, whose outcome there follows from the cells around
+        ax.pcolormesh(*borders, np.ma.masked_where(~blank, blank), cmap=ListedColormap([BLANK]))
+        handles.append(Patch(facecolor=BLANK, edgecolor="0.4", label="no value: not computed"))
+    if handles:
+        draw_legend(ax, handles)
     return ax

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import cast
 
+import matplotlib.pyplot
 import numpy as np
 import pytest
 import xarray as xr
@@ -16,6 +17,7 @@ from grids.plan import Plan, parse_plan
 from grids.refinement import Estimate
 from models.errors import InputError
 from study.check import check
+from study.figures.output import plot_output_map
 from study.open import open_study
 from study.refined import Refined, cells_of_a_block
 from study.run import run
@@ -62,6 +64,12 @@ def test_it_is_the_whole_study_where_it_computes(home: Path, whole: xr.Dataset) 
     )
     assert check(report.folder, cells=50, seed=1).differing == ()
     assert "refined study" in str(state(report.folder))
+    map_of_peaks = plot_output_map(cube, "peak_rotation", "aspect_ratio", "pga")
+    assert "no value: not computed" in [text.get_text() for text in map_of_peaks.get_legend().get_texts()]
+    matplotlib.pyplot.close(map_of_peaks.figure)
+    (report.folder / "failed" / "abc.txt").write_text("Traceback\nMemoryError: a block of 7 cells\n")
+    assert "failed/abc.txt: MemoryError: a block of 7 cells" in str(state(report.folder))
+    (report.folder / "failed" / "abc.txt").unlink()
     with pytest.raises(InputError, match="without \\[refine\\]"):
         run(plan("whole"), results=home)
 

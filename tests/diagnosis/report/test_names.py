@@ -13,7 +13,7 @@ from diagnosis.report import write_answer
 from tests.diagnosis.report.example import diagnosis, recordings, specimen
 
 
-@pytest.mark.parametrize("names", [("(1) shake", "6\"'<b>", "shake "), (r"r$\frac{$x", "été 5 % \\x", "plain")])
+@pytest.mark.parametrize("names", [("errors", "6\"'<b>", "shake "), (r"r$\frac{$x", "été 5 % \\x", "read_1")])
 def test_an_answer_is_written_whatever_its_recordings_are_called(names: tuple[str, ...], tmp_path: Path) -> None:
     found, read = diagnosis(), list(recordings())
     called = dict(zip((recording.name for recording in read), names, strict=True))
@@ -33,6 +33,9 @@ def test_an_answer_is_written_whatever_its_recordings_are_called(names: tuple[st
     read = [replace(one, name=called[one.name]) for one in read]
     write_answer(found, specimen(), read[:1], read[1:], tmp_path)
     page = (tmp_path / "report.html").read_text("utf-8")
+    if "errors" in names:  # the fit of that recording stands beside the errors of its channel
+        assert (tmp_path / "figures" / "fit_errors_rotation_1.svg").is_file()
+        assert (tmp_path / "figures" / "errors_rotation_1.svg").is_file()
     assert "<b>" not in page
     with xr.open_datatree(tmp_path / "fit.nc", engine="netcdf4") as tree:
         assert set(names) == {group.attrs["recording"] for group in tree.children.values()}
