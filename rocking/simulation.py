@@ -48,7 +48,7 @@ def simulate(
     if isinstance(specimen, str | Path):
         specimen = read_specimen(specimen)
     if duration is not None:
-        duration = to_si(duration, "s", "duration")
+        duration = to_si(duration, "s", "duration") if isinstance(duration, str) else duration
         if not 0.0 < duration < math.inf:
             raise InputError(f"duration is {duration!r} s: give a positive time")
     if scale == 0.0:

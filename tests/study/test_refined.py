@@ -67,6 +67,7 @@ def test_it_is_the_whole_study_where_it_computes(home: Path, whole: xr.Dataset) 
     map_of_peaks = plot_output_map(cube, "peak_rotation", "aspect_ratio", "pga")
     assert "no value: not computed" in [text.get_text() for text in map_of_peaks.get_legend().get_texts()]
     matplotlib.pyplot.close(map_of_peaks.figure)
+    (report.folder / "failed").mkdir(exist_ok=True)
     (report.folder / "failed" / "abc.txt").write_text("Traceback\nMemoryError: a block of 7 cells\n")
     assert "failed/abc.txt: MemoryError: a block of 7 cells" in str(state(report.folder))
     (report.folder / "failed" / "abc.txt").unlink()

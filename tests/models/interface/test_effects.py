@@ -81,12 +81,20 @@ def test_null_equals_base(name: str) -> None:
     assert np.max(np.abs(changed - base.samples[0, :, 0])) > 3e-4 * size[0]
 
 
+LATE = {"degradation": ({"degradation.final_loss": 0.9, "degradation.cycles": 0.2}, 3.5 * np.sin(8.0 * np.pi * TIME))}
+"""What acts from the first closings on: size and a base motion under which it moves the wall within .6 s."""
+
+
 @pytest.mark.parametrize("name", TYPICAL)
 def test_kernel_equals_reference(name: str) -> None:
-    one = wall({**SHORT, **typical(name)})
-    slow = reference.run(one, asked(SHAKING, duration=0.2), 1e-5)
+    values, motion = LATE.get(name, (typical(name), SHAKING.horizontal))
+    one, shaking, duration = wall({**SHORT, **values}), Shaking(0.02, motion), 0.6 if name in LATE else 0.2
+    slow = reference.run(one, asked(shaking, duration=duration), 1e-5)
+    plain = lanes.run(wall(SHORT), asked(shaking, duration=duration), 8).samples[0][:, :2]
+    acts = np.max(np.abs(slow.samples[0][:, :2] - plain), axis=0) / np.max(np.abs(plain), axis=0)
+    assert acts.max() > 5e-3  # else nothing is compared
     for refinement, share in ((1, 3e-2), (8, 3e-3)):
-        fast = lanes.run(one, asked(SHAKING, duration=0.2), refinement)
+        fast = lanes.run(one, asked(shaking, duration=duration), refinement)
         size = np.maximum(np.max(np.abs(slow.samples[0]), axis=0), 1e-9)
         apart = np.max(np.abs(fast.samples[0] - slow.samples[0]), axis=0) / size
         assert np.all(apart[:2] < share), apart
