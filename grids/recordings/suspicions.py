@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from grids.recordings import flat_tops
 from grids.recordings.base import REQUIRED, FloatArray, Recording
+from grids.recordings.noise import noise_of
 from grids.recordings.zero import zeros
 from grids.units import STANDARD_GRAVITY as GRAVITY
 
@@ -40,6 +41,8 @@ LARGEST_LEAD = 0.3
 LEAD_GAIN = 6.0
 """Gain in log likelihood over a rotation in step, counting one sample a smoothing width."""
 LARGEST_PGA = 3.0 * GRAVITY
+RESTS, CALM, MOVED = 0.4, 10.0, 0.003
+"""s of rest, twice, at either end; range over the noise that is rest; share of the peak by which a zero has moved."""
 OFF_ZERO = 5.0
 """Deviations of a base's mean acceleration from zero beyond which it did not come back to rest."""
 
@@ -96,9 +99,30 @@ def _of_base(recording: Recording) -> Iterator[str]:
             f"{REQUIRED} has a mean of {float(zero.mean[0]):+.2g} m s-2, a base that comes back to rest none: "
             "is the accelerometer's zero wrong, or the record cut?"
         )
+    ends = _zeros_at_rest(recording)
+    if ends is not None:
+        before, after = ends
+        yield (
+            f"{REQUIRED} reads {before:+.2g} m s-2 at rest before the shaking and {after:+.2g} after it: does its zero "
+            "wander, or is it AC-coupled? A zero that wanders acts on the model like a tilt that comes and goes"
+        )
     vertical = recording.channels.get("base_acceleration_z")
     if vertical is not None and abs(abs(float(np.median(vertical))) - GRAVITY) < 0.1 * GRAVITY:
         yield (f"base_acceleration_z rests at {float(np.median(vertical)):.3g} m s-2: gravity is in it, subtract it")
+
+
+def _zeros_at_rest(recording: Recording) -> tuple[float, float] | None:
+    """Means of the base's acceleration at rest before and after the shaking, if they clearly differ."""
+    base, size = recording.channels[REQUIRED], max(8, round(RESTS / recording.time_step))
+    noise, peak = noise_of(base[: 4 * size]).sigma, float(np.max(np.abs(base)))
+    means = []
+    for part in (base[: 2 * size], base[-2 * size :]):
+        halves = part[:size], part[size:]
+        if part.size < 2 * size or max(float(np.ptp(half)) for half in halves) > CALM * max(noise, 1e-6 * peak):
+            return None
+        means.append(float(part.mean()))
+    apart = abs(means[1] - means[0])
+    return (means[0], means[1]) if apart > max(MOVED * peak, OFF_ZERO * noise / np.sqrt(2 * size)) else None
 
 
 def _of_rotation(name: str, recording: Recording) -> Iterator[str]:
