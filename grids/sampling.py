@@ -16,6 +16,8 @@ SHORTEST = 10
 """Fewest samples of a series: fewer are a damaged file, not a record."""
 FINEST = 1e-6
 """Shortest time step, s."""
+CHANGED = 0.2
+"""Share of the step by which one of two even parts of a record differs from the other."""
 JITTER = 0.01
 """Largest departure of one interval from the mean step, as a share of the step."""
 
@@ -55,15 +57,17 @@ def _check_order(times: FloatArray, intervals: FloatArray, where: str) -> None:
             f"{where}: the clock goes from {times[back]:.6g} s to {times[back + 1]:.6g} s at sample "
             f"{back + 2}: it was reset or a line stands twice, split the record there"
         )
-    usual = float(np.median(intervals))
-    wide = np.flatnonzero(intervals > 1.5 * usual)
-    if wide.size:
-        gap = int(wide[0])
-        if wide.size > 1 and np.ptp(intervals[gap:]) < JITTER * usual:
-            raise InputError(
-                f"{where}: the step changes from {usual:.6g} s to {float(np.median(intervals[gap:])):.6g} s at "
-                f"{times[gap]:.6g} s: split the record there, or resample it to one step"
-            )
+    change = int(np.argmax(np.abs(np.diff(intervals)))) + 1
+    parts = intervals[:change], intervals[change:]
+    slow, fast = (float(np.median(part)) for part in parts)
+    even = all(part.size > 2 and np.ptp(part) < CHANGED * min(slow, fast) for part in parts)
+    if even and abs(slow - fast) > CHANGED * max(slow, fast):
+        raise InputError(
+            f"{where}: the step changes from {slow:.6g} s to {fast:.6g} s at {times[change]:.6g} s: split the record "
+            "there, or resample it to one step"
+        )
+    gap, usual = int(np.argmax(intervals)), float(np.median(intervals))
+    if intervals[gap] > 1.5 * usual:
         missing = round(float(intervals[gap]) / usual) - 1
         raise InputError(
             f"{where}: about {missing} sample(s) are missing between {times[gap]:.6g} s and "

@@ -43,7 +43,7 @@ def _quantity(text: str, gravity: bool) -> Any:
     plain = text.strip().replace("·", " ").replace("²", "2").replace("³", "3").replace("°", "deg")
     product = _PRODUCT.sub(" * ", _EXPONENT.sub(r"**(\1)", plain.replace("%", "percent")))
     if gravity:
-        product = re.sub(r"\bgal\b", "Gal", re.sub(r"\bg\b", "standard_gravity", product))  # else the gallon
+        product = re.sub(r"(?i)\bgal\b", "Gal", re.sub(r"\bg\b", "standard_gravity", product))  # else the gallon
     try:
         return _registry().Quantity(1.0, _registry().parse_units(product))
     except Exception as error:  # pint lets attribute, tokenizer and type errors through

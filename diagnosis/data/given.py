@@ -14,6 +14,7 @@ def specimen_of(given: Specimen | str | Path) -> Specimen:
     return given if isinstance(given, Specimen) else read_specimen(given)
 
 
-def recordings_of(given: Sequence[Recording | str | Path]) -> list[Recording]:
-    """Recordings, read where their files are named. Raises InputError."""
+def recordings_of(given: Sequence[Recording | str | Path] | Recording | str | Path) -> list[Recording]:
+    """Recordings, or one, read where their files are named. Raises InputError."""
+    given = [given] if isinstance(given, Recording | str | Path) else given
     return [one if isinstance(one, Recording) else read_recording(one) for one in given]

@@ -62,8 +62,8 @@ def arrange_stretches(
         )
         raise InputError(f"{lead} {why}: model {model.name} is compared by it; record or map it.")
     refuse_dead(split, channels)
-    runs = [_means(r, max(1, round(stretches.mean / (RUNS * r.time_step)))) for r in split]
-    means = [_means(r, max(1, round(stretches.mean / r.time_step))) for r in runs]
+    runs = [as_means(r, max(1, round(stretches.mean / (RUNS * r.time_step)))) for r in split]
+    means = [as_means(r, max(1, round(stretches.mean / r.time_step))) for r in runs]
     windows = tuple(w for k, r in enumerate(means) for w in _cut(k, r, stretches.length))
     sigma = {
         (k, c): response_noise(r, c) / np.sqrt(means[k].time_step / r.time_step)
@@ -112,12 +112,14 @@ def _names(quantity: str, points: Mapping[str, int]) -> Sequence[str]:
     return [f"{quantity}_{k}" for k in range(points[quantity])] if quantity in points else [quantity]
 
 
-def _means(recording: Recording, size: int) -> Recording:
+def as_means(recording: Recording, size: int) -> Recording:
     """The recording as means over ``size`` samples, the last ones left out if they are fewer."""
     n = recording.time.size // size
     channels = {name: averages(x, size) for name, x in recording.channels.items()}
     step = size * recording.time_step
-    return replace(recording, time_step=step, time=step * np.arange(n, dtype=np.float64), channels=channels)
+    lost = {name: np.unique(at[at < n * size] // size) for name, at in recording.lost.items()}
+    time = step * np.arange(n, dtype=np.float64)
+    return replace(recording, time_step=step, time=time, channels=channels, lost=lost)
 
 
 def averages(values: FloatArray, size: int) -> FloatArray:

@@ -10,29 +10,35 @@ import numpy as np
 
 from diagnosis.data.averaging import stride
 from diagnosis.data.measured import Measured
-from grids.recordings.lines import amplitude
 from models.base import FloatArray
 
-BESIDE = (2.5, 4.5, 6.5, 8.5)
-"""Frequencies on either side that a line is held against, in 1/T of the recording."""
+AROUND = 0.04
+"""Hz within which a line of the means is known, and stands in the spectrum of the samples."""
+BESIDE = 20
+"""Frequencies on either side of these that it is held against."""
 
 
 def in_the_samples(measured: Measured, channel: str, frequency: float) -> tuple[float, float]:
-    """Frequency (Hz) of the line that makes one at ``frequency`` in the means, and what the means leave of it."""
-    fastest = min(measured.recordings, key=lambda one: one.time_step)
-    step, q = fastest.time_step, stride(fastest.time_step)
-    if q == 1:
-        return frequency, 1.0
-    rate = 1.0 / (q * step)
-    around = [k * rate + sign * frequency for k in range(q) for sign in (1.0, -1.0)]
-    may_be = np.unique([f for f in around if 0.0 < f <= 0.5 / step])
-    samples = fastest.channels[channel]
-    clear = [_over_beside(samples, float(f) * step) for f in may_be]
-    true = float(may_be[int(np.argmax(clear))])
-    return true, float(abs(np.sin(np.pi * true * q * step) / (q * np.sin(np.pi * true * step))))
+    """Frequency (Hz) of the line that makes one at ``frequency`` in the means, and what the means leave of it.
+
+    Told by the recording in which it stands clearest: of other sampling rates a line makes other ones.
+    """
+    best = 0.0, frequency, 1.0
+    for recording in measured.recordings:
+        step, q = recording.time_step, stride(recording.time_step)
+        rate, samples = 1.0 / (q * step), recording.channels[channel]
+        spectrum = np.abs(np.fft.rfft(samples * np.hanning(samples.size)))
+        for true in {k * rate + sign * frequency for k in range(q) for sign in (1.0, -1.0)}:
+            if not 0.0 < true <= 0.5 / step + AROUND:
+                continue
+            left = abs(np.sin(np.pi * true * q * step) / (q * np.sin(np.pi * true * step)))
+            best = max(best, (_over_beside(spectrum, true, step * samples.size), true, float(left)))
+    return best[1], best[2]
 
 
-def _over_beside(samples: FloatArray, frequency: float) -> float:
-    """Amplitude at a frequency (cycles a sample) over the median of those beside it."""
-    beside = [frequency + sign * b / samples.size for b in BESIDE for sign in (1.0, -1.0)]
-    return amplitude(samples, frequency) / max(float(np.median([amplitude(samples, f) for f in beside])), 1e-300)
+def _over_beside(spectrum: FloatArray, frequency: float, duration: float) -> float:
+    """Largest amplitude at a frequency (Hz) over the median of those beside it."""
+    low, high = int((frequency - AROUND) * duration), int(np.ceil((frequency + AROUND) * duration)) + 1
+    near = spectrum[max(low, 0) : high]
+    beside = np.concatenate([spectrum[max(low - BESIDE, 0) : max(low, 0)], spectrum[high : high + BESIDE]])
+    return float(near.max(initial=0.0) / max(float(np.median(beside)) if beside.size else np.inf, 1e-300))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import json
 import os
@@ -20,6 +21,8 @@ ROOMS = ("models", "grids", "diagnosis")
 ROOT = Path(__file__).resolve().parents[2]
 FILES = "files_sha256"
 """The entry of an answer that says to which files it is one."""
+OF_THE_MACHINE = (errno.ENOMEM, errno.ENOSPC, errno.EDQUOT, errno.EMFILE, errno.EIO)
+"""Errors of memory, disk and files that are open, which another start may not meet."""
 DAMAGED = "write it anew (an answer that is deleted is found again)."
 NOTHING: dict[str, Any] = {"effects": [], "rivals": [], "constancy": [], "located": [], "base": {}}
 
@@ -91,7 +94,7 @@ def answer(folder: Path, path: Path, answering: Answering = diagnosed) -> dict[s
     try:
         found = answering(folder)
     except Exception as error:
-        keep = not isinstance(error, MemoryError | OSError)
+        keep = not (isinstance(error, MemoryError) or getattr(error, "errno", None) in OF_THE_MACHINE)
         found = {"verdict": "failed", "statement": traceback.format_exc(), **NOTHING}
     if not found.get("finished", True):
         raise KeyboardInterrupt

@@ -95,7 +95,8 @@ def prove(
                         f"a process was killed while it answered one of {lost} (is memory short?); answers are kept "
                         f"in {answers}: start again, with --jobs 1 where memory is short."
                     ) from None
-                say(f"{running[done].name}: {found['verdict']}, {found['seconds']:.0f} s")
+                why = f" ({found['statement'].strip().splitlines()[-1]})" if found["verdict"] == "failed" else ""
+                say(f"{running[done].name}: {found['verdict']}{why}, {found['seconds']:.0f} s")
     if left := [path for path in chosen if not (answers / f"{path.name}.json").is_file()]:
         say(f"{len(left)} cases are left: start again to go on")
         return {}

@@ -151,7 +151,10 @@ def _elsewhere(found: Search, best: Weighed) -> float:
     gains = gain_by_window(reweighed(found.chosen, best.errors), best.explanation)
     gains = gains - (adjusted(best.explanation) - best.explanation.loss) / gains.size
     of = found.measured.recording_of
-    return float(gains.sum() - sum(max(gains[of == r].max(), 0.0) for r in np.unique(of)))
+    largest = [max(float(gains[of == r].max()), 0.0) for r in np.unique(of)]
+    if len(largest) == gains.size:  # of each recording one window
+        return float(gains.sum()) - max(largest)
+    return float(gains.sum()) - sum(largest)
 
 
 def _leaves_a_law(found: Search) -> bool:

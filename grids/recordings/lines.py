@@ -42,12 +42,6 @@ def without_lines(values: FloatArray, lowest: float = 0.0) -> FloatArray:
     return values - _fitted(values, found) if found else values
 
 
-def amplitude(values: FloatArray, frequency: float) -> float:
-    """Amplitude of a line in samples (n,), at a ``frequency`` in cycles a sample."""
-    window = np.hanning(values.size)
-    return float(2.0 * np.abs(_waves(values.size, np.array([frequency]))[0] @ (values * window)) / window.sum())
-
-
 def _fitted(values: FloatArray, frequencies: list[float]) -> FloatArray:
     """The sum of waves of these frequencies (cycles a sample) that is closest to the samples."""
     waves = _waves(values.size, np.array(frequencies, np.float64))

@@ -1,9 +1,10 @@
 """Spikes: one or two samples of a rotation or displacement that stand alone, as a loose plug or a lost bit leaves them.
 
 A cubic through two samples on either side foretells what a body that moves would have read. Where a rotation turns at
-an impact its slope jumps, and the cubic is off by less than half the steps beside; a spike is off by many of them, and
-by many deviations of the noise. It is bridged by the cubic, so that rates and starts can be read off, and is not
-compared: what is bridged is no measurement.
+an impact its slope jumps, and the cubic is off by less than half the steps beside. A spike is off by many of them, and
+by many deviations of the noise, and once it is bridged by the cubic nothing near it is off: so it is not in swings of
+few samples, nor at wider gaps. What is bridged serves to read off rates and starts, and is not compared: it is no
+measurement.
 """
 
 from __future__ import annotations
@@ -21,6 +22,8 @@ UNITS = ("rad", "m")
 """Of positions: velocities and accelerations have true spikes, at impacts."""
 LEAST, STEEP, OF_PEAK, QUANTA = 12.0, 3.0, 0.01, 3.0
 """Deviations of the noise, steps beside it, share of the largest reading and digits that a spike exceeds."""
+LEFT, NEAR = 0.2, 8
+"""Share of a spike that may be left anywhere within so many samples of it once it is bridged."""
 WIDEST, BESIDE, AROUND = 2, 4, 65
 MOST = 0.01
 """Share of the samples beyond which they are no spikes but what the channel is like."""
@@ -80,7 +83,16 @@ def _alone(x: FloatArray, width: int, least: float) -> Iterator[tuple[float, int
     usual = LEAST * MAD_TO_SIGMA * median_filter(np.abs(off[0]), AROUND)  # noise may grow with the rotation
     clear = (size > np.maximum(np.maximum(least, steep), usual)) & (np.abs(np.sum(np.sign(off), axis=0)) == width)
     for at in np.flatnonzero(clear).tolist():
-        yield float(size[at]), int(first[at]), width
+        if _even(x, int(first[at]), width, LEFT * float(size[at])):
+            yield float(size[at]), int(first[at]), width
+
+
+def _even(x: FloatArray, first: int, width: int, least: float) -> bool:
+    """Whether all around is as foretold, within ``least``, once a run is bridged."""
+    low, high = max(first - NEAR, 0), min(first + width + NEAR, x.size)
+    near = _bridged(x[low:high], np.arange(first - low, first - low + width))
+    off = near[2:-2] - _weights(1, 0) @ np.stack([near[:-4], near[1:-3], near[3:-1], near[4:]])
+    return float(np.max(np.abs(off))) < least
 
 
 def _weights(width: int, k: int) -> FloatArray:

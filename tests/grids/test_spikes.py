@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
 
+import models
+from diagnosis.data.stretches import as_means
 from diagnosis.fit.setup import measure
 from grids.recordings import read_recording
 from grids.recordings.spikes import spikes
+from models.shaking import Shaking
 from tests.diagnosis.made import SPECIMEN, recording
 
 RUN = recording("run", 1)
@@ -69,3 +73,31 @@ def test_what_stands_alone_is_not_compared(tmp_path: Path) -> None:
     }  # fmt: skip
     held = {k for k in AT for w in measured.windows if 0 <= k - w.first < w.samples}
     assert inside == held and held
+
+
+def test_swings_of_few_samples_hold_no_spike() -> None:
+    """A small block on a base of 2 to 8 Hz: the largest sample of a swing stands between two small ones."""
+    rng, time = np.random.default_rng(3), np.arange(2000) * 0.005
+    for height in (0.12, 0.2, 0.6):
+        values = {"width": 0.25 * height, "height": height, "mass": 1.0}
+        waves = [np.sin(2.0 * np.pi * f * time + p) for f, p in rng.uniform((2.0, 0.0), (8.0, 6.3), (12, 2))]
+        base = np.sum(waves, axis=0) * np.minimum(time / 2.0, 1.0)
+        shaking = Shaking(0.005, 1.5 * 9.81 * 0.25 * base / np.max(np.abs(base)))
+        rotation = models.get("housner").simulate(values, shaking, duration=9.9).channels["rotation_1"]
+        for every in (1, 2, 4):
+            some = np.asarray(rotation)[::every]
+            for share in (0.0, 0.002, 0.01):
+                assert not spikes(some + share * np.max(np.abs(some)) * rng.normal(size=some.size)).size
+
+
+@pytest.mark.parametrize("lost", [(300, 301, 302), (300, 301, 302, 303), (300, 302)])
+def test_wider_gaps_are_left_as_they_are(lost: tuple[int, ...]) -> None:
+    """Their sound neighbours would be taken for spikes."""
+    values = 0.02 * np.sin(3.0 * RUN.time) + 2e-5 * np.random.default_rng(0).normal(size=RUN.time.size)
+    values[list(lost)] += 0.02
+    assert not spikes(values).size
+
+
+def test_a_mean_over_a_lost_sample_is_lost() -> None:
+    found = as_means(replace(RUN, lost={"rotation_1": np.array([300, 301, RUN.time.size - 1])}), 4)
+    assert found.lost["rotation_1"].tolist() == [75]

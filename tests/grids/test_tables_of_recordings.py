@@ -85,15 +85,17 @@ def test_a_sampling_rate_that_changes_is_told_from_lost_samples(written: Callabl
         rows = [f"{t:.6f},{a},{r}" for t, (a, r) in zip(times, VALUES, strict=True)]
         read_recording(written("test_4.csv", "\n".join(["t,acc,inc", *rows])))
 
-    steps = np.where(np.arange(len(VALUES)) < 250, 0.005, 0.010)
-    with pytest.raises(InputError, match=r"the step changes from 0.005 s to 0.01 s at 1.25 s: split"):
-        read(np.cumsum(steps))
+    for change, first, second in ((250, 0.005, 0.01), (100, 0.005, 0.01), (250, 0.01, 0.005), (100, 0.01, 0.005)):
+        steps = np.where(np.arange(len(VALUES)) < change, first, second)
+        at = f"{change * first:.6g} s"
+        with pytest.raises(InputError, match=rf"the step changes from {first} s to {second} s at {at}: split"):
+            read(np.cumsum(steps))
     steps = np.where(np.arange(len(VALUES)) == 250, 0.015, 0.005)
     with pytest.raises(InputError, match=r"about 2 sample\(s\) are missing"):
         read(np.cumsum(steps))
 
 
-@pytest.mark.parametrize(("unit", "factor"), [("1e-3 g", 9.80665e-3), ("gal", 0.01), ("cm/s2", 0.01)])
+@pytest.mark.parametrize(("unit", "factor"), [("1e-3 g", 9.80665e-3), ("gal", 0.01), ("GAL", 0.01), ("cm/s2", 0.01)])
 def test_a_recording_knows_the_units_that_a_motion_knows(
     unit: str, factor: float, written: Callable[[str, str], Path]
 ) -> None:

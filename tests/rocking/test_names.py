@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 import rocking
+from models.errors import InputError
 from rocking.rooms import ROOMS, find_intruder
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -64,3 +65,9 @@ def test_an_intruder_is_named(tmp_path: Path) -> None:
 
 def test_all_rooms_lie_side_by_side() -> None:
     assert all((ROOT / room / "__init__.py").is_file() for room in ROOMS)
+
+
+def test_one_recording_may_be_named_alone() -> None:
+    block = rocking.read_specimen(ROOT / "examples" / "from_a_data_logger" / "block.toml")
+    with pytest.raises(InputError, match=r"recording nowhere.csv does not exist"):
+        rocking.calibrate(block, "nowhere.csv")

@@ -25,7 +25,7 @@ from grids.sampling import check_step, parse_numbers
 from grids.units import STANDARD_GRAVITY
 from models.errors import InputError
 
-_NUMBER = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?)(?![\w.])"
+_NUMBER = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?)"
 _NPTS = (re.compile(r"NPTS\s*=\s*(\d{1,9})\b", re.I), re.compile(rf"^\s*(\d{{1,9}})\s+{_NUMBER}\s*,?\s*NPTS", re.I))
 _DT = (re.compile(rf"DT\s*=\s*{_NUMBER}", re.I), re.compile(rf"^\s*\d+\s+{_NUMBER}\s*,?\s*NPTS", re.I))
 _RSN = re.compile(r"RSN\d+_", re.I)

@@ -23,22 +23,30 @@ _VARIABLES = ("base_acceleration_", "acceleration_")
 _UP_ALONE = {"u", "v"}
 _UP = {"up", "ver", "vrt", "ud", "updown", "z", "upward"}
 _DOWN = {"down", "dwn", "dn", "downward"}
-_HORIZONTAL = {"n", "e", "s", "w", "x", "y", "h", "ns", "sn", "ew", "we", "north", "east"}
-_UP_BY_FORM = re.compile(r"vert[a-z]*|a(cc)?z|v(el)?z|[bcdefghlms][ghlmn]z")
+_PLAIN = {"a", "acc", "accel", "acceleration", "base", "ground", "table", "ch", "channel", "comp", "component"}
+"""Words that say nothing of a direction."""
+_UP_BY_FORM = re.compile(r"vert|verti[ck]al[a-z]*|a(cc)?z|v(el)?z|[bcdefghlms][ghlmn]z")
 """Vertical in several languages, az and vz, and the codes of SEED: band, instrument, orientation."""
 
 
 def vertical_sign(component: str) -> int:
     """+1 for a vertical component positive up, -1 for one positive down, 0 for a horizontal one."""
-    words = re.findall(r"[a-z]+", component.lower())
-    if "".join(words) in _UP_ALONE:
+    word = re.sub(r"[^a-z]", "", component.lower())
+    if word in _DOWN:
+        return -1
+    if word in _UP or word in _UP_ALONE:
         return 1
-    for word in ("".join(words), *(words if _HORIZONTAL.isdisjoint(words) else ())):
-        if word in _DOWN:
-            return -1
-        if word in _UP or _UP_BY_FORM.fullmatch(word):
-            return 1
-    return 0
+    words = [re.sub(r"\d$", "", one) for one in re.findall(r"[a-z0-9]+", component.lower())]
+    signs = [_sign_of_word(one) for one in words if one not in _PLAIN]
+    if not signs or 0 in signs:
+        return 0
+    return min(signs)
+
+
+def _sign_of_word(word: str) -> int:
+    if word in _DOWN:
+        return -1
+    return 1 if word in _UP or _UP_BY_FORM.fullmatch(word) else 0
 
 
 def component_name(variable: str) -> str | None:

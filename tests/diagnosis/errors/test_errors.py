@@ -14,6 +14,7 @@ from scipy.signal import lfilter
 from diagnosis.errors import model
 from diagnosis.errors.adequacy import inadequacy, repeatability
 from diagnosis.errors.comparison import deviance
+from diagnosis.errors.hum import in_the_samples
 from diagnosis.errors.likelihood import Piece, climbed, maximise, whitened
 from diagnosis.errors.lines import lines
 from diagnosis.errors.model import Errors, calibrated, disturbance_about, estimate, refitted
@@ -28,6 +29,7 @@ from diagnosis.search.null import null_distribution
 from diagnosis.search.refit import Explanation
 from diagnosis.search.screen import score
 from diagnosis.search.weighing import evidence
+from grids.recordings.base import Recording
 from tests.diagnosis.made import SPECIMEN, TIME_STEP, scattered
 from tests.diagnosis.made import searched as searched_to_the_end
 
@@ -233,3 +235,18 @@ def test_errors_are_estimated_anew_where_nothing_is_still_any_more(monkeypatch: 
     again = estimate(fitted, first.base, first)
     kinds = {c.kind for c in first.components} - {c.kind for c in again.components}
     assert kinds == {"inadequacy"} and again.theta.size == len(again.components)
+
+
+@pytest.mark.parametrize(("rates", "hummed"), [((200.0, 250.0), (1, 1)), ((200.0, 400.0), (1, 0)), ((200.0,), (1,))])
+def test_a_line_of_the_means_is_found_in_the_recording_that_holds_it(
+    rates: tuple[float, ...], hummed: tuple[int, ...]
+) -> None:
+    """At other sampling rates it makes other lines; in ten minutes it is a needle."""
+    rng, recordings = np.random.default_rng(5), []
+    for rate, holds in zip(rates, hummed, strict=True):
+        time = np.arange(round((600.0 if len(rates) == 1 else 20.0) * rate)) / rate
+        values = rng.normal(size=time.size) + 3.0 * holds * np.sin(2.0 * np.pi * 60.007 * time)
+        recordings.append(Recording("run", 1.0 / rate, time, {"rotation_1": values}))
+    seen = replace(measure(SPECIMEN, [scattered("train_1", 1, 0.0)]), recordings=tuple(recordings))
+    true, left = in_the_samples(seen, "rotation_1", 40.0)
+    assert true == pytest.approx(60.0, abs=0.02) and left == pytest.approx(np.cos(0.3 * np.pi), abs=1e-3)

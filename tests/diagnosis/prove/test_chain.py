@@ -148,3 +148,14 @@ def test_failures_and_answers_of_other_versions_are_said(folder: Path, tmp_path:
     kept.write_text(json.dumps({**json.loads(kept.read_text()), "sources": "earlier"}))
     prove(folder, out, model="housner", say=lines.append, answering=without_solution)
     assert any(line.startswith("1 of 3 answers are those of another version") for line in lines)
+
+
+def without_a_file(folder: Path) -> dict[str, Any]:
+    raise FileNotFoundError(2, "no such file", "law.csv")
+
+
+def test_a_file_that_is_missing_is_a_failure_with_its_reason(folder: Path, tmp_path: Path) -> None:
+    lines: list[str] = []
+    found = prove(folder, tmp_path / "out", model="housner", say=lines.append, answering=without_a_file)
+    assert found["failed"] == ["case_01", "case_02", "case_03"]
+    assert any("case_02: failed (FileNotFoundError: [Errno 2] no such file: 'law.csv')" in line for line in lines)

@@ -216,3 +216,19 @@ def test_a_blow_to_the_base_in_every_recording_is_no_second_body() -> None:
     gain, without_one = tried.over(ladder._as_found(found))
     assert rung.name == "second_body" and gain > without_one > found.more
     assert ladder.climb(found, [(rung, tried)], decisive=False) is None
+
+
+def test_of_each_recording_one_window_is_no_hindrance(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without the window that weighs most of them all; else another base model could never be named there."""
+    fitted, errors = calibrated_fit("housner", 2)
+    found = Search(Explanation((), fitted), (), errors)
+    weighed = ladder._as_found(found)
+    count = len(fitted.measured.windows)
+    monkeypatch.setattr(ladder, "gain_by_window", lambda before, after: np.arange(1.0, count + 1.0))
+    assert ladder._elsewhere(found, weighed) == pytest.approx(sum(range(1, count)))
+    windows = tuple(replace(window, recording=k) for k, window in enumerate(fitted.measured.windows))
+    apart = replace(fitted.measured, windows=windows)
+    moved = replace(fitted, misfit=replace(fitted.misfit, predictor=replace(fitted.misfit.predictor, measured=apart)))
+    alone = replace(found, base=Explanation((), moved))
+    monkeypatch.setattr(ladder, "reweighed", lambda explanation, errors: explanation)
+    assert ladder._elsewhere(alone, weighed) == pytest.approx(sum(range(1, count)))

@@ -253,9 +253,9 @@ def test_a_first_line_of_numbers_is_no_header(files):
     assert read_motion(files.folder / "bare.csv").horizontal.size == 50
 
 
-@pytest.mark.parametrize("step", ["1.E-2", "1.0D-02", ".01", "0.0100", "1e-2"])
+@pytest.mark.parametrize("step", ["1.E-2 ", "1.0D-02 ", ".01 ", "0.0100", "1e-2 "])
 def test_at2_step_in_any_notation(files, step):
-    path = files.at2("NEW_000.AT2", files.north, "000", header=f"NPTS=  600, DT=  {step} SEC")
+    path = files.at2("NEW_000.AT2", files.north, "000", header=f"NPTS=  600, DT=  {step}SEC")
     assert read_motion(path).time_step == 0.01
 
 
@@ -266,7 +266,27 @@ def test_names_of_vertical_components(name):
     assert vertical_sign(name) == 1
 
 
-@pytest.mark.parametrize("name", ["HGN", "HNE", "N", "x", "acc_x", "000", "N00E_v2", "h1_up_x", "Transversal", "S80E"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "HGN",
+        "HNE",
+        "N",
+        "x",
+        "AZ.BZN..HHE",
+        "AZ_HNE",
+        "az090",
+        "down-hole 090",
+        "hne_up",
+        "vertical_x",
+        "acc_x",
+        "000",
+        "N00E_v2",
+        "h1_up_x",
+        "Transversal",
+        "S80E",
+    ],
+)
 def test_names_of_horizontal_components(name):
     assert vertical_sign(name) == 0
 
