@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from grids.recordings.base import FloatArray, Recording
 from grids.recordings.noise import MAD_TO_SIGMA, WINDOW, noise_of
+from grids.recordings.stuck import stuck
 
 UNITS = ("rad", "m")
 """Of positions: velocities and accelerations have true spikes, at impacts."""
@@ -31,20 +32,31 @@ SHOWN = 3
 
 
 def without_spikes(recording: Recording) -> Recording:
-    """The recording with its spikes bridged, named in `Recording.lost` and in a note; as it is without any."""
+    """The recording with spikes and stuck samples bridged, in `Recording.lost` and in notes; as it is without any."""
     channels, lost, notes = dict(recording.channels), dict(recording.lost), []
     for name in recording.responses:
         if recording.channel(name).unit not in UNITS or channels[name].ndim > 1:
             continue
-        at = spikes(channels[name])
-        if not at.size:
+        held = stuck(channels[name])
+        whole = _between(channels[name], held)
+        alone = np.setdiff1d(spikes(whole), held)
+        if not held.size and not alone.size:
             continue
-        bridged = _bridged(channels[name], at)
+        bridged = _bridged(whole, alone)
         bridged.flags.writeable = False
-        channels[name], lost[name] = bridged, at
-        where = ", ".join(f"{t:.4g} s" for t in recording.time[at[:SHOWN]]) + (" ..." if at.size > SHOWN else "")
-        notes.append(f"{at.size} sample(s) of {name} stand alone ({where}): they are taken for spikes and not compared")
+        channels[name], lost[name] = bridged, np.union1d(held, alone)
+        for at, said in ((alone, "stand alone"), (held, "repeat the one before")):
+            if at.size:
+                where = ", ".join(f"{t:.4g} s" for t in recording.time[at[:SHOWN]])
+                more = " ..." if at.size > SHOWN else ""
+                notes.append(f"{at.size} sample(s) of {name} {said} ({where}{more}): they are lost and not compared")
     return replace(recording, channels=channels, lost=lost, notes=(*recording.notes, *notes)) if notes else recording
+
+
+def _between(values: FloatArray, at: NDArray[np.intp]) -> FloatArray:
+    """The samples with those ``at`` on straight lines between the others."""
+    kept = np.setdiff1d(np.arange(values.size), at)
+    return np.asarray(np.interp(np.arange(values.size), kept, values[kept])) if at.size else values
 
 
 def spikes(values: FloatArray) -> NDArray[np.intp]:

@@ -13,7 +13,8 @@ import models
 from diagnosis.data.stretches import as_means
 from diagnosis.fit.setup import measure
 from grids.recordings import read_recording
-from grids.recordings.spikes import spikes
+from grids.recordings.spikes import spikes, without_spikes
+from grids.recordings.stuck import stuck
 from models.shaking import Shaking
 from tests.diagnosis.made import SPECIMEN, recording
 
@@ -63,7 +64,10 @@ def test_what_stands_alone_is_not_compared(tmp_path: Path) -> None:
     xr.Dataset(channels, coords={"time": ("time", RUN.time, {"units": "s"})}).to_netcdf(path)
     found = read_recording(path)
     assert found.lost["rotation_1"].tolist() == list(AT)
-    assert any("4 sample(s) of rotation_1 stand alone (1.5 s, 3.535 s, 3.54 s ...)" in note for note in found.notes)
+    assert any(
+        "4 sample(s) of rotation_1 stand alone (1.5 s, 3.535 s, 3.54 s ...): they are lost" in note
+        for note in found.notes
+    )
     bridged = found.channels["rotation_1"][list(AT)]
     np.testing.assert_allclose(bridged, ROTATION[list(AT)], atol=6.0 * 0.01 * PEAK)
     measured = measure(SPECIMEN, [found])
@@ -101,3 +105,18 @@ def test_wider_gaps_are_left_as_they_are(lost: tuple[int, ...]) -> None:
 def test_a_mean_over_a_lost_sample_is_lost() -> None:
     found = as_means(replace(RUN, lost={"rotation_1": np.array([300, 301, RUN.time.size - 1])}), 4)
     assert found.lost["rotation_1"].tolist() == [75]
+
+
+def test_samples_that_a_logger_held_are_lost_and_those_at_the_end_of_a_range_are_not() -> None:
+    values = ROTATION.copy()
+    values[500:520] = values[500]
+    assert stuck(values).tolist() == list(range(501, 520))
+    assert not stuck(ROTATION).size and not stuck(np.clip(ROTATION, -0.5 * PEAK, 0.5 * PEAK)).size
+    assert not stuck(np.round(ROTATION / (0.02 * PEAK)) * 0.02 * PEAK).size  # digits as coarse as the noise
+    still = recording("run", 1, noise=0.0).channels["rotation_1"]
+    assert not stuck(np.concatenate([np.zeros(200), still])).size  # a computed channel that begins at rest
+    found = without_spikes(replace(RUN, channels={**RUN.channels, "rotation_1": values}))
+    assert found.lost["rotation_1"].tolist() == list(range(501, 520))
+    assert "19 sample(s) of rotation_1 repeat the one before" in found.notes[-1]
+    line = np.linspace(values[500], values[520], 21)
+    np.testing.assert_allclose(found.channels["rotation_1"][500:521], line, atol=1e-12)
