@@ -11,8 +11,7 @@ import pytest
 
 from grids.data_folder import data_folder
 from grids.motions import read_motion
-from grids.recordings import noise_of, read_recording
-from grids.recordings.lines import without_lines
+from grids.recordings import read_recording
 from models.errors import InputError
 
 STEP, COUNT, GRAVITY = 0.005, 3000, 9.80665
@@ -331,29 +330,6 @@ def test_an_upper_body_may_rock_against_the_one_that_carries_it(tmp_path: Path) 
     assert read_recording(stored(tmp_path, dataset(rotation_2=(0 * ROTATION, "rad")))).suspicions != ()
 
 
-@pytest.mark.parametrize("sigma", [1e-4, 1e-2])
-def test_noise_of_white_noise_on_a_smooth_signal(sigma: float) -> None:
-    rng = np.random.default_rng(3)
-    time = np.arange(20_000) * 0.002
-    smooth = np.sin(2 * np.pi * 1.5 * time) + 0.3 * np.abs(np.sin(2 * np.pi * 0.7 * time))
-    found = noise_of(smooth + rng.normal(0, sigma, time.size))
-    assert found.sigma == pytest.approx(sigma, rel=0.03)
-    assert found.white
-    filtered = np.convolve(rng.normal(0, sigma, time.size), [0.25, 0.5, 0.25], mode="same")
-    assert not noise_of(smooth + filtered).white
-
-
-def test_noise_scales_with_the_channel_and_vanishes_without_noise() -> None:
-    rng = np.random.default_rng(4)
-    values = np.cumsum(rng.normal(0, 1e-4, 2000)) + rng.normal(0, 0.1, 2000)
-    assert noise_of(1e3 * values).sigma == pytest.approx(1e3 * noise_of(values).sigma, rel=1e-12)
-    assert noise_of(np.zeros(100)).sigma == 0.0
-    shaken = np.concatenate([np.zeros(24), np.random.default_rng(0).normal(size=16)])
-    assert noise_of(shaken).sigma == 0.0  # a computed channel that begins at rest
-    with pytest.raises(InputError, match="10 samples is too short"):
-        noise_of(np.zeros(10))
-
-
 def test_the_recordings_at_hand() -> None:
     folder = data_folder()
     files = sorted(folder.glob("recordings/concealed/*/train_1.nc")) if folder else []
@@ -377,22 +353,6 @@ def test_the_table_of_the_page_is_read_as_the_page_maps_it(written: Callable[[st
     assert found.time_step == 0.005 and found.levels == ("0", "1")
     assert found.channels["rotation_1"][-1] == pytest.approx(np.radians(0.5))
     assert found.channels["level_acceleration_x"][:, -1] == pytest.approx([0.2 * GRAVITY, 0.3 * GRAVITY])
-
-
-@pytest.mark.parametrize("frequency", [30.0, 50.0, 60.0, 70.0, 88.3])
-def test_hum_is_no_noise(frequency: float) -> None:
-    """A steady line three times the noise, wherever the local polynomial leaves it."""
-    rng, time = np.random.default_rng(6), np.arange(1600) * 0.005
-    values = 0.05 * np.sin(7.0 * time) + rng.normal(0, 1e-4, time.size)
-    found = noise_of(values + 3e-4 * np.sin(2 * np.pi * frequency * time + 0.3))
-    assert found.white and found.sigma == pytest.approx(noise_of(values).sigma, rel=0.05)
-
-
-@pytest.mark.parametrize("samples", [300, 5000])
-def test_noise_has_no_lines(samples: int) -> None:
-    for seed in range(20):
-        values = np.random.default_rng(seed).normal(size=samples)
-        assert without_lines(values) is values
 
 
 def test_a_motion_of_the_base_is_used_where_the_sensors_of_the_body_fail(tmp_path: Path) -> None:
