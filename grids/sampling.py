@@ -59,12 +59,12 @@ def _check_order(times: FloatArray, intervals: FloatArray, where: str) -> None:
         )
     change = int(np.argmax(np.abs(np.diff(intervals)))) + 1
     parts = intervals[:change], intervals[change:]
-    slow, fast = (float(np.median(part)) for part in parts)
-    even = all(part.size > 2 and np.ptp(part) < CHANGED * min(slow, fast) for part in parts)
-    if even and abs(slow - fast) > CHANGED * max(slow, fast):
+    before, after = (float(np.median(part)) for part in parts)
+    even = all(part.size > 2 and np.ptp(part) < CHANGED * min(before, after) for part in parts)
+    if even and abs(before - after) > CHANGED * max(before, after):
         raise InputError(
-            f"{where}: the step changes from {slow:.6g} s to {fast:.6g} s at {times[change]:.6g} s: split the record "
-            "there, or resample it to one step"
+            f"{where}: the step changes from {before:.6g} s to {after:.6g} s at {times[change]:.6g} s: split the "
+            "record there, or resample it to one step"
         )
     gap, usual = int(np.argmax(intervals)), float(np.median(intervals))
     if intervals[gap] > 1.5 * usual:

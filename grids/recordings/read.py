@@ -9,8 +9,8 @@ import numpy as np
 
 from grids.recordings import csv_toml, netcdf
 from grids.recordings.base import CHANNELS, REQUIRED, FloatArray, Raw, Recording
+from grids.recordings.lost import with_lost_samples
 from grids.recordings.overturned import cut_before_fall
-from grids.recordings.spikes import without_spikes
 from grids.recordings.suspicions import suspicions_of
 from models.errors import InputError, nearest
 
@@ -25,9 +25,9 @@ def read_recording(path: str | Path, *, base_only: bool = False) -> Recording:
 
     Samples without a value are cut off where they stand at the start or the end of the record; inside it they are an
     error, because a filled gap is not a measurement. A recording of a body that overturned is cut before its fall, and
-    spikes of positions are marked as lost, both with a note. ``base_only``: the motion of the base is all that is
-    wanted and returned, as long as its own channels have values, beyond a fall too. Nothing is filtered, interpolated
-    or detrended.
+    samples of positions that measure nothing are marked as lost, both with a note. ``base_only``: the motion of the
+    base is all that is wanted and returned, as long as its own channels have values, beyond a fall too. Nothing is
+    filtered or detrended.
     Raises InputError with one sentence: file, channel, place, cure.
     """
     path = Path(path)
@@ -45,7 +45,7 @@ def read_recording(path: str | Path, *, base_only: bool = False) -> Recording:
     try:
         recording = _checked(table.stem, reader.read(table), base_only)
         if not base_only:
-            recording = cut_before_fall(without_spikes(recording))
+            recording = cut_before_fall(with_lost_samples(recording))
         return replace(
             recording,
             source={"file": table.name, **recording.source},

@@ -3,24 +3,19 @@
 A cubic through two samples on either side foretells what a body that moves would have read. Where a rotation turns at
 an impact its slope jumps, and the cubic is off by less than half the steps beside. A spike is off by many of them, and
 by many deviations of the noise, and once it is bridged by the cubic nothing near it is off: so it is not in swings of
-few samples, nor at wider gaps. What is bridged serves to read off rates and starts, and is not compared: it is no
-measurement.
+few samples, nor at wider gaps.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from grids.recordings.base import FloatArray, Recording
+from grids.recordings.base import FloatArray
 from grids.recordings.noise import MAD_TO_SIGMA, WINDOW, noise_of
-from grids.recordings.stuck import stuck
 
-UNITS = ("rad", "m")
-"""Of positions: velocities and accelerations have true spikes, at impacts."""
 LEAST, STEEP, OF_PEAK, QUANTA = 12.0, 3.0, 0.01, 3.0
 """Deviations of the noise, steps beside it, share of the largest reading and digits that a spike exceeds."""
 LEFT, NEAR = 0.2, 8
@@ -28,35 +23,6 @@ LEFT, NEAR = 0.2, 8
 WIDEST, BESIDE, AROUND = 2, 4, 65
 MOST = 0.01
 """Share of the samples beyond which they are no spikes but what the channel is like."""
-SHOWN = 3
-
-
-def without_spikes(recording: Recording) -> Recording:
-    """The recording with spikes and stuck samples bridged, in `Recording.lost` and in notes; as it is without any."""
-    channels, lost, notes = dict(recording.channels), dict(recording.lost), []
-    for name in recording.responses:
-        if recording.channel(name).unit not in UNITS or channels[name].ndim > 1:
-            continue
-        held = stuck(channels[name])
-        whole = _between(channels[name], held)
-        alone = np.setdiff1d(spikes(whole), held)
-        if not held.size and not alone.size:
-            continue
-        bridged = _bridged(whole, alone)
-        bridged.flags.writeable = False
-        channels[name], lost[name] = bridged, np.union1d(held, alone)
-        for at, said in ((alone, "stand alone"), (held, "repeat the one before")):
-            if at.size:
-                where = ", ".join(f"{t:.4g} s" for t in recording.time[at[:SHOWN]])
-                more = " ..." if at.size > SHOWN else ""
-                notes.append(f"{at.size} sample(s) of {name} {said} ({where}{more}): they are lost and not compared")
-    return replace(recording, channels=channels, lost=lost, notes=(*recording.notes, *notes)) if notes else recording
-
-
-def _between(values: FloatArray, at: NDArray[np.intp]) -> FloatArray:
-    """The samples with those ``at`` on straight lines between the others."""
-    kept = np.setdiff1d(np.arange(values.size), at)
-    return np.asarray(np.interp(np.arange(values.size), kept, values[kept])) if at.size else values
 
 
 def spikes(values: FloatArray) -> NDArray[np.intp]:
@@ -70,7 +36,7 @@ def spikes(values: FloatArray) -> NDArray[np.intp]:
     )  # fmt: skip
     found: set[int] = set()
     while len(found) <= MOST * values.size:
-        left = _bridged(values, np.array(sorted(found), np.intp))
+        left = bridged(values, np.array(sorted(found), np.intp))
         runs = sorted((run for width in range(1, WIDEST + 1) for run in _alone(left, width, least)), reverse=True)
         taken: list[int] = []  # the samples beside a spike are off too, by less
         for _, first, width in runs:
@@ -102,7 +68,7 @@ def _alone(x: FloatArray, width: int, least: float) -> Iterator[tuple[float, int
 def _even(x: FloatArray, first: int, width: int, least: float) -> bool:
     """Whether all around is as foretold, within ``least``, once a run is bridged."""
     low, high = max(first - NEAR, 0), min(first + width + NEAR, x.size)
-    near = _bridged(x[low:high], np.arange(first - low, first - low + width))
+    near = bridged(x[low:high], np.arange(first - low, first - low + width))
     off = near[2:-2] - _weights(1, 0) @ np.stack([near[:-4], near[1:-3], near[3:-1], near[4:]])
     return float(np.max(np.abs(off))) < least
 
@@ -113,7 +79,7 @@ def _weights(width: int, k: int) -> FloatArray:
     return np.array([np.prod([(k - o) / (p - o) for o in places if o != p]) for p in places])
 
 
-def _bridged(values: FloatArray, at: NDArray[np.intp]) -> FloatArray:
+def bridged(values: FloatArray, at: NDArray[np.intp]) -> FloatArray:
     """The samples with those ``at`` in runs on the cubic through two on either side of each run."""
     found = values.copy()
     for run in np.split(at, np.flatnonzero(np.diff(at) > 1) + 1) if at.size else ():

@@ -13,7 +13,8 @@ import models
 from diagnosis.data.stretches import as_means
 from diagnosis.fit.setup import measure
 from grids.recordings import read_recording
-from grids.recordings.spikes import spikes, without_spikes
+from grids.recordings.lost import with_lost_samples
+from grids.recordings.spikes import spikes
 from grids.recordings.stuck import stuck
 from models.shaking import Shaking
 from tests.diagnosis.made import SPECIMEN, recording
@@ -115,7 +116,7 @@ def test_samples_that_a_logger_held_are_lost_and_those_at_the_end_of_a_range_are
     assert not stuck(np.round(ROTATION / (0.02 * PEAK)) * 0.02 * PEAK).size  # digits as coarse as the noise
     still = recording("run", 1, noise=0.0).channels["rotation_1"]
     assert not stuck(np.concatenate([np.zeros(200), still])).size  # a computed channel that begins at rest
-    found = without_spikes(replace(RUN, channels={**RUN.channels, "rotation_1": values}))
+    found = with_lost_samples(replace(RUN, channels={**RUN.channels, "rotation_1": values}))
     assert found.lost["rotation_1"].tolist() == list(range(501, 520))
     assert "19 sample(s) of rotation_1 repeat the one before" in found.notes[-1]
     line = np.linspace(values[500], values[520], 21)
