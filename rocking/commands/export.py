@@ -24,7 +24,7 @@ def export(
     from study.selection import place
 
     keep_inputs([out], in_study(folder))
-    cube = open_study(folder, lazy=True)
-    at = read_selection(cube, select, nearest)
-    path = export_cube(cube, out, outputs=output or (), at=at)
-    typer.echo(f"written: {path}" + (f", at {place(cube, at)}" if at else ""))
+    with open_study(folder, lazy=True) as cube:
+        at = read_selection(cube, select, nearest)
+        path = export_cube(cube, out, outputs=output or (), at=at)
+        typer.echo(f"written: {path}" + (f", at {place(cube, at)}" if at else ""))

@@ -27,19 +27,19 @@ def map_(
     from study.figures import plot_onset_map, plot_output_map, plot_overturning_map, save_figure
     from study.open import open_study
 
-    cube = open_study(folder, lazy=True)
-    at = read_selection(cube, select, nearest)
-    x, y = maps.default_axes(cube, x, y, at)
-    home = out or (folder if folder.is_dir() else folder.parent)
-    if output is not None:
-        drawn = maps.output_map(cube, output, x, y, at)
-        figures = {f"{output}_map": partial(plot_output_map, cube, output, x, y, at)}
-    else:
-        drawn = maps.overturning_map(cube, x, y, at)
-        figures = {
-            "overturning_map": partial(plot_overturning_map, cube, x, y, at),
-            "onset_map": partial(plot_onset_map, cube, x, y, at),
-        }
-    typer.echo(f"over {x} and {y}, at {drawn.attrs['selection'] or 'all there is'}")
-    for name, draw in figures.items():
-        typer.echo(f"written: {save_figure(draw, home / f'{name}.png')}")
+    with open_study(folder, lazy=True) as cube:
+        at = read_selection(cube, select, nearest)
+        x, y = maps.default_axes(cube, x, y, at)
+        home = out or (folder if folder.is_dir() else folder.parent)
+        if output is not None:
+            drawn = maps.output_map(cube, output, x, y, at)
+            figures = {f"{output}_map": partial(plot_output_map, cube, output, x, y, at)}
+        else:
+            drawn = maps.overturning_map(cube, x, y, at)
+            figures = {
+                "overturning_map": partial(plot_overturning_map, cube, x, y, at),
+                "onset_map": partial(plot_onset_map, cube, x, y, at),
+            }
+        typer.echo(f"over {x} and {y}, at {drawn.attrs['selection'] or 'all there is'}")
+        for name, draw in figures.items():
+            typer.echo(f"written: {save_figure(draw, home / f'{name}.png')}")

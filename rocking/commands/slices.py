@@ -27,10 +27,10 @@ def slices(
     from study.figures import plot_slices, save_figure
     from study.open import open_study
 
-    cube = open_study(folder, lazy=True)
-    at = read_selection(cube, select, nearest)
-    home = folder if folder.is_dir() else folder.parent
-    drawn = maps.slices(cube, output, x, at)
-    typer.echo(f"over {' and '.join(map(str, drawn.dims[::-1]))}, at {drawn.attrs['selection'] or 'all there is'}")
-    path = save_figure(partial(plot_slices, cube, output, x, at), out or home / f"{output}.png")
-    typer.echo(f"written: {path}")
+    with open_study(folder, lazy=True) as cube:
+        at = read_selection(cube, select, nearest)
+        home = folder if folder.is_dir() else folder.parent
+        drawn = maps.slices(cube, output, x, at)
+        typer.echo(f"over {' and '.join(map(str, drawn.dims[::-1]))}, at {drawn.attrs['selection'] or 'all there is'}")
+        path = save_figure(partial(plot_slices, cube, output, x, at), out or home / f"{output}.png")
+        typer.echo(f"written: {path}")
