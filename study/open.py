@@ -22,8 +22,8 @@ CUBE = "cube.nc"
 
 def open_study(folder: str | Path, outputs: Collection[str] | None = None, *, lazy: bool = False) -> xr.Dataset:
     """The cube of a study, in memory: ``folder`` is ``results/<name>`` or the path of a cube file; all of
-    its outputs, or those named. A ``lazy`` one holds dask arrays in the chunks of the file, which stays open, and
-    need not fit in memory: select, then ``compute()``.
+    its outputs, or those named. A ``lazy`` one holds dask arrays in the chunks of the file, which stays open until it
+    is closed, and need not fit in memory: ``with open_study(folder, lazy=True) as cube``, select, then ``compute()``.
 
     Maps and slices hang on it: ``cube.rocking.overturning_map(x="aspect_ratio", y="top_mass")``.
     Raises InputError when there is no cube yet, or when a byte of it has changed since it was written.

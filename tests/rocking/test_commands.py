@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from typer.testing import CliRunner, Result
+from xarray.backends.file_manager import FILE_CACHE
 
 from rocking.commands import app
 from tests.study.plans import plan_text
@@ -240,6 +241,24 @@ def test_bad_selections(finished: Path, entry: str, part: str) -> None:
     result = rocking("export", finished, "--out", "a.csv", "--select", entry)
     assert result.exit_code == 2 and part in result.stderr
     assert not Path("a.csv").exists()
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("export", "--out", "a.csv"),
+        ("map", "--out", "maps"),
+        ("slices", "peak_rotation", "--x", "pga", "--out", "a.png"),
+    ],
+)
+@pytest.mark.parametrize("refused", [(), ("--select", "pgs=1")])
+def test_a_command_closes_the_cube(finished: Path, words: tuple[str, ...], refused: tuple[str, ...]) -> None:
+    """Also when it refuses: a file that is left to the garbage collection crashed the next one that was opened."""
+    name, *rest = words
+    before = set(FILE_CACHE)
+    result = rocking(name, finished, *rest, *refused)
+    assert (result.exit_code == 2) == bool(refused), result.output
+    assert set(FILE_CACHE) <= before
 
 
 def test_what_is_unusual_is_a_warning_or_refused_if_strict() -> None:
