@@ -20,7 +20,9 @@ import numpy as np
 
 from models.base import FloatArray
 
-Kind = Literal["white", "low_pass", "exponential", "slow_drift", "hum", "growing", "scatter", "inadequacy"]
+Kind = Literal[
+    "white", "low_pass", "exponential", "slow_drift", "hum", "growing", "scatter", "base_drift", "inadequacy"
+]
 
 LOW_PASS = (0.006, 0.012)
 """s, deviation of Gaussian kernels: noise that a filter left, with spectra of 27 and 13 Hz standard deviation."""
@@ -36,7 +38,7 @@ SMOOTH = (0.05, 0.15)
 
 @dataclass(frozen=True)
 class Component:
-    """One variance. ``channel``: whose noise it is, None for scatter; ``scale``: s of a kernel, Hz of a hum line."""
+    """One variance. ``channel``: whose noise it is, if one's; ``scale``: s of a kernel, Hz of a hum line."""
 
     kind: Kind
     channel: int | None = None
@@ -50,7 +52,7 @@ class Component:
     @property
     def shared(self) -> bool:
         """Whether it goes on from piece to piece."""
-        return self.kind == "slow_drift"
+        return self.kind in ("slow_drift", "base_drift")
 
     @property
     def kernel(self) -> Callable[[FloatArray], FloatArray]:

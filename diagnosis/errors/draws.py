@@ -38,7 +38,7 @@ def draw(errors: Errors, measured: Measured, rng: np.random.Generator) -> FloatA
     knots = knots_of(measured, errors.components)
     if knots is not None:
         drift = errors.prior.root(errors.theta) @ rng.normal(size=(knots.time.size, 1))
-        found += columns(knots, drift, measured)[..., 0]
+        found += columns(knots, drift, measured, errors.base)[..., 0]
     for component, theta in zip(errors.components, errors.theta, strict=True):
         if component.kind == "inadequacy" and component.channel is None:
             own = own_error(measured, component.scale)

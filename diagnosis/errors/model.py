@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis.data.measured import Measured
-from diagnosis.errors.components import DECAYS, LOW_PASS, SLOW_DRIFTS, SMOOTH, Component
+from diagnosis.errors.base_drift import SHARE
+from diagnosis.errors.components import DECAYS, LOW_PASS, SLOW_DRIFTS, SMOOTH, Component, Kind
 from diagnosis.errors.drifts import columns, knots_of
 from diagnosis.errors.followed import followed
 from diagnosis.errors.kicks import Kicks, kicks
@@ -82,7 +83,12 @@ class Errors:
     @property
     def scatter(self) -> float:
         """Standard deviation of the relative change of the rate by an event."""
-        return _scatter(self.components, self.theta)
+        return _deviation("scatter", self.components, self.theta)
+
+    @property
+    def base_drift(self) -> float:
+        """Standard deviation of the drift of the base accelerometer's zero over the peak base acceleration."""
+        return SHARE * _deviation("base_drift", self.components, self.theta)
 
     @property
     def scatters(self) -> bool:
@@ -96,7 +102,7 @@ class Errors:
         return of_sensors(self.components, self.theta, self.unit, channels, peaks, measured)
 
     def expected(self, predictor: Predictor, point: Point) -> Whitening:
-        """What is to be expected in windows of other recordings: sensors' errors, base noise and events that scatter.
+        """What is to be expected in windows of other recordings: errors of sensors, noise of the base, scatter.
 
         The latter about the motion at ``point``; without drifts, which windows share.
         """
@@ -205,15 +211,18 @@ def _components(scene: Scene) -> tuple[Component, ...]:
         found += [Component("inadequacy", None, s) for s in (AS_MOTION, *stretches.smooth)]
     if scene.kicks.shape[-1]:
         found.append(Component("scatter"))
+    if scene.base.shape[-1]:
+        found += [Component("base_drift", None, s) for s in SLOW_DRIFTS]
     return tuple(found)
 
 
-def _scatter(components: Sequence[Component], theta: FloatArray) -> float:
-    return float(np.sqrt(sum(t for c, t in zip(components, theta, strict=True) if c.kind == "scatter")))
+def _deviation(kind: Kind, components: Sequence[Component], theta: FloatArray) -> float:
+    return float(np.sqrt(sum(t for c, t in zip(components, theta, strict=True) if c.kind == kind)))
 
 
 def _start(components: Sequence[Component]) -> FloatArray:
-    return np.array([SCATTER**2 if c.kind == "scatter" else 1.0 if c.kind == "white" else 0.1 for c in components])
+    known: dict[Kind, float] = {"scatter": SCATTER**2, "white": 1.0}
+    return np.array([known.get(c.kind, 0.1) for c in components])
 
 
 def _whitening(
@@ -225,8 +234,8 @@ def _whitening(
     kicked: FloatArray,
     prior: Prior,
 ) -> Whitening:
-    """Of the sensors' errors; base noise, events and a model's own error as columns, drifts as errors windows share."""
-    scatter = _scatter(components, theta)
+    """Of the sensors' errors; the base's, events and a model's own error as columns, drifts as errors windows share."""
+    scatter = _deviation("scatter", components, theta)
     found = of_sensors(components, theta, unit, m.channels, peaks_of(m), m)
     own = [
         np.sqrt(t) * own_error(m, c.scale)
@@ -236,4 +245,4 @@ def _whitening(
     found = found.with_columns(np.concatenate([base, scatter * kicked, *own], axis=-1))
     knots, root = knots_of(m, components), prior.root(theta)
     root = root[:, np.sum(root**2, axis=0) > FAINT]
-    return found.with_shared(columns(knots, root, m)) if knots and root.size else found
+    return found.with_shared(columns(knots, root, m, base)) if knots and root.size else found

@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.data.measured import Measured
+from diagnosis.errors.base_drift import SHARE, of_pulses
 from diagnosis.errors.components import Component, Diagonal, Kind, LowRank, Part, Stationary
-from diagnosis.errors.drifts import Knots, knots_of
+from diagnosis.errors.drifts import knots_of
 from diagnosis.errors.likelihood import Piece, Prior
 from diagnosis.errors.own import own_error
 from diagnosis.fit.misfit import Linear, Misfit
@@ -25,8 +26,9 @@ from models.base import FloatArray
 
 LARGEST_DRIFT = 1.0
 """Variance of a drift over that of the noise; a sensor that is knocked goes further."""
-LARGEST: dict[Kind, float] = {"scatter": 0.03**2}
-"""Variance of the relative change of the rate by an event; a law that changes goes further."""
+LARGEST: dict[Kind, float] = {"scatter": 0.03**2, "base_drift": (0.015 / SHARE) ** 2}
+"""Variance of the relative change of the rate by an event, and of the drift of the base accelerometer's zero; a law
+that changes goes further, and so does a tilt."""
 FLOOR = 0.02
 """Variance of white noise that is always there, over that of the noise level: solvers and storage are not exact."""
 
@@ -37,13 +39,15 @@ class Scene:
 
     ``unit`` (C,): that over all recordings.
 
-    ``linear``: averages (W, M) and so on; ``base`` and ``kicks`` (W, C, n, K): columns of base noise and of events.
+    ``linear``: averages (W, M) and so on; ``base``, ``pulses`` and ``kicks`` (W, C, n, K): columns of base noise, of
+    pulses that a drift of the base accelerometer's zero is made of, and of events.
     """
 
     fitted: Fitted
     unit: FloatArray
     linear: Linear
     base: FloatArray
+    pulses: FloatArray
     kicks: FloatArray
 
 
@@ -57,7 +61,8 @@ def opened(fitted: Fitted, base: FloatArray, kicks: FloatArray) -> Scene:
         each = m.averaged(np.moveaxis(columns, -1, 0)) * m.compared / m.units[:, :, None]
         return np.moveaxis(each, 0, -1)
 
-    return Scene(fitted, m.unit, misfit.linearise(fitted.u, fitted.states), scaled(base), scaled(kicks))
+    linear = misfit.linearise(fitted.u, fitted.states)
+    return Scene(fitted, m.unit, linear, scaled(base), scaled(of_pulses(m, base)), scaled(kicks))
 
 
 def prior_of(scene: Scene, components: Sequence[Component]) -> Prior:
@@ -65,7 +70,7 @@ def prior_of(scene: Scene, components: Sequence[Component]) -> Prior:
     rows, slopes = scene.fitted.misfit.prior_rows(scene.fitted.u)
     knots = knots_of(scene.fitted.measured, components)
     drifts = () if knots is None else tuple(knots.covariance(c) for c in components)
-    largest = tuple(LARGEST_DRIFT if c.shared else LARGEST.get(c.kind, np.inf) for c in components)
+    largest = tuple(LARGEST.get(c.kind, LARGEST_DRIFT if c.shared else np.inf) for c in components)
     return Prior(slopes.T @ slopes, slopes.T @ rows, drifts, largest)
 
 
@@ -86,7 +91,11 @@ def windows(scene: Scene, components: Sequence[Component]) -> list[Piece]:
         at = np.tile(np.arange(m.compared.shape[2]), len(m.channels))[keep]
         parts: list[Part | None] = []
         kicked = scene.kicks[w].reshape(keep.size, -1)[keep]
-        near = touched(knots, window.recording, channel, at * step + window.first * step / m.strides[w])
+        near: tuple[()] | tuple[NDArray[np.intp], FloatArray] = ()
+        if knots is not None:
+            of_sensors = knots.near(window.recording, channel, m.times(w)[0] + at * step)
+            of_base = knots.through_base(m, w, scene.pulses[w].reshape(keep.size, -1)[keep])
+            near = np.append(of_sensors[0], of_base[0]), np.append(of_sensors[1], of_base[1], axis=1)
         for component in components:
             if component.shared:
                 parts.append(None)
@@ -116,13 +125,6 @@ def windows(scene: Scene, components: Sequence[Component]) -> list[Piece]:
             )
         )  # fmt: skip
     return found
-
-
-def touched(
-    knots: Knots | None, recording: int, channel: NDArray[np.int64], time: FloatArray
-) -> tuple[()] | tuple[NDArray[np.intp], FloatArray]:
-    """Knots of drifts and their weights in samples at ``time`` (s from the recording's start), for `Piece`."""
-    return () if knots is None else knots.near(recording, channel, time)
 
 
 def stationary(component: Component, at: np.ndarray, step: float, inside: slice, stride: float) -> Stationary:

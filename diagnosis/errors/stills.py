@@ -17,7 +17,7 @@ from diagnosis.data.noise import calm, still
 from diagnosis.errors.components import Component
 from diagnosis.errors.drifts import knots_of
 from diagnosis.errors.likelihood import Piece
-from diagnosis.errors.pieces import FLOOR, Scene, stationary, touched
+from diagnosis.errors.pieces import FLOOR, Scene, stationary
 from diagnosis.fit.from_rest import from_rest, samples_within_noise
 from diagnosis.fit.solver import Fitted
 from models.base import FloatArray
@@ -78,7 +78,7 @@ def _still(
     )
     known, blank = np.diag(np.full(at.size, FLOOR / size)), np.zeros((at.size, k))
     time, channel = np.asarray(at * step, np.float64), np.full(at.size, c)
-    near = touched(knots, r, channel, time)
+    near = () if knots is None else knots.near(r, channel, time)
     return [Piece(time, channel, rest - rest.mean(), np.ones((at.size, 1)), blank, known, parts, *near)]
 
 

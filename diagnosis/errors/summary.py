@@ -68,11 +68,16 @@ class ChannelErrors:
 
 @dataclass(frozen=True)
 class ErrorModel:
-    """Everything that was estimated. ``base_noise`` (m s-2) by recording; ``scatter`` None: no events."""
+    """Everything that was estimated. ``scatter`` None: no events.
+
+    ``base_noise`` (m s-2) by recording; ``base_drift``: of the base accelerometer's zero within a recording, over its
+    peak.
+    """
 
     channels: tuple[ChannelErrors, ...]
     scatter: Repeatability | None
     base_noise: tuple[float, ...]
+    base_drift: float
     inadequacy: Inadequacy
     still_seconds: float
 
@@ -87,6 +92,7 @@ def summary(errors: Errors, measured: Measured) -> ErrorModel:
         channels=tuple(_channel(errors, measured, c, name, longest) for c, name in enumerate(measured.channels)),
         scatter=repeatability(errors, declared.events) if declared else None,
         base_noise=measured.base_noise,
+        base_drift=errors.base_drift,
         inadequacy=inadequacy(errors),
         still_seconds=float(seconds),
     )

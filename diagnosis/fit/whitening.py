@@ -128,9 +128,14 @@ def with_base_noise(predictor: Predictor, response: Responses) -> Whitening:
 def base_columns(predictor: Predictor, response: Responses) -> FloatArray:
     """What the noise of the base motion leaves: columns (W, C, N, K) of unit variance."""
     m = predictor.measured
-    variance = []
+    deviation = pulse_deviation(m)[m.recording_of]
+    return np.asarray(response.values * m.mask[..., None] * deviation[:, None, None, None])
+
+
+def pulse_deviation(measured: Measured) -> FloatArray:
+    """Standard deviation of the pulses of base noise (m s-2) by recording."""
+    m, variance = measured, []
     for r, recording in enumerate(m.recordings):
         floor = DISTURBANCE * float(np.max(np.abs(m.shakings[r].horizontal)))
         variance.append((m.base_noise[r] ** 2 * recording.time_step + floor**2 * DISTURBANCE_STEP) / HALF_WIDTH)
-    deviation = np.sqrt(np.array(variance))[m.recording_of]
-    return np.asarray(response.values * m.mask[..., None] * deviation[:, None, None, None])
+    return np.sqrt(np.array(variance, np.float64))

@@ -1,0 +1,92 @@
+"""A zero of the base accelerometer that drifts: an error of the recording, no missing physics."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from diagnosis.errors.base_drift import SHARE
+from diagnosis.errors.components import Component
+from diagnosis.errors.drifts import BASE, columns, knots_of
+from diagnosis.errors.model import Errors, disturbance_about, estimate, refitted
+from diagnosis.fit.linearisation import linearise_about
+from diagnosis.fit.prediction import Predictor
+from diagnosis.fit.setup import base_fit, measure
+from diagnosis.fit.solver import Fitted
+from diagnosis.fit.whitening import base_columns, responses
+from diagnosis.search.candidates import candidates
+from diagnosis.search.null import null_distribution
+from diagnosis.search.screen import score
+from grids.recordings.base import Recording
+from tests.diagnosis.made import SPECIMEN, at_truth, scattered
+
+BASE_ALONE = (Component("base_drift", None, np.inf),)
+SMOOTH = ("restitution", "viscous_damping", "velocity_restitution", "coulomb_damping", "tilt", "pivot_inset", "gain",
+          "offset", "base_gain", "accelerometer_offset", "delay", "clock")  # fmt: skip
+
+
+def drifting(name: str, seed: int, share: float) -> Recording:
+    """The plain block's recording, its base read with a zero that swings by a ``share`` of the peak in nine seconds."""
+    one = scattered(name, seed)
+    base = one.channels["base_acceleration_x"]
+    zero = share * np.max(np.abs(base)) * np.sin(2.0 * np.pi * one.time / 9.0 + seed)
+    return replace(one, channels={**one.channels, "base_acceleration_x": base + zero})
+
+
+@cache
+def about(share: float) -> tuple[Fitted, Fitted, Errors]:
+    """The base fit under white noise, the same under the errors estimated with it, and these."""
+    first = base_fit(SPECIMEN, measure(SPECIMEN, [drifting(f"train_{k}", k, share) for k in (1, 6)]))
+    return first, *refitted(first, disturbance_about(first))
+
+
+def test_what_a_drift_leaves_is_what_the_model_does_with_that_base() -> None:
+    """Columns of the knots against runs with the base changed by a line between them; near impacts they bend."""
+    measured = measure(SPECIMEN, [scattered("train_1", 1)])
+    fitted, predictor = at_truth(measured), Predictor(measured)
+    base = base_columns(predictor, responses(predictor, fitted.point))
+    knots = knots_of(measured, BASE_ALONE)
+    assert knots is not None
+    values = np.where(knots.channel == BASE, np.random.default_rng(3).normal(size=knots.time.size), 0.0)
+    found = columns(knots, values[:, None], measured, base)[..., 0]
+
+    (shaking,), own = measured.shakings, knots.channel == BASE
+    time = shaking.time_step * np.arange(shaking.horizontal.size)
+    zero = SHARE * np.max(np.abs(shaking.horizontal)) * np.interp(time, knots.time[own], values[own])
+    ran = [
+        predictor.predict([fitted.point], [replace(shaking, horizontal=shaking.horizontal + sign * zero)])[0]
+        for sign in (1.0, -1.0)
+    ]
+    expected = np.where(measured.mask, 0.5 * (ran[0] - ran[1]), 0.0)
+    assert np.max(np.abs(expected)) > 0.1 * float(measured.unit[0])
+    assert np.sum((found - expected) ** 2) < 0.03**2 * np.sum(expected**2)
+
+
+@pytest.mark.parametrize("share", [0.005, 0.01])
+def test_its_size_is_told(share: float) -> None:
+    rms = share / np.sqrt(2.0)
+    assert 0.5 * rms < about(share)[2].base_drift < 2.0 * rms
+
+
+def test_where_there_is_none_none_is_told() -> None:
+    assert about(0.0)[2].base_drift < 0.0015
+
+
+def test_it_raises_no_alarm() -> None:
+    """With the errors taken for white noise something would be missing; as they are, nothing is."""
+    chance = {}
+    for name, fitted in zip(("white", "estimated"), about(0.01), strict=False):
+        opened = linearise_about(fitted)
+        scores = score(opened, [c for c in candidates(fitted.measured, SPECIMEN) if c.name in SMOOTH])
+        chance[name] = null_distribution(opened, scores).p_value(scores[0].statistic)
+    assert chance["white"] < 1e-4
+    assert chance["estimated"] > 0.01
+
+
+def test_a_model_without_noise_of_the_base_has_none() -> None:
+    fitted, _, errors = about(0.0)
+    bare = estimate(fitted, np.zeros((*errors.base.shape[:3], 0)))
+    assert not any(component.kind == "base_drift" for component in bare.components)
