@@ -10,9 +10,8 @@ side is right where both name the same one, or both none.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import as_completed
 from dataclasses import asdict, replace
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +29,7 @@ from diagnosis.fit.setup import measure
 from diagnosis.fit.solver import Fitted, fit
 from diagnosis.forces.action import action
 from diagnosis.prove.answers import read_json, write_json
+from diagnosis.prove.pool import processes
 from diagnosis.prove.scores import Share
 from diagnosis.search.refit import Explanation
 from grids.instruments import INSTRUMENTS
@@ -95,7 +95,7 @@ def nameless(folder: Path, *, seed: int, cases: int | None, jobs: int, say: Call
     designs = [design for design in laboratory.suite(seed)[:cases] if design.kind == "single"]
     here = suite.place(folder, seed, "laboratory")
     rows: list[dict[str, Any]] = []
-    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
+    with processes(jobs) as pool:
         for done in as_completed([pool.submit(_row, design, seed, here) for design in designs]):
             if (row := done.result()) is not None:
                 rows.append(row)

@@ -10,8 +10,7 @@ sqrt(I_white / I) times as large.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from multiprocessing import get_context
+from concurrent.futures import as_completed
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +23,7 @@ from diagnosis.fit.linearisation import Linearisation, linearise_about
 from diagnosis.fit.one_thread import one_thread
 from diagnosis.fit.setup import measure
 from diagnosis.prove.answers import write_json
+from diagnosis.prove.pool import processes
 from diagnosis.search.candidates import Candidate, candidates
 from diagnosis.search.screen import score
 from diagnosis.search.weighing import as_white_noise
@@ -64,7 +64,7 @@ def power(folder: Path, *, seed: int, cases: int | None, jobs: int, say: Callabl
     nulls = [design for design in suite.suite(seed) if design.kind == "null" and design.noise == 0.01][:cases]
     here = suite.place(folder, seed)
     rows: list[dict[str, float]] = []
-    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
+    with processes(jobs) as pool:
         for done in as_completed([pool.submit(_row, design, seed, here) for design in nulls]):
             rows.append(done.result())
     figures = {"seed": seed, "cases": len(rows), **summary(rows)}

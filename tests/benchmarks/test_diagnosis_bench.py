@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -18,6 +19,13 @@ SEED = 29
 """Its suite begins with a null and a single effect, both at 1 % noise."""
 OF_LABORATORIES = 1_000
 """The seed of suites that begin with a null and a single effect, and with an effect that begins."""
+
+
+@pytest.fixture(autouse=True)
+def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A new process imports and compiles for longer than it works; `tests/diagnosis/prove` has some."""
+    for name in ("runner", "power", "nameless"):
+        monkeypatch.setattr(f"benchmarks.diagnosis.{name}.processes", ThreadPoolExecutor)
 
 
 @pytest.fixture(scope="module")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -54,6 +55,12 @@ def folder(tmp_path: Path) -> Path:
     return place
 
 
+@pytest.fixture
+def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A new process imports for longer than it answers."""
+    monkeypatch.setattr("diagnosis.prove.chain.processes", ThreadPoolExecutor)
+
+
 def test_answers_are_hashed_then_scored_and_kept(folder: Path, tmp_path: Path) -> None:
     out, lines = tmp_path / "out", []
     figures = prove(folder, out, model="housner", jobs=2, say=lines.append, answering=answer_by_title)
@@ -71,6 +78,7 @@ def test_answers_are_hashed_then_scored_and_kept(folder: Path, tmp_path: Path) -
     assert again[0] == "3 of 3 cases were answered before" and answer.stat().st_mtime_ns == written
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_nothing_is_scored_while_cases_are_left(folder: Path, tmp_path: Path) -> None:
     lines: list[str] = []
     assert prove(folder, tmp_path / "out", minutes=0.0, say=lines.append, answering=answer_by_title) == {}
@@ -92,6 +100,7 @@ def test_the_command_says_what_a_folder_needs(tmp_path: Path) -> None:
     assert found.exit_code == 2 and "no concealed cases" in found.output and "answers.json" in found.output
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_answers_to_other_cases_are_not_scored(folder: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     prove(folder, out, model="housner", jobs=1, say=print, answering=answer_by_title)
@@ -106,6 +115,7 @@ def test_answers_to_other_cases_are_not_scored(folder: Path, tmp_path: Path) -> 
     assert (out / "prove.json").read_bytes() == scored
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_an_answer_that_does_not_say_to_which_files_is_not_scored(folder: Path, tmp_path: Path) -> None:
     answers = tmp_path / "out" / "answers"
     answers.mkdir(parents=True)
@@ -131,6 +141,7 @@ def without_solution(folder: Path) -> dict[str, Any]:
     return answer_by_title(folder)
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_what_the_machine_refused_is_tried_again(folder: Path, tmp_path: Path) -> None:
     lines: list[str] = []
     out = tmp_path / "out"
@@ -139,6 +150,7 @@ def test_what_the_machine_refused_is_tried_again(folder: Path, tmp_path: Path) -
     assert prove(folder, out, model="housner", say=lines.append, answering=answer_by_title)["class_first"] == 0.5
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_failures_and_answers_of_other_versions_are_said(folder: Path, tmp_path: Path) -> None:
     lines: list[str] = []
     out = tmp_path / "out"
@@ -154,6 +166,7 @@ def without_a_file(folder: Path) -> dict[str, Any]:
     raise FileNotFoundError(2, "no such file", "law.csv")
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_a_file_that_is_missing_is_a_failure_with_its_reason(folder: Path, tmp_path: Path) -> None:
     lines: list[str] = []
     found = prove(folder, tmp_path / "out", model="housner", say=lines.append, answering=without_a_file)
