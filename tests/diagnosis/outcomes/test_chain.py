@@ -67,7 +67,7 @@ def _suspects(model: Model) -> Iterator[tuple[str, Mechanism]]:
 
 @pytest.fixture(scope="module")
 def with_inset(few_suspects: None) -> OutcomeDiagnosis:
-    return diagnose_outcomes(BLOCK, runs_of(3, {"pivot_inset.inset_over_half_width": 0.25}))
+    return diagnose_outcomes(BLOCK, runs_of(3, {"pivot_inset.inset_over_half_width": 0.25}, groups=4))
 
 
 @pytest.mark.slow
