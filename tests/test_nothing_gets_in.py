@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import pytest
@@ -12,7 +12,7 @@ from diagnosis.report.page import environment
 from grids.netcdf_file import Reader
 from grids.plan import parse_plan
 from models.errors import InputError
-from tests.sources import FILES, ROOT
+from tests.sources import FILES, ORDER, ROOT, nodes, place
 from tests.study.plans import plan_text
 
 EXECUTES = {
@@ -25,34 +25,34 @@ KNOWN = {("models/lanes/sealed_cache.py", "pickle.loads")}
 """Machine code that this user compiled, from a folder that only this user can write, after its checksum."""
 
 
-def calls(path: Path) -> Iterator[tuple[str, ast.Call]]:
-    """Every call by the name it has in the text."""
-    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+def calls(paths: Iterable[Path]) -> Iterator[tuple[Path, str, ast.Call]]:
+    """Every call by the name it has in the text, beside its file."""
+    for path, node in nodes(paths):
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name | ast.Attribute):
-            yield ast.unparse(node.func), node
+            yield path, ast.unparse(node.func), node
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: path.relative_to(ROOT).as_posix())
-def test_no_data_is_executed(path: Path) -> None:
-    name = path.relative_to(ROOT).as_posix()
-    for called, call in calls(path):
-        assert called not in EXECUTES or (name, called) in KNOWN, called
+@pytest.mark.parametrize("room", ORDER)
+def test_no_data_is_executed(room: str) -> None:
+    for path, called, call in calls(FILES[room]):
+        said = f"{place(path)}: {called}"
+        assert called not in EXECUTES or (place(path), called) in KNOWN, said
         words = {keyword.arg: ast.unparse(keyword.value) for keyword in call.keywords}
-        assert words.get("shell") != "True", called
+        assert words.get("shell") != "True", said
         if called in ("np.load", "numpy.load"):
-            assert words.get("allow_pickle") == "False"
+            assert words.get("allow_pickle") == "False", said
         if called in ("subprocess.run", "subprocess.Popen"):  # a list of words, never one line for a shell
-            assert not isinstance(call.args[0], ast.Constant | ast.JoinedStr)
+            assert not isinstance(call.args[0], ast.Constant | ast.JoinedStr), said
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: path.relative_to(ROOT).as_posix())
-def test_nothing_listens(path: Path) -> None:
+@pytest.mark.parametrize("room", ORDER)
+def test_nothing_listens(room: str) -> None:
     """No page is served: reports are files that open without a network."""
-    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+    for path, node in nodes(FILES[room]):
         named = [node.module or ""] if isinstance(node, ast.ImportFrom) else []
         named += [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
-        assert not any(module.startswith(tuple(LISTENS)) for module in named), named
-        assert not (isinstance(node, ast.Attribute) and ast.unparse(node) in LISTENS)
+        assert not any(module.startswith(tuple(LISTENS)) for module in named), f"{place(path)}: {named}"
+        assert not (isinstance(node, ast.Attribute) and ast.unparse(node) in LISTENS), place(path)
 
 
 @pytest.mark.parametrize("module", ["json", "netCDF4", "numpy"])

@@ -5,12 +5,10 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
-
 import models
+from tests.sources import FILES, place, tree
 
 ROOM = Path(models.__file__).parent
-FILES = sorted(ROOM.rglob("*.py"))
 LATE = {f"models.{name}.{part}" for name in models.MODELS for part in ("lanes", "reference")}
 """What a model imports only when it runs."""
 
@@ -21,22 +19,22 @@ def imports(tree: ast.AST) -> list[str]:
     return found + [node.module or "" for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)]
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda p: p.relative_to(ROOM).as_posix())
-def test_only_integrators_and_models_are_imported_late(path: Path) -> None:
-    tree = ast.parse(path.read_text())
-    functions = [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]
-    late = {module for function in functions for module in imports(function) if module.startswith("models")}
-    if path == ROOM / "__init__.py":
-        assert late == {f"models.{name}.model" for name in models.MODELS}
-    else:
-        assert all(any(module.startswith(part) for part in LATE) for module in late), late
-    assert "importlib" not in imports(tree)
+def test_only_integrators_and_models_are_imported_late() -> None:
+    for path in FILES["models"]:
+        functions = [node for node in ast.walk(tree(path)) if isinstance(node, ast.FunctionDef)]
+        late = {module for function in functions for module in imports(function) if module.startswith("models")}
+        if path == ROOM / "__init__.py":
+            assert late == {f"models.{name}.model" for name in models.MODELS}
+        else:
+            assert all(any(module.startswith(part) for part in LATE) for module in late), f"{place(path)}: {late}"
+        assert "importlib" not in imports(tree(path)), place(path)
 
 
-@pytest.mark.parametrize("path", sorted((ROOM / "mechanisms").glob("*.py")), ids=lambda p: p.stem)
-def test_mechanisms_know_coefficients_and_no_model(path: Path) -> None:
-    known = imports(ast.parse(path.read_text()))
-    assert not any(module.endswith(".model") or ".lanes" in module or ".reference" in module for module in known)
+def test_mechanisms_know_coefficients_and_no_model() -> None:
+    for path in (ROOM / "mechanisms").glob("*.py"):
+        for module in imports(tree(path)):
+            model = module.endswith(".model") or ".lanes" in module or ".reference" in module
+            assert not model, f"{place(path)}: {module}"
 
 
 def test_no_kernel_is_loaded_before_it_runs() -> None:
