@@ -97,7 +97,7 @@ def test_the_tail_goes_on_where_the_draws_end() -> None:
 
 
 def test_what_is_missing_is_beyond_every_draw_and_what_is_not_within() -> None:
-    """With two draws p is a third if the recording gains more than any of them."""
+    """With two draws p is a third if the recording gains more than any of them: without an effect once in three."""
     with among(("restitution", "viscous_damping", "tilt", "offset")):
-        found, missing = (p_value(SPECIMEN, null(factor), 2, 3, lambda text, share: None) for factor in (1.0, 0.95))
+        found, missing = (p_value(SPECIMEN, null(factor), 2, 9, lambda text, share: None) for factor in (1.0, 0.95))
     assert missing == 1 / 3 < found

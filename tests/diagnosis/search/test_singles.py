@@ -28,8 +28,8 @@ AWAY = -8.0
 @pytest.fixture(scope="module")
 def free() -> Search:
     """With a mechanism that is there and one that is not, refitted alone."""
-    measured = measure(SPECIMEN, [recording("a", 4, {"tilt": {"tilt": 0.002}})])
-    some = {one.name: one for one in candidates(measured, SPECIMEN) if one.name in ("tilt", "gain")}
+    measured = measure(SPECIMEN, [recording("a", 4, {"delay": {"delay": 0.004}})])
+    some = {one.name: one for one in candidates(measured, SPECIMEN) if one.name in ("delay", "gain")}
     first = base_fit(SPECIMEN, measured)
     errors = estimate(first, disturbance_about(first))
     base = reweighed(Explanation((), first), errors)
@@ -46,13 +46,13 @@ def stuck(explanation: Explanation) -> Explanation:
 
 
 def test_what_frees_a_window_leads_the_base_and_all_others_out_of_it(free: Search) -> None:
-    tilt, gain = sorted(free.singles, key=lambda e: e.names[0] != "tilt")
-    found = replace(free, base=stuck(free.base), singles=[gain, stuck(tilt)])
+    late, gain = sorted(free.singles, key=lambda e: e.names[0] == "gain")
+    found = replace(free, base=stuck(free.base), singles=[gain, stuck(late)])
     assert found.gain(gain) > 1000.0 and found.gain(found.singles[1]) < found.gain(gain) - 500.0
     assert led_by(found, gain)
     assert found.base.loss < free.base.loss + 0.5
-    assert found.singles[0].names == ("tilt",)
-    assert found.gain(found.singles[0]) == pytest.approx(free.gain(tilt), abs=1.0)
+    assert found.singles[0].names == ("delay",)
+    assert found.gain(found.singles[0]) == pytest.approx(free.gain(late), abs=1.0)
 
 
 def test_a_base_that_is_not_stuck_stays(free: Search) -> None:
@@ -63,11 +63,11 @@ def test_a_base_that_is_not_stuck_stays(free: Search) -> None:
 
 def test_evidence_is_of_the_best_fit_of_an_effect_whatever_its_first_one_was(free: Search) -> None:
     """It may have come in the place of another one; with the first fit it was named with an evidence of 0, p = 1."""
-    (tilt,) = (e for e in free.singles if e.names == ("tilt",))
-    off = replace(tilt, fitted=replace(tilt.fitted, loss=free.base.loss + 3.0))
-    found = replace(free, best=tilt, tried=[tilt], at_null=replace(free, tried=[off]))
-    assert evidence(found)[0] == pytest.approx(free.gain(tilt), rel=0.02)
-    assert free.gain(tilt) > 15.0
+    (late,) = (e for e in free.singles if e.names == ("delay",))
+    off = replace(late, fitted=replace(late.fitted, loss=free.base.loss + 3.0))
+    found = replace(free, best=late, tried=[late], at_null=replace(free, tried=[off]))
+    assert evidence(found)[0] == pytest.approx(free.gain(late), rel=0.02)
+    assert free.gain(late) > 15.0
 
 
 def test_every_law_with_a_memory_counts_events_along_its_own_motion() -> None:
