@@ -10,6 +10,7 @@ import pytest
 
 from diagnosis.errors.base_drift import SHARE
 from diagnosis.errors.components import Component
+from diagnosis.errors.draws import draw
 from diagnosis.errors.drifts import BASE, columns, knots_of
 from diagnosis.errors.model import Errors, disturbance_about, estimate, refitted
 from diagnosis.fit.linearisation import linearise_about
@@ -21,7 +22,7 @@ from diagnosis.search.candidates import candidates
 from diagnosis.search.null import null_distribution
 from diagnosis.search.screen import score
 from grids.recordings.base import Recording
-from tests.diagnosis.made import SPECIMEN, at_truth, scattered
+from tests.diagnosis.made import SPECIMEN, at_truth, recording, scattered
 
 BASE_ALONE = (Component("base_drift", None, np.inf),)
 SMOOTH = ("restitution", "viscous_damping", "velocity_restitution", "coulomb_damping", "tilt", "pivot_inset", "gain",
@@ -73,6 +74,27 @@ def test_its_size_is_told(share: float) -> None:
 
 def test_where_there_is_none_none_is_told() -> None:
     assert about(0.0)[2].base_drift < 0.0015
+
+
+def test_a_tilt_is_no_drift_of_any_size() -> None:
+    """Beyond what accelerometers do it stays to be explained."""
+    leaning = measure(SPECIMEN, [recording(f"train_{k}", k, {"tilt": {"tilt": 0.02}}) for k in (1, 6)])
+    fitted = base_fit(SPECIMEN, leaning)
+    assert estimate(fitted, disturbance_about(fitted)).base_drift < 0.008
+
+
+def test_draws_of_the_errors_hold_it() -> None:
+    """Their mean square is that of the columns, noise of the base and drift, where sensors are exact."""
+    _, fitted, errors = about(0.01)
+    of_base = np.array([component.kind == "base_drift" for component in errors.components])
+    alone = replace(errors, theta=np.where(of_base, errors.theta, 0.0))
+    knots, rng = knots_of(fitted.measured, errors.components), np.random.default_rng(8)
+    assert knots is not None
+    drift = columns(knots, errors.prior.root(alone.theta), fitted.measured, errors.base)
+    noise, mask = np.sum(errors.base**2, axis=-1), fitted.measured.mask
+    found = np.mean([draw(alone, fitted.measured, rng) ** 2 for _ in range(200)], axis=0)
+    assert np.sum(drift[mask] ** 2) > 2.0 * np.sum(noise[mask])
+    assert np.sum(found[mask]) == pytest.approx(np.sum(noise[mask]) + np.sum(drift[mask] ** 2), rel=0.15)
 
 
 def test_it_raises_no_alarm() -> None:
