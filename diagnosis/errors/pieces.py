@@ -27,8 +27,8 @@ from models.base import FloatArray
 LARGEST_DRIFT = 1.0
 """Variance of a drift over that of the noise; a sensor that is knocked goes further."""
 LARGEST: dict[Kind, float] = {"scatter": 0.03**2, "base_drift": (0.0075 / SHARE) ** 2}
-"""Variance of the relative change of the rate by an event, and of the drift of the base accelerometer's zero; a law
-that changes goes further, and so does a tilt."""
+"""Variance of the relative change of the rate by an event, and of each shape of a drift of the base accelerometer's
+zero; a law that changes goes further, and so does a tilt."""
 FLOOR = 0.02
 """Variance of white noise that is always there, over that of the noise level: solvers and storage are not exact."""
 

@@ -80,7 +80,7 @@ def test_a_tilt_is_no_drift_of_any_size() -> None:
     """Beyond what accelerometers do it stays to be explained."""
     leaning = measure(SPECIMEN, [recording(f"train_{k}", k, {"tilt": {"tilt": 0.02}}) for k in (1, 6)])
     fitted = base_fit(SPECIMEN, leaning)
-    assert estimate(fitted, disturbance_about(fitted)).base_drift < 0.008
+    assert estimate(fitted, disturbance_about(fitted)).base_drift < 0.011
 
 
 def test_draws_of_the_errors_hold_it() -> None:
