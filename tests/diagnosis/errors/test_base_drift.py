@@ -45,8 +45,13 @@ def about(share: float) -> tuple[Fitted, Fitted, Errors]:
 
 
 def test_what_a_drift_leaves_is_what_the_model_does_with_that_base() -> None:
-    """Columns of the knots against runs with the base changed by a line between them; near impacts they bend."""
-    measured = measure(SPECIMEN, [scattered("train_1", 1)])
+    """Columns of the knots against runs with the base changed by a line between them; near impacts they bend.
+
+    In two recordings, of which the base of the second moves by less.
+    """
+    first = scattered("train_1", 1)
+    less = {**first.channels, "base_acceleration_x": 0.6 * first.channels["base_acceleration_x"]}
+    measured = measure(SPECIMEN, [first, replace(first, name="train_2", channels=less)])
     fitted, predictor = at_truth(measured), Predictor(measured)
     base = base_columns(predictor, responses(predictor, fitted.point))
     knots = knots_of(measured, BASE_ALONE)
@@ -54,14 +59,19 @@ def test_what_a_drift_leaves_is_what_the_model_does_with_that_base() -> None:
     values = np.where(knots.channel == BASE, np.random.default_rng(3).normal(size=knots.time.size), 0.0)
     found = columns(knots, values[:, None], measured, base)[..., 0]
 
-    (shaking,), own = measured.shakings, knots.channel == BASE
-    time = shaking.time_step * np.arange(shaking.horizontal.size)
-    zero = SHARE * np.max(np.abs(shaking.horizontal)) * np.interp(time, knots.time[own], values[own])
-    ran = [
-        predictor.predict([fitted.point], [replace(shaking, horizontal=shaking.horizontal + sign * zero)])[0]
-        for sign in (1.0, -1.0)
-    ]
-    expected = np.where(measured.mask, 0.5 * (ran[0] - ran[1]), 0.0)
+    zeros = []
+    for r, shaking in enumerate(measured.shakings):
+        time = shaking.time_step * np.arange(shaking.horizontal.size)
+        own = (knots.channel == BASE) & (knots.recording == r)
+        peak = np.max(np.abs(shaking.horizontal))
+        zeros.append(SHARE * peak * np.interp(time, knots.time[own], values[own]))
+
+    def ran(sign: float) -> np.ndarray:
+        pairs = zip(measured.shakings, zeros, strict=True)
+        moved = [replace(shaking, horizontal=shaking.horizontal + sign * zero) for shaking, zero in pairs]
+        return predictor.predict([fitted.point], moved)[0]
+
+    expected = np.where(measured.mask, 0.5 * (ran(1.0) - ran(-1.0)), 0.0)
     assert np.max(np.abs(expected)) > 0.1 * float(measured.unit[0])
     assert np.sum((found - expected) ** 2) < 0.03**2 * np.sum(expected**2)
 
