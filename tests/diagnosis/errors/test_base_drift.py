@@ -47,16 +47,17 @@ def about(share: float) -> tuple[Fitted, Fitted, Errors]:
 def test_what_a_drift_leaves_is_what_the_model_does_with_that_base() -> None:
     """Columns of the knots against runs with the base changed by a line between them; near impacts they bend.
 
-    In two recordings, of which the base of the second moves by less.
+    In two recordings, of which the base of the second moves by less and is measured with more noise.
     """
-    first = scattered("train_1", 1)
-    less = {**first.channels, "base_acceleration_x": 0.6 * first.channels["base_acceleration_x"]}
+    first, rng = scattered("train_1", 1), np.random.default_rng(3)
+    base = first.channels["base_acceleration_x"]
+    less = {**first.channels, "base_acceleration_x": 0.6 * base + 0.05 * rng.normal(size=base.size)}
     measured = measure(SPECIMEN, [first, replace(first, name="train_2", channels=less)])
     fitted, predictor = at_truth(measured), Predictor(measured)
     base = base_columns(predictor, responses(predictor, fitted.point))
     knots = knots_of(measured, BASE_ALONE)
     assert knots is not None
-    values = np.where(knots.channel == BASE, np.random.default_rng(3).normal(size=knots.time.size), 0.0)
+    values = np.where(knots.channel == BASE, rng.normal(size=knots.time.size), 0.0)
     found = columns(knots, values[:, None], measured, base)[..., 0]
 
     zeros = []
