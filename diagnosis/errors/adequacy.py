@@ -13,6 +13,8 @@ import numpy as np
 from scipy.stats import chi2
 
 from diagnosis.data.noise import BAND
+from diagnosis.errors.base_drift import SHARE
+from diagnosis.errors.components import WALK
 from diagnosis.errors.likelihood import State, climbed, evaluate, maximise
 from diagnosis.errors.model import Errors
 from models.base import FloatArray
@@ -125,6 +127,21 @@ def repeatability(errors: Errors, events: str) -> Repeatability | None:
     reach = max(sd, LEAST)
     high = _end(errors, acting, sd, [reach * factor for factor in LARGER])
     return Repeatability(events, sd, low, high, lost)
+
+
+def drifting_base(errors: Errors, seconds: float) -> float | None:
+    """Standard deviation, after ``seconds``, of the drift of the base accelerometer's zero, over the peak.
+
+    0 where the likelihood does not clearly ask for one; None where the errors know of none.
+    """
+    acting = np.array([c.kind == "base_drift" for c in errors.components])
+    if not acting.any():
+        return None
+    if not errors.theta[acting].any() or _without(errors, acting) <= CLEAR:
+        return 0.0
+    walks = np.array([np.isinf(c.scale) for c in errors.components])
+    variance = errors.theta * np.where(walks, seconds / WALK, 1.0)
+    return SHARE * float(np.sqrt(variance[acting].sum()))
 
 
 def _end(errors: Errors, held: np.ndarray, estimate: float, at: Sequence[float]) -> float:

@@ -1,7 +1,7 @@
 """Slow drifts of the sensors and of the base accelerometer's zero.
 
 Each is one random function over a recording, shared by its windows and still stretches, and linear between knots. It is
-zero where a recording begins, as a sensor's zero is taken there, and goes on as a random walk; or it is stationary with
+zero where a recording begins, if the zero is taken there, and goes on as a random walk; or it is stationary with
 the correlation exp(-lag/scale), the slowest part of 1/f noise. A constant error is not among its likely paths: an
 instrument's own, it has to stand out of the drift that the recordings show.
 """
@@ -28,7 +28,10 @@ BASE = -1
 
 @dataclass(frozen=True)
 class Knots:
-    """Knots of every recording and channel: ``time`` and ``spacing`` in s, ``recording``, ``channel``, all (q,)."""
+    """Knots of every recording and channel, and of the base (`BASE`).
+
+    ``time`` and ``spacing`` in s, ``recording``, ``channel``, all (q,).
+    """
 
     time: FloatArray
     recording: NDArray[np.int64]

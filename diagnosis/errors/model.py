@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis.data.measured import Measured
-from diagnosis.errors.base_drift import SHARE
 from diagnosis.errors.components import DECAYS, LOW_PASS, SLOW_DRIFTS, SMOOTH, Component, Kind
 from diagnosis.errors.drifts import columns, knots_of
 from diagnosis.errors.followed import followed
@@ -39,12 +38,14 @@ RELINEARISED = 4
 AT_MOST = 0.95
 """Share of the largest scatter from which on it is as large as it may be."""
 FAINT = 0.004
-"""Variance of an independent part of a drift, in units squared, under which no window could show it."""
+"""Variance of an independent part of a drift, in its units squared, under which no window could show it."""
 
 
 @dataclass(frozen=True)
 class Errors:
-    """Variances ``theta`` (K,) of ``components``, in units squared (scatter: relative, squared).
+    """Variances ``theta`` (K,) of ``components``, in units squared.
+
+    That of scatter is relative, squared; that of a drifting base in (`base_drift.SHARE` of the peak) squared.
 
     ``unit`` (C,): that over all recordings; `Measured.units` are those of each.
 
@@ -83,12 +84,7 @@ class Errors:
     @property
     def scatter(self) -> float:
         """Standard deviation of the relative change of the rate by an event."""
-        return _deviation("scatter", self.components, self.theta)
-
-    @property
-    def base_drift(self) -> float:
-        """Standard deviation of the drift of the base accelerometer's zero over the peak base acceleration."""
-        return SHARE * _deviation("base_drift", self.components, self.theta)
+        return _scatter(self.components, self.theta)
 
     @property
     def scatters(self) -> bool:
@@ -216,8 +212,8 @@ def _components(scene: Scene) -> tuple[Component, ...]:
     return tuple(found)
 
 
-def _deviation(kind: Kind, components: Sequence[Component], theta: FloatArray) -> float:
-    return float(np.sqrt(sum(t for c, t in zip(components, theta, strict=True) if c.kind == kind)))
+def _scatter(components: Sequence[Component], theta: FloatArray) -> float:
+    return float(np.sqrt(sum(t for c, t in zip(components, theta, strict=True) if c.kind == "scatter")))
 
 
 def _start(components: Sequence[Component]) -> FloatArray:
@@ -235,7 +231,7 @@ def _whitening(
     prior: Prior,
 ) -> Whitening:
     """Of the sensors' errors; the base's, events and a model's own error as columns, drifts as errors windows share."""
-    scatter = _deviation("scatter", components, theta)
+    scatter = _scatter(components, theta)
     found = of_sensors(components, theta, unit, m.channels, peaks_of(m), m)
     own = [
         np.sqrt(t) * own_error(m, c.scale)

@@ -8,7 +8,14 @@ import numpy as np
 
 from diagnosis.data.averaging import RATE
 from diagnosis.data.measured import Measured
-from diagnosis.errors.adequacy import Inadequacy, Repeatability, density, inadequacy, repeatability
+from diagnosis.errors.adequacy import (
+    Inadequacy,
+    Repeatability,
+    density,
+    drifting_base,
+    inadequacy,
+    repeatability,
+)
 from diagnosis.errors.components import WALK
 from diagnosis.errors.hum import in_the_samples
 from diagnosis.errors.likelihood import whitened
@@ -70,14 +77,14 @@ class ChannelErrors:
 class ErrorModel:
     """Everything that was estimated. ``scatter`` None: no events.
 
-    ``base_noise`` (m s-2) by recording; ``base_drift``: of the base accelerometer's zero within a recording, over its
-    peak.
+    ``base_noise`` (m s-2) by recording; ``base_drift``: of the base accelerometer's zero, over the peak, at the end of
+    the longest recording, 0 if it is not clear, None of a model whose errors know of none.
     """
 
     channels: tuple[ChannelErrors, ...]
     scatter: Repeatability | None
     base_noise: tuple[float, ...]
-    base_drift: float
+    base_drift: float | None
     inadequacy: Inadequacy
     still_seconds: float
 
@@ -92,7 +99,7 @@ def summary(errors: Errors, measured: Measured) -> ErrorModel:
         channels=tuple(_channel(errors, measured, c, name, longest) for c, name in enumerate(measured.channels)),
         scatter=repeatability(errors, declared.events) if declared else None,
         base_noise=measured.base_noise,
-        base_drift=errors.base_drift,
+        base_drift=drifting_base(errors, longest),
         inadequacy=inadequacy(errors),
         still_seconds=float(seconds),
     )

@@ -6,8 +6,6 @@ from diagnosis.errors.summary import CLEARLY, ChannelErrors, ErrorModel
 
 LOOSE = 0.05
 """Scatter of events from which on the reader is warned."""
-BASE_DRIFTS = 0.002
-"""Drift of the base accelerometer's zero, over its peak, from which on it is stated."""
 COLOURS = {
     "white": "white noise",
     "low": "noise that is stronger at low frequencies",
@@ -29,8 +27,8 @@ def error_lines(errors: ErrorModel) -> list[str]:
         found.append(f"No scatter of the {scatter.events} shows: at most {scatter.high95:.1%}.")
     for channel in errors.channels:
         found.append(_channel(channel))
-    if errors.base_drift > BASE_DRIFTS:
-        found.append(f"base_acceleration_x: its zero drifts by {errors.base_drift:.1%} of the peak.")
+    if errors.base_drift:
+        found.append(f"base_acceleration_x: its zero drifts by {errors.base_drift:.1%} of the peak, or the base tilts.")
     left = errors.inadequacy
     if not left.judged:
         found.append("No stretch is still, so noise of the sensors and errors of the model are not told apart.")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from typer.testing import CliRunner, Result
 from xarray.backends.file_manager import FILE_CACHE
 
 from rocking.commands import app
+from study.open import open_study
 from tests.study.plans import plan_text
 
 SPECIMEN = """
@@ -252,13 +254,21 @@ def test_bad_selections(finished: Path, entry: str, part: str) -> None:
     ],
 )
 @pytest.mark.parametrize("refused", [(), ("--select", "pgs=1")])
-def test_a_command_closes_the_cube(finished: Path, words: tuple[str, ...], refused: tuple[str, ...]) -> None:
+def test_a_command_closes_the_cube(
+    finished: Path, words: tuple[str, ...], refused: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Also when it refuses: a file that is left to the garbage collection crashed the next one that was opened."""
     name, *rest = words
-    before = set(FILE_CACHE)
+    before, kept, opened = set(FILE_CACHE), [], open_study
+
+    def kept_open(*args: Any, **options: Any) -> xr.Dataset:
+        kept.append(opened(*args, **options))  # or the last reference to it closes it
+        return kept[-1]
+
+    monkeypatch.setattr("study.open.open_study", kept_open)
     result = rocking(name, finished, *rest, *refused)
     assert (result.exit_code == 2) == bool(refused), result.output
-    assert set(FILE_CACHE) <= before
+    assert set(FILE_CACHE) <= before and kept
 
 
 def test_what_is_unusual_is_a_warning_or_refused_if_strict() -> None:

@@ -174,7 +174,7 @@ class ErrorsPart(Part):
     channels: list[ChannelErrorsPart]
     scatter: ScatterPart | None
     base_noise: list[float]
-    base_drift: float
+    base_drift: float | None
     inadequacy: InadequacyPart
     still_seconds: float
 

@@ -44,7 +44,9 @@ def test_the_words_say_what_was_found_and_no_more() -> None:
     said = " ".join(error_lines(ERRORS))
     assert "Impacts repeat to 1.4%" in said and "hum at 12.3 Hz" in said and "drift of 0.0002 rad" in said
     assert "smooth error" not in said and "grows" not in said and "zero" not in said
-    assert "zero drifts by 0.7% of the peak" in " ".join(error_lines(replace(ERRORS, base_drift=0.007)))
+    assert "zero drifts by 0.7% of the peak, or the base tilts" in " ".join(
+        error_lines(replace(ERRORS, base_drift=0.007))
+    )
     large = replace(ERRORS, inadequacy=Inadequacy((1e-3,), 4.0, 60.0, True))
     assert "4.0 times the variance" in " ".join(error_lines(large))
     assert "not told apart" in " ".join(error_lines(replace(ERRORS, inadequacy=Inadequacy((0.0,), 0.0, 0.0, False))))
