@@ -91,12 +91,12 @@ def test_where_there_is_none_none_is_told() -> None:
 
 
 def test_a_tilt_is_no_drift_of_any_size() -> None:
-    """Beyond what accelerometers do it stays to be explained."""
+    """Beyond what accelerometers do it stays to be explained: 65 remain, of a drift without bounds 53."""
     leaning = measure(SPECIMEN, [recording(f"train_{k}", k, {"tilt": {"tilt": 0.02}}) for k in (1, 6)])
     first = base_fit(SPECIMEN, leaning)
     fitted, _ = refitted(first, disturbance_about(first))
     (tilt,) = (c for c in candidates(leaning, SPECIMEN) if c.name == "tilt")
-    assert score(linearise_about(fitted), [tilt])[0].statistic > 50.0
+    assert score(linearise_about(fitted), [tilt])[0].statistic > 58.0
 
 
 def test_draws_of_the_errors_hold_it() -> None:
