@@ -12,11 +12,12 @@ its trace with a matrix and how to add itself, so that none of them is ever form
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.base import FloatArray
 
@@ -110,6 +111,43 @@ class Stationary:
 
     def trace(self, matrix: FloatArray) -> float:
         return float(np.einsum("ij,ij->", matrix[self.inside, self.inside], self.matrix))
+
+
+@dataclass(frozen=True)
+class Kernels:
+    """The stationary parts among the same samples side by side: of the components ``of`` (K,), ``matrices`` (K, m, m).
+
+    What `Stationary` does, for all of them at once.
+    """
+
+    inside: slice
+    of: NDArray[np.intp]
+    matrices: FloatArray
+
+    @classmethod
+    def among(cls, parts: Sequence[Part | None]) -> tuple[Kernels, ...]:
+        """All stationary ones of the ``parts`` of a piece."""
+        found: dict[tuple[int, int], list[int]] = {}
+        for i, part in enumerate(parts):
+            if isinstance(part, Stationary):
+                found.setdefault((part.inside.start, part.inside.stop), []).append(i)
+        return tuple(
+            cls(slice(*ends), np.array(of), np.stack([parts[i].matrix for i in of]))  # type: ignore[union-attr]
+            for ends, of in found.items()
+        )
+
+    def add_to(self, covariance: FloatArray, theta: FloatArray) -> None:
+        """Add sum theta_k V_k to a covariance (n, n), theta of all components of the piece."""
+        covariance[self.inside, self.inside] += np.tensordot(theta[self.of], self.matrices, 1)
+
+    def times(self, vector: FloatArray) -> FloatArray:
+        """V_k v (m, K) of a vector (n,), in the samples inside."""
+        return np.asarray((self.matrices @ vector[self.inside]).T)
+
+    def trace(self, matrix: FloatArray) -> FloatArray:
+        """tr(M V_k) (K,) of a symmetric matrix (n, n)."""
+        flat = self.matrices.reshape(self.of.size, -1)
+        return np.asarray(flat @ matrix[self.inside, self.inside].ravel())
 
 
 @dataclass(frozen=True)

@@ -19,13 +19,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import cho_factor, lapack
+from scipy.linalg import lapack
 from scipy.optimize import nnls
 
-from diagnosis.errors.components import Part
+from diagnosis.errors.components import Kernels, Part, Stationary
 from models.base import FloatArray
 
 NU = 10.0
@@ -62,6 +63,17 @@ class Piece:
         """Derivatives (n, k + q) by the base parameters and the drifts at this piece's knots."""
         return self.by_unknown if self.at_knots is None else np.concatenate([self.by_unknown, self.at_knots], axis=1)
 
+    @cached_property
+    def kernels(self) -> tuple[Kernels, ...]:
+        """The stationary ones of the parts."""
+        return Kernels.among(self.parts)
+
+    @cached_property
+    def others(self) -> tuple[tuple[int, Part], ...]:
+        """The parts that are not stationary, with the numbers of their components."""
+        found = [(i, part) for i, part in enumerate(self.parts) if part is not None]
+        return tuple((i, part) for i, part in found if not isinstance(part, Stationary))
+
     def holding(self, held: NDArray[np.bool_], value: float) -> Piece:
         """The same with the ``held`` components (K,) no longer unknown: each has the variance ``value``."""
         fixed = np.where(held, value, 0.0)
@@ -70,9 +82,11 @@ class Piece:
 
     def covariance(self, theta: FloatArray) -> FloatArray:
         found = self.known.copy()
-        for part, value in zip(self.parts, theta, strict=True):
-            if part is not None and value > 0.0:
-                part.add_to(found, float(value))
+        for kernels in self.kernels:
+            kernels.add_to(found, theta)
+        for i, part in self.others:
+            if theta[i] > 0.0:
+                part.add_to(found, float(theta[i]))
         return found
 
 
@@ -147,10 +161,13 @@ class State:
 
 def solve(piece: Piece, theta: FloatArray) -> Solved:
     """One piece at theta (K,)."""
-    covariance = piece.covariance(theta)
-    factor = cho_factor(covariance, lower=True, overwrite_a=True)
-    inverse, _ = lapack.dpotri(factor[0], lower=1)
-    inverse = np.tril(inverse) + np.tril(inverse, -1).T
+    factor, failed = lapack.dpotrf(piece.covariance(theta).T, lower=1, clean=1, overwrite_a=1)
+    if failed:
+        raise np.linalg.LinAlgError("the covariance of a piece is not positive definite")
+    diagonal = np.log(np.diagonal(factor)).sum()
+    inverse, _ = lapack.dpotri(factor, lower=1, overwrite_c=1)
+    inverse = inverse + inverse.T
+    inverse.flat[:: inverse.shape[0] + 1] *= 0.5
     x = inverse @ piece.by_state
     gram = piece.by_state.T @ x
     gram += SLACK * np.max(np.diagonal(gram), initial=0.0) * np.eye(gram.shape[0])
@@ -160,7 +177,7 @@ def solve(piece: Piece, theta: FloatArray) -> Solved:
         projector,
         on_residual,
         projector @ piece.common,
-        2.0 * float(np.log(np.diagonal(factor[0])).sum()) + float(np.linalg.slogdet(gram)[1]),
+        2.0 * float(diagonal) + float(np.linalg.slogdet(gram)[1]),
         float(piece.residual @ on_residual),
     )
 
@@ -211,10 +228,11 @@ def evaluate(
             quadratic[i], trace[i] = slope @ pulled[i], float(np.sum(left * drift))
         along = np.zeros((n, k + q))
         for piece, one, w, at, own in zip(pieces, solved, weights, where, a, strict=True):
-            acting = [i for i, part in enumerate(piece.parts) if part is not None]
             turned = np.zeros((own.size, n))
-            for i in acting:
-                turned[:, i] = piece.parts[i].times(own)  # type: ignore[union-attr]
+            for kernels in piece.kernels:
+                turned[kernels.inside, kernels.of] = kernels.times(own)
+            for i, part in piece.others:
+                turned[:, i] = part.times(own)
             quadratic += w * (own @ turned)
             if piece.at_knots is not None:
                 for i in drifts:
@@ -222,8 +240,10 @@ def evaluate(
             information += w * (turned.T @ one.projector @ turned)
             along[:, at] += w * turned.T @ one.on_common
             left_over = one.projector - w * (one.on_common @ spread[np.ix_(at, at)] @ one.on_common.T)
-            for i in acting:
-                trace[i] += piece.parts[i].trace(left_over)  # type: ignore[union-attr]
+            for kernels in piece.kernels:
+                trace[kernels.of] += kernels.trace(left_over)
+            for i, part in piece.others:
+                trace[i] += part.trace(left_over)
         information -= along @ spread @ along.T
     return State(deviance, trace - quadratic, information, quadratic, trace, chi2, determinants, price, shift, spread)
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +30,8 @@ LARGEST_DRIFT = 1.0
 LARGEST: dict[Kind, float] = {"scatter": 0.03**2, "base_drift": (0.0075 / SHARE) ** 2}
 """Variance of the relative change of the rate by an event, and of each shape of a drift of the base accelerometer's
 zero; a law that changes goes further, and so does a tilt."""
+KEPT = 128
+"""Samples of a piece up to which its kernels are kept for the next estimate: .1 MB each."""
 FLOOR = 0.02
 """Variance of white noise that is always there, over that of the noise level: solvers and storage are not exact."""
 
@@ -129,8 +132,18 @@ def windows(scene: Scene, components: Sequence[Component]) -> list[Piece]:
 
 def stationary(component: Component, at: np.ndarray, step: float, inside: slice, stride: float) -> Stationary:
     """A kernel among averages at whole numbers ``at`` of ``step`` s; white noise falls with what is averaged."""
-    lag = np.abs(at[:, None] - at[None, :]) * step
-    return Stationary(inside, component.kernel(lag) / (stride if component.kind == "white" else 1.0))
+    make = _kernel if at.size <= KEPT else _kernel.__wrapped__
+    matrix = make(component.kind, component.scale, at.astype(np.int64).tobytes(), step)
+    return Stationary(inside, matrix / stride if component.kind == "white" else matrix)
+
+
+@lru_cache(maxsize=512)
+def _kernel(kind: Kind, scale: float, at: bytes, step: float) -> FloatArray:
+    """A kernel (m, m) among the samples ``at``: windows stay what they are while errors are estimated again."""
+    numbers = np.frombuffer(at, np.int64)
+    found = Component(kind, None, scale).kernel(np.abs(numbers[:, None] - numbers[None, :]) * step)
+    found.setflags(write=False)
+    return found
 
 
 def peaks_of(measured: Measured) -> FloatArray:

@@ -40,16 +40,16 @@ def worth_a_refit(scores: Sequence[Score], fewest: int, share: float) -> list[Sc
     """
     largest = max((s.statistic for s in scores), default=0.0)
     least = max(WORTH, share * largest)
-    hopeful = [s for s in scores if s.starts and not (s.statistic < HOPELESS and _heavy(s, scores))]
+    hopeful = [s for s in scores if s.starts and not (s.statistic < HOPELESS and heavy(s, scores))]
     return [s for k, s in enumerate(hopeful) if k < fewest or s.statistic >= least]
 
 
 def starts_of(entry: Score, scores: Sequence[Score]) -> tuple[FloatArray, ...]:
     """Where its refits start; from the better one alone where the kernel needs many short steps."""
-    return entry.starts[:1] if _heavy(entry, scores) else entry.starts
+    return entry.starts[:1] if heavy(entry, scores) else entry.starts
 
 
-def _heavy(entry: Score, scores: Sequence[Score]) -> bool:
+def heavy(entry: Score, scores: Sequence[Score]) -> bool:
     """Whether its kernel needs many short steps beside that of most mechanisms."""
     return bool(entry.work > HEAVY * float(np.median([s.work for s in scores])))
 

@@ -11,12 +11,21 @@ from collections.abc import Iterator, Sequence
 from diagnosis.errors.model import estimate
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.progress import Progress
-from diagnosis.search.beside import POOL_SHARE, THOROUGH, extended, one_of_each, seconds, starts_of, worth_a_refit
+from diagnosis.search.beside import (
+    POOL_SHARE,
+    THOROUGH,
+    extended,
+    heavy,
+    one_of_each,
+    seconds,
+    starts_of,
+    worth_a_refit,
+)
 from diagnosis.search.budget import FURTHER, JOINTS, LAST, UNTRIED
 from diagnosis.search.candidates import Candidate, firsts
 from diagnosis.search.details import least
 from diagnosis.search.exchange import drop, exchanged
-from diagnosis.search.found import GAP, MISSING, STUCK, Search, adequate, adjusted, survives
+from diagnosis.search.found import GAP, MISSING, STUCK, Search, adequate, adjusted, explains_all, survives
 from diagnosis.search.hidden import hidden_beside, hidden_by_errors, take_hidden
 from diagnosis.search.joints import at_other_joints
 from diagnosis.search.left_out import predicts_worse
@@ -49,6 +58,8 @@ SHARE_OF_FIRST = 0.05
 """Of the strongest statistic: what a first mechanism must reach to be refitted."""
 NEAR, NEAR_ADEQUATE = 0.2, 0.6
 """Share of the leader's gain from which a single is refitted from the leader's optimum too."""
+NEAR_HEAVY = 0.3
+"""Share of the largest statistic that a mechanism of many short steps must reach where another explains everything."""
 FIRST_POOL = 3
 
 
@@ -124,14 +135,18 @@ def refit_singles(found: Search, progress: Progress) -> None:
         if misfits(white.fitted):
             late = setting_in(found.base, [entry.candidate for entry in found.scores])
     left = []
-    wanted = in_turn(wanted, [entry for entry in found.scores if entry.candidate in late])
+    wanted = in_turn(wanted, [entry for entry in found.scores if entry.candidate in late], found.scores)
+    largest = max((entry.statistic for entry in wanted), default=0.0)
     for k, entry in enumerate(wanted):
+        explained = any(explains_all(single) for single in found.singles)
+        if explained and heavy(entry, found.scores) and entry.statistic < NEAR_HEAVY * largest:
+            continue
         if not found.affordable(entry.candidate.name):
             left.append(entry)
             continue
         progress(f"refitting {entry.candidate.name}", 0.15 + 0.3 * k / len(wanted))
         fits = [extend(found.base, entry.candidate, start, QUICK) for start in starts_of(entry, found.scores)]
-        if entry.candidate in late:
+        if entry.candidate in late and not explained:
             fits += from_measured(found.base, entry.candidate)
         if fits:
             found.singles.append(by_white_noise(best_of(fits), found.errors))
@@ -163,11 +178,14 @@ def refit_singles(found: Search, progress: Progress) -> None:
     found.tried += found.singles
 
 
-def in_turn(wanted: Sequence[Score], late: Sequence[Score]) -> list[Score]:
-    """The strongest of a screen, then what has no slope at its null, then the others: a budget may end on the way."""
+def in_turn(wanted: Sequence[Score], late: Sequence[Score], scores: Sequence[Score]) -> list[Score]:
+    """The strongest of a screen, then what has no slope at its null, then the others: a budget may end on the way.
+
+    Of those that something else may make needless, what takes many short steps comes last.
+    """
     strongest = one_of_each(wanted)
-    ordered = (*strongest[:FEWEST_ADEQUATE], *late, *strongest[FEWEST_ADEQUATE:])
-    return list({entry.candidate: entry for entry in ordered}.values())
+    others = sorted((*late, *strongest[FEWEST_ADEQUATE:]), key=lambda entry: heavy(entry, scores))
+    return list({entry.candidate: entry for entry in (*strongest[:FEWEST_ADEQUATE], *others)}.values())
 
 
 def led_by(found: Search, leader: Explanation) -> bool:

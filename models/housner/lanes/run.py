@@ -33,20 +33,16 @@ BENDING = 5
 
 def substeps(block: Block, time_step: float) -> NDArray[np.int64]:
     """Steps per sample of the record, lane by lane: never a matter of which lanes run together."""
-    phase = block.frequency_parameter * time_step / LARGEST_PHASE
-    with np.errstate(divide="ignore"):
-        joint = np.where(
-            block.joint_angle > 0.0,
-            block.frequency_parameter
-            * np.sqrt(block.slenderness / np.maximum(block.joint_angle, 1e-12))
-            * time_step
-            / JOINT_PHASE,
-            0.0,
-        )
-    bends = np.isfinite(block.first_frequency)
-    rigid = 1.0 - block.modal_moment**2 / (block.modal_mass * block.pivot_inertia)
-    mode = np.where(bends, 2.0 * np.pi * block.first_frequency, 0.0) / np.sqrt(rigid) * time_step / MODAL_PHASE
-    return np.maximum(1, np.ceil(np.maximum(np.maximum(phase, joint), mode) - 1e-9)).astype(np.int64)
+    p = block.frequency_parameter
+    phase = p * time_step / LARGEST_PHASE
+    if np.any(flexible := block.joint_angle > 0.0):
+        slope = block.slenderness / np.where(flexible, np.maximum(block.joint_angle, 1e-12), np.inf)
+        phase = np.maximum(phase, p * np.sqrt(slope) * time_step / JOINT_PHASE)
+    if np.any(bends := np.isfinite(block.first_frequency)):
+        rigid = 1.0 - block.modal_moment**2 / (block.modal_mass * block.pivot_inertia)
+        mode = np.where(bends, 2.0 * np.pi * block.first_frequency, 0.0) / np.sqrt(rigid)
+        phase = np.maximum(phase, mode * time_step / MODAL_PHASE)
+    return np.maximum(1, np.ceil(phase - 1e-9)).astype(np.int64)
 
 
 def given_table(block: Block, scale: FloatArray, initial: Mapping[str, FloatArray]) -> FloatArray:

@@ -110,8 +110,12 @@ def test_the_strongest_of_the_screen_come_before_what_has_no_slope_there() -> No
         joints: str = ""
 
     ordered = [Law("maxwell", "both"), Law("maxwell", "base"), *(Law(x) for x in ("bouc_wen", "gain", "locking"))]
-    entries: dict[Law, Any] = {one: SimpleNamespace(candidate=one) for one in (*ordered, Law("sliding"))}
-    found = in_turn([entries[one] for one in ordered], [entries[Law("locking")], entries[Law("sliding")]])
+    entries: dict[Law, Any] = {one: SimpleNamespace(candidate=one, work=1.0) for one in (*ordered, Law("sliding"))}
+    late = [entries[Law("locking")], entries[Law("sliding")]]
+    found = in_turn([entries[one] for one in ordered], late, list(entries.values()))
     names = [(entry.candidate.name, entry.candidate.joints) for entry in found]
     first = [("maxwell", "both"), ("bouc_wen", ""), ("locking", ""), ("sliding", ""), ("gain", "")]
     assert names == [*first, ("maxwell", "base")]
+    entries[Law("locking")].work = 100.0
+    found = in_turn([entries[one] for one in ordered], late, list(entries.values()))
+    assert found[-1] is entries[Law("locking")]
