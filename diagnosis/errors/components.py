@@ -138,7 +138,8 @@ class Kernels:
 
     def add_to(self, covariance: FloatArray, theta: FloatArray) -> None:
         """Add sum theta_k V_k to a covariance (n, n), theta of all components of the piece."""
-        covariance[self.inside, self.inside] += np.tensordot(theta[self.of], self.matrices, 1)
+        summed = theta[self.of] @ self.matrices.reshape(self.of.size, -1)
+        covariance[self.inside, self.inside] += summed.reshape(self.matrices.shape[1:])
 
     def times(self, vector: FloatArray) -> FloatArray:
         """V_k v (m, K) of a vector (n,), in the samples inside."""
