@@ -20,9 +20,13 @@ study: $(READY)
 quick: $(READY) lint types
 	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder -m "not slow and not proof"
 
-# kernels compiled at a lower level of optimisation, in half the time and kept apart from those of studies
-test: $(READY) lint types
-	NUMBA_OPT=1 $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder -m "not proof"
+# types beside the tests; kernels compiled at a lower level of optimisation, in half the time and kept apart from those
+# of studies
+test: $(READY) lint
+	$(BIN)/mypy & types=$$!; \
+	NUMBA_OPT=1 $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder -m "not proof"; tests=$$?; \
+	wait $$types || { echo "mypy found errors: see above"; exit 1; }; \
+	exit $$tests
 
 proofs: $(READY)
 	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder -m proof

@@ -24,6 +24,7 @@ from numba import njit
 from numpy.typing import NDArray
 from scipy.optimize import brentq, root
 
+from benchmarks.diagnosis.elimination import solved
 from benchmarks.diagnosis.open_laws import Law, nothing, still, unchanged
 
 FloatArray = NDArray[np.float64]
@@ -95,8 +96,9 @@ def run(
     couple, lean = law.couple if law else nothing, np.array([-GRAVITY * np.sin(tilt), GRAVITY * np.cos(tilt)])
     fixed = (body, *layers, couples, geometry, np.asarray(numbers, float), lean)
     rest = [_compression(layer, load) for layer, load in zip(layers, (mass, wall["top_mass"]), strict=True)]
-    start = root(_unbalanced, np.repeat(np.negative(rest), 2), (fixed, fibres), tol=1e-10).x
-    if np.max(np.abs(_unbalanced(start, fixed, fibres))) > STILL:
+    alone = (*fixed[:5], np.array([0.0, *numbers[1:]]), lean)  # the law of size 0
+    start = root(_unbalanced, np.repeat(np.negative(rest), 2), (couple, alone, fibres), tol=1e-10).x
+    if np.max(np.abs(_unbalanced(start, couple, alone, fibres))) > STILL:
         raise RuntimeError("the wall does not stand")
     return np.asarray(_integrate(couple, np.asarray(acceleration, float), step, per, fixed, start, fibres))
 
@@ -223,11 +225,11 @@ def _at_rest(left, right, layer, count):  # type: ignore[no-untyped-def]
 
 
 @njit
-def _unbalanced(q, fixed, count):  # type: ignore[no-untyped-def]
+def _unbalanced(q, couple, fixed, count):  # type: ignore[no-untyped-def]
     """Accelerations q'' of a wall that is held at q until all has come to rest."""
     still = np.zeros((count, 2))
     low, high = _at_rest(q[0], q[1], fixed[1], count)[1], _at_rest(q[2], q[3], fixed[2], count)[1]
-    return _change(nothing, 0.0, q, np.zeros(4), 0.0, fixed, low, high, still, still.copy())
+    return _change(couple, 0.0, q, np.zeros(4), 0.0, fixed, low, high, still, still.copy())
 
 
 @njit
@@ -241,7 +243,7 @@ def _change(couple, t, q, v, a, fixed, low, high, by_low, by_high):  # type: ign
         up = _placed(moved, body)
         moved[i] -= 2.0 * SMALL
         jacobian[:, i] = (up - _placed(moved, body)) / (2.0 * SMALL)
-    speed = np.sqrt(np.sum(v**2))
+    speed = np.sqrt(v[0] ** 2 + v[1] ** 2 + v[2] ** 2 + v[3] ** 2)
     turn = np.zeros(6)
     if speed > 0.0:
         ahead = q + TURN / speed * v
@@ -251,16 +253,22 @@ def _change(couple, t, q, v, a, fixed, low, high, by_low, by_high):  # type: ign
     loads = np.array(
         [-body[2] * (a + lean[0]), -body[2] * lean[1], 0.0, -body[6] * (a + lean[0]), -body[6] * lean[1], 0.0]
     )
-    theta, rate = np.arcsin((q[0] - q[1]) / (2.0 * body[0])), float(jacobian[2] @ v)
+    theta, rate = np.arcsin((q[0] - q[1]) / (2.0 * body[0])), 0.0
+    for i in range(4):
+        rate += jacobian[2, i] * v[i]
     beyond = max(0.0, abs(theta) - couples[1]) * np.sign(theta)
     loads[2] -= couples[0] * beyond + couples[2] * rate + couples[3] * np.tanh(rate / SLIDES)
     loads[2] += couples[4] * couple(t, theta, rate, 0.0, 0.0, a, numbers, geometry)
-    forces = jacobian.T @ (loads - masses * turn)
     count = low.shape[0]
     one = _fibres(q[0], q[1], v[0], v[1], base, low, by_low, count)
     two = _fibres(q[2], q[3], v[2], v[3], top, high, by_high, count)
-    forces += np.array([one[0], one[1], two[0], two[1]])
-    return np.linalg.solve(jacobian.T @ (masses.reshape(6, 1) * jacobian), forces)
+    forces, inertia = np.array([one[0], one[1], two[0], two[1]]), np.zeros((4, 4))
+    for i in range(4):
+        for k in range(6):
+            forces[i] += jacobian[k, i] * (loads[k] - masses[k] * turn[k])
+            for j in range(4):
+                inertia[i, j] += jacobian[k, i] * masses[k] * jacobian[k, j]
+    return solved(inertia, forces)
 
 
 @njit

@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.signal import butter, sosfiltfilt
 
+from benchmarks.diagnosis.elimination import solved
 from benchmarks.diagnosis.open_laws import Law, nothing, still, unchanged
 
 FloatArray = NDArray[np.float64]
@@ -45,7 +46,7 @@ SLIDES = 2e-4
 MOST_IMPACTS = 100
 """In one step: a joint that hits as often hits without end."""
 BASE, TOP = 0, 1
-NONE = 2
+NONE = np.int64(2)
 """In the place of a joint: none is driven."""
 
 
@@ -160,7 +161,7 @@ def _solve(theta, rate, sides, loads, driven, wanted, body):  # type: ignore[no-
             right[row] = wanted if driven == joint else 0.0
             row += 1
     matrix[:6, 6:] = -matrix[6:, :6].T
-    return np.linalg.solve(matrix, right)[:6]
+    return solved(matrix, right)[:6]
 
 
 @njit

@@ -12,7 +12,7 @@ from diagnosis.errors.model import calibrated, disturbance_about, estimate
 from diagnosis.fit.setup import base_fit, measure
 from diagnosis.fit.solver import Fitted, fit
 from diagnosis.progress import silent
-from diagnosis.search import refit
+from diagnosis.search import refit, select
 from diagnosis.search.candidates import candidates
 from diagnosis.search.found import Search
 from diagnosis.search.refit import Explanation, extend, with_memory
@@ -86,6 +86,36 @@ def test_every_law_with_a_memory_counts_events_along_its_own_motion() -> None:
     lossy, worn = found.singles
     assert with_memory(worn).loss > worn.loss - 0.5
     assert with_memory(lossy) is lossy  # it remembers no impacts: nothing is fitted again
+
+
+@pytest.mark.parametrize(
+    ("known", "near", "refitted", "began"),
+    [
+        (("viscous_damping", "gain", "coulomb_damping"), 2.0, False, False),
+        (("viscous_damping", "gain", "coulomb_damping"), 0.0, True, False),
+        (("gain", "coulomb_damping"), 2.0, True, True),
+    ],
+    ids=["explained", "explained but near", "not explained"],
+)
+def test_costly_fits_are_left_out_where_another_explains_all(
+    monkeypatch: pytest.MonkeyPatch, known: tuple[str, ...], near: float, refitted: bool, began: bool
+) -> None:
+    """Of a mechanism of many short steps, unless it comes near in the screen; from measured states in any case."""
+    measured = measure(
+        SPECIMEN, [recording(f"run_{seed}", seed, {"viscous_damping": {"rate": 0.15}}) for seed in (1, 2)]
+    )
+    fitted, errors = calibrated(SPECIMEN, measured)
+    some = {one.name: one for one in candidates(measured, SPECIMEN) if one.name in known}
+    at_measured: list[str] = []
+    monkeypatch.setattr(select, "heavy", lambda entry, _: entry.candidate.name == "coulomb_damping")
+    monkeypatch.setattr(select, "NEAR_HEAVY", near)
+    monkeypatch.setattr(select, "misfits", lambda _: True)
+    monkeypatch.setattr(select, "setting_in", lambda *_: [some["coulomb_damping"]])
+    monkeypatch.setattr(select, "from_measured", lambda _, candidate: at_measured.append(candidate.name) or [])
+    found = Search(Explanation((), fitted), tuple(some.values()), errors)
+    refit_singles(found, silent)
+    assert ("coulomb_damping" in [single.names[0] for single in found.singles]) == refitted
+    assert bool(at_measured) == began
 
 
 def test_fits_of_whole_runs_are_taken_further_though_nothing_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
