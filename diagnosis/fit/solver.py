@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.stats import qmc
 
 from diagnosis.data.measured import Measured
@@ -34,6 +35,8 @@ NARROW, WIDEST = 0.05, 0.25
 PROMISING, AT_STUCK = 2, 6
 """How many of the best are fitted, over the number of states, beside the measured one; iterations of these fits."""
 SCATTERINGS = 3
+CLEARLY = 1.0
+"""What other states must gain in a window."""
 NEAR, GOOD = 0.1, 0.75
 """Where all ahead is such a share of the loss the whole step alone is tried, and taken if it gains as much of it."""
 
@@ -110,17 +113,29 @@ def scatter(found: Fitted, seed: int) -> FloatArray | None:
         return misfit.losses(misfit.residuals([misfit.point(found.u, x) for x in states], only=bad))
 
     stuck, count = np.flatnonzero(bad), PROMISING * m.states.shape[1]
-    starts = np.repeat(m.states[None], count + 1, axis=0)
-    starts[1:, stuck] = trials[np.argsort(losses(trials)[:, stuck], axis=0)[:count], stuck]
-    tried = found.frozen.of_windows(np.tile(stuck, len(starts)))
-    ends = fit(tried, np.zeros(0), starts[:, stuck].reshape(-1, starts.shape[2]), AT_STUCK).states
-    starts[:, stuck] = ends.reshape(len(starts), stuck.size, -1)
-    ended = losses(starts)
+    starts = np.repeat(m.states[None, stuck], count + 1, axis=0)
+    starts[1:] = trials[np.argsort(losses(trials)[:, stuck], axis=0)[:count], stuck]
+    return from_states(found, stuck, starts)
+
+
+def from_states(found: Fitted, windows: NDArray[np.intp], starts: FloatArray) -> FloatArray | None:
+    """States (W, S) with better ones in some of the ``windows`` (n,): the ends of fits from ``starts`` (k, n, S).
+
+    The parameters as they are; None where no window is better off.
+    """
+    misfit, m = found.misfit, found.measured
+    tried = found.frozen.of_windows(np.tile(windows, len(starts)))
+    ends = np.repeat(found.states[None], len(starts), axis=0)
+    ends[:, windows] = fit(tried, np.zeros(0), starts.reshape(-1, starts.shape[2]), AT_STUCK).states.reshape(
+        starts.shape
+    )
+    own = np.isin(np.arange(len(m.windows)), windows)
+    ended = misfit.losses(misfit.residuals([misfit.point(found.u, x) for x in ends], only=own))
     pick = np.argmin(ended, axis=0)
-    better = bad & (ended.min(axis=0) < found.window_losses - 1.0)
+    better = own & (ended.min(axis=0) < found.window_losses - CLEARLY)
     if not better.any():
         return None
-    return np.where(better[:, None], starts[pick, np.arange(pick.size)], found.states)
+    return np.where(better[:, None], ends[pick, np.arange(pick.size)], found.states)
 
 
 @dataclass(frozen=True)

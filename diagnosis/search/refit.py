@@ -10,7 +10,7 @@ import numpy as np
 from diagnosis.data.measured import Measured
 from diagnosis.fit.memory import counted
 from diagnosis.fit.prediction import Point, Predictor
-from diagnosis.fit.solver import ITERATIONS, Fitted, fit, fit_thoroughly
+from diagnosis.fit.solver import ITERATIONS, Fitted, fit, fit_thoroughly, from_states
 from diagnosis.fit.starts import Origin, searched
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.spells import in_spell
@@ -135,6 +135,22 @@ def from_other(explanation: Explanation, other: Explanation) -> Explanation:
     )
     tried = Explanation(explanation.candidates, fit(mine.misfit, u, other.fitted.states))
     return min((explanation, tried), key=lambda e: e.loss)
+
+
+def from_states_of(explanation: Explanation, others: Sequence[Explanation]) -> Explanation:
+    """The same model refitted with the states of other models in windows that fit better from there.
+
+    A window may hold several minima, which no misfit shows as long as none is bad; models that move nearly alike end
+    in different ones.
+    """
+    f = explanation.fitted
+    if not others or not f.states.size:
+        return explanation
+    starts = np.stack([other.fitted.states for other in others])
+    states = from_states(f, np.arange(len(f.measured.windows)), starts)
+    if states is None:
+        return explanation
+    return best_of([explanation, replace(explanation, fitted=fit(f.misfit, f.u, states))])
 
 
 def over_ranges(explanation: Explanation) -> Explanation:

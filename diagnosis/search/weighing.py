@@ -7,21 +7,27 @@ gains under the base model's errors are bounded. They name the effect and say ho
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
 
 from diagnosis.errors.model import Errors, refitted
 from diagnosis.fit.solver import Fitted, fit
 from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.search.budget import ENDED
 from diagnosis.search.candidates import Candidate
-from diagnosis.search.found import Search, adjusted
-from diagnosis.search.refit import Explanation, best_of, further, resized, ways, without
+from diagnosis.search.found import STUCK, Search, adjusted
+from diagnosis.search.refit import Explanation, best_of, from_states_of, further, resized, ways, without
 
 NEAR, OWN = 0.3, 0.4
 """Share of the leader's gain from which an explanation is taken along, and from which its own errors are estimated."""
 MOST, MOST_OWN = 6, 4
+TURNS = 2
 CLOSE = 30.0
-"""Gain from the best within which an explanation is fitted from other sizes too: three times what rivals have."""
+"""Gain from the best within which an explanation is fitted from other sizes, and led by others, too: three times what
+rivals have."""
 
 
 def reweighed(explanation: Explanation, errors: Errors) -> Explanation:
@@ -47,6 +53,40 @@ def by_white_noise(explanation: Explanation, errors: Errors) -> Explanation:
     return min(explanation, back, key=lambda e: e.loss)
 
 
+class Judged(NamedTuple):
+    """An explanation under errors of its own; ``loss``: of these, with its price."""
+
+    loss: float
+    explanation: Explanation
+    errors: Errors
+
+
+def led_by_each_other(judged: Sequence[Judged], found: Search) -> list[Judged]:
+    """The same, each from the states of the others where some windows fit better from there, until none does.
+
+    Two models of which one is stuck in windows would else be told apart by that.
+    """
+    led, near = list(judged), np.inf
+    for _ in range(TURNS):
+        moved = False
+        for k, one in enumerate(led):
+            if found.whole.spent:
+                return led
+            if one.loss > near:
+                continue
+            others = [other.explanation for i, other in enumerate(led) if i != k]
+            explanation = from_states_of(one.explanation, others)
+            if explanation.loss >= one.explanation.loss - STUCK:
+                continue
+            fitted, errors = refitted(explanation.fitted, found.errors.base, one.errors)
+            if (loss := one.loss - one.errors.loss + errors.loss) < one.loss:
+                led[k], moved = Judged(loss, replace(explanation, fitted=fitted), errors), True
+        if not moved:
+            break
+        near = min(one.loss for one in led) + CLOSE
+    return led
+
+
 def weigh_again(found: Search) -> None:
     """Estimate the errors with each of the leading explanations in, and refit the others under those of the best.
 
@@ -68,7 +108,7 @@ def weigh_again(found: Search) -> None:
     near = list({id(e): e for e in (*first.values(), *leading.values())}.values())[:MOST]
     if all(set(e.candidates) != set(found.best.candidates) for e in near):
         near.append(found.best)
-    judged: list[tuple[float, Explanation, Errors]] = []
+    judged: list[Judged] = []
     for explanation in near:
         if judged and found.whole.spent:
             break
@@ -76,11 +116,12 @@ def weigh_again(found: Search) -> None:
         if counts and len(judged) < MOST_OWN and found.gain(explanation) > OWN * found.gain(found.best):
             fitted, errors = refitted(explanation.fitted, found.errors.base, found.errors)
             price = adjusted(explanation) - explanation.loss
-            judged.append((errors.loss + price, replace(explanation, fitted=fitted), errors))
-    _, found.best, found.errors = min(judged, key=lambda entry: entry[0])
+            judged.append(Judged(errors.loss + price, replace(explanation, fitted=fitted), errors))
+    _, found.best, found.errors = min(led_by_each_other(judged, found), key=lambda entry: entry.loss)
     found.weighed = found.best
     found.base = reweighed(found.base, found.errors)
     others = [reweighed(e, found.errors) for e in near if e.candidates != found.best.candidates]
+    others = [from_states_of(e, [found.best]) for e in others]
     close = [e for e in others if adjusted(e) - adjusted(found.best) < CLOSE]
     if close and found.whole.spent:
         found.not_tried.setdefault("other sizes of what was found", ENDED)

@@ -15,9 +15,9 @@ from diagnosis.progress import silent
 from diagnosis.search import refit, select
 from diagnosis.search.candidates import candidates
 from diagnosis.search.found import Search
-from diagnosis.search.refit import Explanation, extend, with_memory
+from diagnosis.search.refit import Explanation, extend, from_states_of, with_memory
 from diagnosis.search.select import in_turn, led_by, refit_singles
-from diagnosis.search.weighing import evidence, reweighed
+from diagnosis.search.weighing import Judged, evidence, led_by_each_other, reweighed
 from tests.diagnosis import buildings
 from tests.diagnosis.made import SPECIMEN, recording
 
@@ -59,6 +59,25 @@ def test_a_base_that_is_not_stuck_stays(free: Search) -> None:
     found = replace(free, singles=list(free.singles))
     assert not led_by(found, free.singles[0])
     assert found.base is free.base and found.singles == free.singles
+
+
+def test_a_model_that_is_stuck_is_led_by_the_states_of_another(free: Search) -> None:
+    late, gain = sorted(free.singles, key=lambda e: e.names[0] == "gain")
+    off = stuck(late)
+    assert off.loss > late.loss + 100.0
+    led = from_states_of(off, [off, gain])
+    assert led.loss == pytest.approx(late.loss, abs=0.5)
+    assert from_states_of(late, [off, gain]) is late and from_states_of(late, []) is late
+
+
+def test_what_explains_more_is_told_though_its_fit_was_stuck(free: Search) -> None:
+    """Its errors were estimated where it was stuck, and are again where it is not."""
+    late, gain = sorted(free.singles, key=lambda e: e.names[0] == "gain")
+    own = [(e, estimate(e.fitted, free.errors.base, free.errors)) for e in (stuck(late), gain)]
+    judged = [Judged(errors.loss, e, errors) for e, errors in own]
+    assert judged[0].loss > judged[1].loss
+    led = led_by_each_other(judged, free)
+    assert led[0].loss < judged[1].loss - 15.0 and led[0].explanation.names == ("delay",)
 
 
 def test_evidence_is_of_the_best_fit_of_an_effect_whatever_its_first_one_was(free: Search) -> None:
