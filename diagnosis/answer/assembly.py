@@ -92,7 +92,7 @@ def assemble(task: Task, found: Search, climbed: Climbed | None) -> Diagnosis:
         errors=judged.errors,
         channels=stages.optional("what each channel adds", lambda: added_by_channels(final.fitted), dict),
         posterior=drawn,
-        not_tried={**absent(found.measured), **found.not_tried},
+        not_tried={k: why for k, why in {**absent(found.measured), **found.not_tried}.items() if k not in final.names},
         reference_peak=true_peak(final),
         provenance=_provenance(task.specimen, found, judged.constancy, task.seed),
         finished=task.finished,

@@ -125,10 +125,9 @@ def from_states(found: Fitted, windows: NDArray[np.intp], starts: FloatArray) ->
     """
     misfit, m = found.misfit, found.measured
     tried = found.frozen.of_windows(np.tile(windows, len(starts)))
+    fitted = fit(tried, np.zeros(0), starts.reshape(-1, starts.shape[2]), AT_STUCK)
     ends = np.repeat(found.states[None], len(starts), axis=0)
-    ends[:, windows] = fit(tried, np.zeros(0), starts.reshape(-1, starts.shape[2]), AT_STUCK).states.reshape(
-        starts.shape
-    )
+    ends[:, windows] = fitted.states.reshape(starts.shape)
     own = np.isin(np.arange(len(m.windows)), windows)
     ended = misfit.losses(misfit.residuals([misfit.point(found.u, x) for x in ends], only=own))
     pick = np.argmin(ended, axis=0)

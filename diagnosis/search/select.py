@@ -60,6 +60,8 @@ NEAR, NEAR_ADEQUATE = 0.2, 0.6
 """Share of the leader's gain from which a single is refitted from the leader's optimum too."""
 NEAR_HEAVY = 0.3
 """Share of the largest statistic that a mechanism of many short steps must reach where another explains everything."""
+COSTLY = "another explains everything, the screen gives it much less, and its fits take long"
+THRESHOLD = "it sets in at a threshold, and another explains everything without it"
 FIRST_POOL = 3
 
 
@@ -140,6 +142,7 @@ def refit_singles(found: Search, progress: Progress) -> None:
     for k, entry in enumerate(wanted):
         explained = any(explains_all(single) for single in found.singles)
         if explained and heavy(entry, found.scores) and entry.statistic < NEAR_HEAVY * largest:
+            found.not_tried.setdefault(entry.candidate.name, COSTLY)
             continue
         if not found.affordable(entry.candidate.name):
             left.append(entry)
@@ -148,6 +151,8 @@ def refit_singles(found: Search, progress: Progress) -> None:
         fits = [extend(found.base, entry.candidate, start, QUICK) for start in starts_of(entry, found.scores)]
         if entry.candidate in late and not explained:
             fits += from_measured(found.base, entry.candidate)
+        elif entry.candidate in late and not fits:
+            found.not_tried.setdefault(entry.candidate.name, THRESHOLD)
         if fits:
             found.singles.append(by_white_noise(best_of(fits), found.errors))
     found.singles.sort(key=adjusted)

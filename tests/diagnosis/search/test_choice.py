@@ -91,6 +91,7 @@ def made_up(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(weighing, "refitted", lambda f, *_: (f, SimpleNamespace(loss=f.loss, base=None)))
     monkeypatch.setattr(weighing, "reweighed", same)
     monkeypatch.setattr(weighing, "resized", same)
+    monkeypatch.setattr(weighing, "from_states_of", same)
     monkeypatch.setattr(exchange, "extended", lambda *_, **__: [])
     monkeypatch.setattr(details, "of_joints", lambda c, _: c.of_joints)
     monkeypatch.setattr(beside, "explains_all", lambda _: False)

@@ -16,7 +16,7 @@ from diagnosis.search import refit, select
 from diagnosis.search.candidates import candidates
 from diagnosis.search.found import Search
 from diagnosis.search.refit import Explanation, extend, from_states_of, with_memory
-from diagnosis.search.select import in_turn, led_by, refit_singles
+from diagnosis.search.select import COSTLY, in_turn, led_by, refit_singles
 from diagnosis.search.weighing import Judged, evidence, led_by_each_other, reweighed
 from tests.diagnosis import buildings
 from tests.diagnosis.made import SPECIMEN, recording
@@ -135,6 +135,7 @@ def test_costly_fits_are_left_out_where_another_explains_all(
     refit_singles(found, silent)
     assert ("coulomb_damping" in [single.names[0] for single in found.singles]) == refitted
     assert bool(at_measured) == began
+    assert found.not_tried == ({} if refitted else {"coulomb_damping": COSTLY})
 
 
 def test_fits_of_whole_runs_are_taken_further_though_nothing_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
