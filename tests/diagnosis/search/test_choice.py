@@ -185,6 +185,20 @@ def test_a_rival_is_kept_beside_variants_of_the_best() -> None:
     assert [near.candidate.name for near in rivals(found)] == ["tilt"]
 
 
+def test_what_is_likelier_once_led_by_another_is_the_answer(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Dashpot and tilt: the second is stuck in a window, until it starts from the states of the first."""
+    dashpot, stuck, free = fit(A, loss=900.0), fit(TILT, loss=910.0), fit(TILT, loss=850.0)
+
+    def led(one: Any, others: Any) -> Any:
+        return free if one.names == ("tilt",) and [other.loss for other in others] == [900.0] else one
+
+    monkeypatch.setattr(weighing, "from_states_of", led)
+    found = search(fit(loss=2000.0), dashpot, stuck)
+    found.best = dashpot
+    weighing.weigh_again(found)
+    assert found.best.names == ("tilt",) and found.best.loss == 850.0
+
+
 def test_what_the_budget_broke_off_is_tried_when_there_is_work_again(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(exchange, "without", lambda e, c, *_: fit(*(x for x in e.candidates if x is not c), loss=950.0))
     asked: list[str] = []
