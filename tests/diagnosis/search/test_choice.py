@@ -196,7 +196,7 @@ def test_what_is_likelier_once_led_by_another_is_the_answer(monkeypatch: pytest.
     found = search(fit(loss=2000.0), dashpot, stuck)
     found.best = dashpot
     weighing.weigh_again(found)
-    assert found.best.names == ("tilt",) and found.best.loss == 850.0
+    assert found.best.names == ("tilt",) and found.errors.loss == found.best.loss == 850.0
 
 
 def test_what_the_budget_broke_off_is_tried_when_there_is_work_again(monkeypatch: pytest.MonkeyPatch) -> None:
