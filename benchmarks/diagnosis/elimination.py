@@ -1,6 +1,7 @@
 """Linear equations of a few unknowns within compiled code.
 
-The same from numpy takes longer to compile than the programs that solve them.
+numpy's takes a fifth of the time in which such a program compiles. The models have their own, which programs that
+check them do not share.
 """
 
 from __future__ import annotations

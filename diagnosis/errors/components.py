@@ -96,44 +96,29 @@ class Part(Protocol):
 
 @dataclass(frozen=True)
 class Stationary:
-    """A kernel among the samples ``inside`` of a piece: V = ``matrix`` (m, m) there."""
+    """A kernel among the samples ``inside`` of a piece: V = ``matrix`` (m, m) there, with others in `Kernels`."""
 
     inside: slice
     matrix: FloatArray
 
-    def add_to(self, covariance: FloatArray, theta: float) -> None:
-        covariance[self.inside, self.inside] += theta * self.matrix
-
-    def times(self, vector: FloatArray) -> FloatArray:
-        found = np.zeros_like(vector)
-        found[self.inside] = self.matrix @ vector[self.inside]
-        return found
-
-    def trace(self, matrix: FloatArray) -> float:
-        return float(np.einsum("ij,ij->", matrix[self.inside, self.inside], self.matrix))
-
 
 @dataclass(frozen=True)
 class Kernels:
-    """The stationary parts among the same samples side by side: of the components ``of`` (K,), ``matrices`` (K, m, m).
-
-    What `Stationary` does, for all of them at once.
-    """
+    """Stationary parts among the same samples side by side: of the components ``of`` (K,), ``matrices`` (K, m, m)."""
 
     inside: slice
     of: NDArray[np.intp]
     matrices: FloatArray
 
     @classmethod
-    def among(cls, parts: Sequence[Part | None]) -> tuple[Kernels, ...]:
+    def among(cls, parts: Sequence[Part | Stationary | None]) -> tuple[Kernels, ...]:
         """All stationary ones of the ``parts`` of a piece."""
-        found: dict[tuple[int, int], list[int]] = {}
+        found: dict[tuple[int, int], dict[int, FloatArray]] = {}
         for i, part in enumerate(parts):
             if isinstance(part, Stationary):
-                found.setdefault((part.inside.start, part.inside.stop), []).append(i)
+                found.setdefault((part.inside.start, part.inside.stop), {})[i] = part.matrix
         return tuple(
-            cls(slice(*ends), np.array(of), np.stack([parts[i].matrix for i in of]))  # type: ignore[union-attr]
-            for ends, of in found.items()
+            cls(slice(*ends), np.array(list(own)), np.stack(list(own.values()))) for ends, own in found.items()
         )
 
     def add_to(self, covariance: FloatArray, theta: FloatArray) -> None:

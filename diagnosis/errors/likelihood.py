@@ -54,7 +54,7 @@ class Piece:
     by_state: FloatArray
     by_unknown: FloatArray
     known: FloatArray
-    parts: tuple[Part | None, ...]
+    parts: tuple[Part | Stationary | None, ...]
     knots: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, np.intp))
     at_knots: FloatArray | None = None
 
@@ -71,8 +71,7 @@ class Piece:
     @cached_property
     def others(self) -> tuple[tuple[int, Part], ...]:
         """The parts that are not stationary, with the numbers of their components."""
-        found = [(i, part) for i, part in enumerate(self.parts) if part is not None]
-        return tuple((i, part) for i, part in found if not isinstance(part, Stationary))
+        return tuple((i, p) for i, p in enumerate(self.parts) if p is not None and not isinstance(p, Stationary))
 
     def holding(self, held: NDArray[np.bool_], value: float) -> Piece:
         """The same with the ``held`` components (K,) no longer unknown: each has the variance ``value``."""

@@ -92,7 +92,7 @@ def windows(scene: Scene, components: Sequence[Component]) -> list[Piece]:
         channel = np.repeat(np.arange(len(m.channels)), m.compared.shape[2])[keep]
         step = m.recordings[window.recording].time_step * m.strides[w]
         at = np.tile(np.arange(m.compared.shape[2]), len(m.channels))[keep]
-        parts: list[Part | None] = []
+        parts: list[Part | Stationary | None] = []
         kicked = scene.kicks[w].reshape(keep.size, -1)[keep]
         near: tuple[()] | tuple[NDArray[np.intp], FloatArray] = ()
         if knots is not None:

@@ -60,8 +60,8 @@ NEAR, NEAR_ADEQUATE = 0.2, 0.6
 """Share of the leader's gain from which a single is refitted from the leader's optimum too."""
 NEAR_HEAVY = 0.3
 """Share of the largest statistic that a mechanism of many short steps must reach where another explains everything."""
-COSTLY = "another explains everything, the screen gives it much less, and its fits take long"
-THRESHOLD = "it sets in at a threshold, and another explains everything without it"
+COSTLY = "not alone: another explains everything, the screen gives it much less, and its fits take long"
+THRESHOLD = "not alone: it sets in at a threshold, and another explains everything without it"
 FIRST_POOL = 3
 
 
@@ -155,6 +155,9 @@ def refit_singles(found: Search, progress: Progress) -> None:
             found.not_tried.setdefault(entry.candidate.name, THRESHOLD)
         if fits:
             found.singles.append(by_white_noise(best_of(fits), found.errors))
+    for single in found.singles:  # in another variant
+        if found.not_tried.get(single.names[0]) in (COSTLY, THRESHOLD):
+            del found.not_tried[single.names[0]]
     found.singles.sort(key=adjusted)
     if not found.singles:
         return
@@ -167,7 +170,7 @@ def refit_singles(found: Search, progress: Progress) -> None:
         found.singles[0] = again(reshaped(found.singles[0]))
         tried = {single.candidates[0] for single in found.singles}
         worth = one_of_each(worth_a_refit(found.scores, fewest, SHARE_OF_FIRST))[:MOST]
-        left = [s for s in worth if s.candidate not in tried]
+        left = [s for s in worth if s.candidate not in tried and found.not_tried.get(s.candidate.name) != COSTLY]
     with found.work_of_its_own(min(JOINTS, found.spare)):
         at_other_joints(found)
     with found.work_of_its_own(min(UNTRIED, found.spare)):

@@ -62,7 +62,7 @@ class Judged(NamedTuple):
 
 
 def led_by_each_other(judged: Sequence[Judged], found: Search) -> list[Judged]:
-    """The same, each from the states of the others where some windows fit better from there, until none does.
+    """The same, each from the states of the others where some windows fit better from there, and once more from those.
 
     Two models of which one is stuck in windows would else be told apart by that.
     """

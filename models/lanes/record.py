@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from models.base import FloatArray
 from models.errors import InputError
 from models.lanes.arrays import Record
-from models.lanes.chunks import CHUNK, extremes
+from models.lanes.chunks import extremes
 from models.pitch import pitch
 from models.shaking import Shaking
 
@@ -36,20 +36,11 @@ def recorded(shaking: Shaking, per_sample: int, tail: float, more: Sequence[Floa
         )
     samples = np.zeros((len(channels) + 1, end + 2))
     samples[-1, :shaken] = 1.0
-    given = [row for row, channel in enumerate(channels) if channel is not None]
-    for row in given:
-        channel = np.asarray(channels[row])
-        fine = channel if per_sample == 1 else _between(channel, per_sample)
-        samples[row, : shaken + 1] = fine
-    largest = np.zeros((len(channels), max(samples.shape[1] // CHUNK, 1)))
-    largest[given] = extremes(samples[given])
-    return Record(samples, largest, step, shaken, end)
-
-
-def _between(channel: FloatArray, per_sample: int) -> FloatArray:
-    """The channel at so many steps a sample."""
-    fine = np.arange((channel.size - 1) * per_sample + 1) / per_sample
-    return np.interp(fine, np.arange(channel.size), channel)
+    fine = np.arange(shaken + 1) / per_sample
+    for row, channel in enumerate(channels):
+        if channel is not None:
+            samples[row, : shaken + 1] = np.interp(fine, np.arange(channel.size), channel)
+    return Record(samples, extremes(samples[:-1]), step, shaken, end)
 
 
 def pitched(shaking: Shaking, per_sample: int, tail: float, low_pass: float) -> Record:

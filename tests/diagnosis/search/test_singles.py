@@ -16,7 +16,7 @@ from diagnosis.search import refit, select
 from diagnosis.search.candidates import candidates
 from diagnosis.search.found import Search
 from diagnosis.search.refit import Explanation, extend, from_states_of, with_memory
-from diagnosis.search.select import COSTLY, in_turn, led_by, refit_singles
+from diagnosis.search.select import COSTLY, THRESHOLD, in_turn, led_by, refit_singles
 from diagnosis.search.weighing import Judged, evidence, led_by_each_other, reweighed
 from tests.diagnosis import buildings
 from tests.diagnosis.made import SPECIMEN, recording
@@ -136,6 +136,24 @@ def test_costly_fits_are_left_out_where_another_explains_all(
     assert ("coulomb_damping" in [single.names[0] for single in found.singles]) == refitted
     assert bool(at_measured) == began
     assert found.not_tried == ({} if refitted else {"coulomb_damping": COSTLY})
+
+
+def test_what_sets_in_at_a_threshold_is_said_not_to_be_tried_where_another_explains_all(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Unless a variant of it was."""
+    measured = measure(
+        SPECIMEN, [recording(f"run_{seed}", seed, {"viscous_damping": {"rate": 0.15}}) for seed in (1, 2)]
+    )
+    fitted, errors = calibrated(SPECIMEN, measured)
+    some = {one.name: one for one in candidates(measured, SPECIMEN) if one.name in ("viscous_damping", "gain")}
+    twin = replace(some["viscous_damping"], price=1.0)
+    monkeypatch.setattr(select, "misfits", lambda _: True)
+    monkeypatch.setattr(select, "setting_in", lambda *_: [some["gain"], twin])
+    monkeypatch.setattr(select, "starts_of", lambda e, _: () if e.candidate in (some["gain"], twin) else e.starts)
+    found = Search(Explanation((), fitted), (*some.values(), twin), errors)
+    refit_singles(found, silent)
+    assert found.not_tried == {"gain": THRESHOLD}
 
 
 def test_fits_of_whole_runs_are_taken_further_though_nothing_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
