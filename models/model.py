@@ -18,7 +18,7 @@ from models.mechanisms import acting_on, applied
 from models.peaks import peaks
 from models.placing import Placing
 from models.runs import DONE, Prescribed, Request, Run, by_lane
-from models.shaking import Shaking
+from models.shaking import Shaking, Shakings
 
 MOST_LOGGED = 50_000
 """Events kept of one history."""
@@ -227,14 +227,14 @@ class Model(Placing, ABC, Generic[C]):
     def trajectories(
         self,
         values: Values,
-        shaking: Shaking,
+        shaking: Shaking | Shakings,
         *,
         first: NDArray[np.int64],
         samples: int | NDArray[np.int64],
         initial: Mapping[str, FloatArray],
         options: Mapping[str, str] | None = None,
     ) -> Mapping[str, FloatArray]:
-        """Observables ``(n, samples)`` of n lanes, lane k from sample ``first[k]`` of the shaking and its own state.
+        """Observables ``(n, samples)`` of n lanes, lane k from sample ``first[k]`` of its shaking and its own state.
 
         ``samples`` (n,): how many of each lane are wanted, as many columns as of the longest; meaningless behind them.
         ``initial``: arrays ``(n,)`` by the names of `states`, and of what laws with a memory need, ``(n, ...)``.
@@ -245,7 +245,7 @@ class Model(Placing, ABC, Generic[C]):
     def follow(
         self,
         values: Values,
-        shaking: Shaking,
+        shaking: Shaking | Shakings,
         *,
         first: NDArray[np.int64],
         steps: NDArray[np.int64],
@@ -253,13 +253,13 @@ class Model(Placing, ABC, Generic[C]):
         options: Mapping[str, str] | None = None,
     ) -> tuple[Mapping[str, FloatArray], dict[str, FloatArray]]:
         """As `trajectories`, lane k over ``steps[k]`` samples, and what each lane would go on from (`resume`)."""
-        n, end = first.size, shaking.horizontal.size - 1
-        coefficients = self._shaken(values, options, shaking, n, "lanes")
-        last = np.minimum(first + steps, end)
+        n, shakings = first.size, Shakings.over(shaking, first.size).lines
+        coefficients = self._shaken(values, options, shakings.first, n, "lanes")
+        last = np.minimum(first + steps, shakings.ends)
         request = Request(
-            shaking.lines, np.ones(n), self.resolve_options(options), first=first, last=last,
+            shakings.first, np.ones(n), self.resolve_options(options), first=first, last=last,
             samples=int(np.max(steps)) + 1, initial={name: by_lane(v, n) for name, v in initial.items()},
-            bare=True,
+            bare=True, motions=shakings,
         )  # fmt: skip
         run = self.run("lanes", coefficients, request)
         after = self.resume(run.samples[np.arange(n), last - first], run.outputs, request.initial)
@@ -268,7 +268,7 @@ class Model(Placing, ABC, Generic[C]):
     def carry(
         self,
         values: Values,
-        shaking: Shaking | Sequence[Shaking],
+        shaking: Shaking | Shakings,
         along: Prescribed,
         *,
         initial: Mapping[str, FloatArray] | None = None,
@@ -280,15 +280,15 @@ class Model(Placing, ABC, Generic[C]):
         that cannot stand.
         """
         n = along.first.size
-        shakings = [shaking.lines] * n if isinstance(shaking, Shaking) else [one.lines for one in shaking]
-        coefficients = self._shaken(values, options, shakings[0], n, "lanes")
+        shakings = Shakings.over(shaking, n).lines
+        coefficients = self._shaken(values, options, shakings.first, n, "lanes")
         given = {name: by_lane(v, n) for name, v in (initial or {}).items()}
         unable = _any_of(self.cannot_stand(coefficients))
         if not np.any(unable):
             return self.carry_lanes(coefficients, shakings, along, given)
         if not (able := np.flatnonzero(~unable)).size:
             return {}
-        given, own = {name: x[able] for name, x in given.items()}, [shakings[k] for k in able.tolist()]
+        given, own = {name: x[able] for name, x in given.items()}, shakings.take(able)
         found = self.carry_lanes(coefficients.take(able), own, along.take(able), given)
         whole = {name: np.full((n, *x.shape[1:]), np.nan) for name, x in found.items()}
         for name, x in found.items():
@@ -309,7 +309,7 @@ class Model(Placing, ABC, Generic[C]):
         return {}
 
     def carry_lanes(
-        self, coefficients: C, shakings: Sequence[Shaking], along: Prescribed, initial: Mapping[str, FloatArray]
+        self, coefficients: C, shakings: Shakings, along: Prescribed, initial: Mapping[str, FloatArray]
     ) -> dict[str, FloatArray]:
         """`carry` of walls that all stand, each under its own shaking; default: nothing has to be carried."""
         return {}

@@ -21,7 +21,7 @@ from models.errors import InputError
 from models.model import Model
 from models.observed import Observed
 from models.runs import by_lane
-from models.shaking import Shaking
+from models.shaking import Shaking, Shakings
 
 JOINED: Mapping[OverParts, Callable[[Sequence[float]], float]] = {
     "first": itemgetter(0), "largest": max, "least": min, "total": math.fsum,
@@ -182,7 +182,7 @@ def trajectories(
     model: Model[Any],
     parts: Sequence[Values],
     changes: NDArray[np.int64],
-    shaking: Shaking,
+    shaking: Shaking | Shakings,
     *,
     first: NDArray[np.int64],
     samples: int | NDArray[np.int64],
@@ -196,6 +196,7 @@ def trajectories(
     if len(parts) == 1:
         return model.trajectories(parts[0], shaking, first=first, samples=samples, initial=initial, options=options)
     n, end = first.size, first + samples - 1
+    shakings = Shakings.over(shaking, n)
     edges = [first, *(np.clip(changes[:, j], first, end) for j in range(len(parts) - 1)), end]
     if np.any(np.count_nonzero(np.diff(edges, axis=0) > 0, axis=0) > 1):
         if why := cannot_be_cut(model, parts):
@@ -209,7 +210,7 @@ def trajectories(
         length = stop[lanes] - start[lanes]
         own = {k: np.broadcast_to(np.asarray(v, float), (n,))[lanes] for k, v in values.items()}
         channels, after = model.follow(
-            own, shaking, first=start[lanes], steps=length,
+            own, shakings.take(lanes), first=start[lanes], steps=length,
             initial={name: v[lanes] for name, v in state.items()}, options=options,
         )  # fmt: skip
         pieces.append(_Piece(lanes, start[lanes] - first[lanes], length, channels))

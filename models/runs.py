@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.base import Event, FloatArray
-from models.shaking import Shaking
+from models.shaking import Shaking, Shakings
 
 Index = NDArray[np.int64]
 
@@ -24,6 +24,8 @@ class Request:
     ``last`` (n,; default: from the start to the end of the tail), through rest and overturning.
     ``initial``: arrays (n,) by the names of the model's states; what is left out is as at rest.
     ``log``: most events kept of a lane. ``bare``: only the motion is asked for; outputs that cost more may be left out.
+    ``motions``: of bare histories of lanes under motions of their own, of which ``shaking`` is one; None: all are
+    under ``shaking``.
     """
 
     shaking: Shaking
@@ -36,6 +38,7 @@ class Request:
     samples: int = 0
     log: int = 0
     bare: bool = False
+    motions: Shakings | None = None
 
     @property
     def history(self) -> bool:
@@ -60,11 +63,20 @@ class Request:
         step = self.shaking.time_step
         return step * np.arange(round(self.until / step) + 1, dtype=np.float64)
 
-    def steps(self, per_sample: int, end: int) -> tuple[Index, Index]:
-        """First and last step (n,) of every lane at ``per_sample`` steps a sample, ``end`` that of the tail."""
+    @property
+    def shakings(self) -> Shakings:
+        """The motion of every lane."""
+        return self.motions or Shakings.over(self.shaking, self.scale.size)
+
+    def steps(self, per_sample: int, end: int, begins: Index) -> tuple[Index, Index]:
+        """First and last step (n,) of every lane at ``per_sample`` steps a sample, ``end`` that of the tail.
+
+        ``begins`` (n,): the step of the record at which the motion of each lane begins.
+        """
         n = self.scale.size
         first = np.zeros(n, np.int64) if self.first is None else self.first * per_sample
-        return first, np.full(n, end) if self.last is None else self.last * per_sample
+        last = np.full(n, end) if self.last is None else self.last * per_sample
+        return first + begins, last + begins
 
     def take(self, lanes: Any) -> Request:
         """The request for the lanes of an index array, slice or mask."""
@@ -74,6 +86,7 @@ class Request:
             initial={name: values[lanes] for name, values in self.initial.items()},
             first=None if self.first is None else self.first[lanes],
             last=None if self.last is None else self.last[lanes],
+            motions=None if self.motions is None else self.motions.take(lanes),
         )
 
     @property

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar, cast
@@ -110,6 +110,44 @@ class Shaking:
     def silence(cls, duration: float, time_step: float) -> Shaking:
         """No shaking for ``duration`` seconds (free rocking)."""
         return cls(time_step, np.zeros(round(duration / time_step) + 1))
+
+
+@dataclass(frozen=True)
+class Shakings:
+    """The motions of n lanes: lane k is under ``each[of[k]]``; all of one step, with a vertical motion or none."""
+
+    each: tuple[Shaking, ...]
+    of: NDArray[np.int64]
+
+    @classmethod
+    def of_lanes(cls, lanes: Sequence[Shaking]) -> Shakings:
+        """Lanes under these motions, the same object in several lanes held once."""
+        place = {key: k for k, key in enumerate(dict.fromkeys(id(one) for one in lanes))}
+        each = {id(one): one for one in lanes}
+        return cls(tuple(each.values()), np.array([place[id(one)] for one in lanes], np.int64))
+
+    @classmethod
+    def over(cls, shaking: Shaking | Shakings, lanes: int) -> Shakings:
+        """The motion of each lane, where one may be that of all."""
+        return shaking if isinstance(shaking, Shakings) else cls((shaking,), np.zeros(lanes, np.int64))
+
+    @property
+    def first(self) -> Shaking:
+        return self.each[0]
+
+    @cached_property
+    def lines(self) -> Shakings:
+        """Each as models run it (`Shaking.lines`)."""
+        return Shakings(tuple(one.lines for one in self.each), self.of)
+
+    @property
+    def ends(self) -> NDArray[np.int64]:
+        """The last sample of each lane's motion (n,)."""
+        return np.array([one.horizontal.size - 1 for one in self.each], np.int64)[self.of]
+
+    def take(self, lanes: Any) -> Shakings:
+        """Those of the lanes of an index array, slice or mask."""
+        return Shakings(self.each, self.of[lanes])
 
 
 def _sharpened(samples: NDArray[np.float64]) -> NDArray[np.float64]:

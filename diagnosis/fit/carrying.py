@@ -26,7 +26,7 @@ from models.base import FloatArray
 from models.identification import NARROWEST, State
 from models.piecewise import Part, begun_at
 from models.runs import Prescribed
-from models.shaking import Shaking
+from models.shaking import Shaking, Shakings
 
 KEPT = 512
 """Settings that are kept: those of one linearisation and of the steps after it, several times over."""
@@ -143,7 +143,7 @@ def _carried(
         ends = np.clip([int(lane.marks.max()) - begin for lane in lanes], 0, int(wanted[-1]) - begin)
         ahead = {name: x[:, begin:] for name, x in motion.items()}
         ran = measured.model.carry(
-            values, [begun[id(shaking)] for shaking in shakings],
+            values, Shakings.of_lanes([begun[id(shaking)] for shaking in shakings]),
             Prescribed(ahead, wanted - begin, np.zeros(len(lanes), np.int64), row, ends),
             initial=initial, options=options,
         )  # fmt: skip

@@ -6,20 +6,17 @@ left of the recording is the noise of its sensors.
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
 from diagnosis.data.measured import Measured
 from diagnosis.data.smoothing import smooth
 from diagnosis.data.windows import ABOVE_NOISE
-from diagnosis.fit.prediction import Point, Predictor, held
+from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.unknowns import instruments_of
 from grids.instruments.staged import moved_in_stages, recorded_in_stages
 from grids.instruments.windowed import seconds_ahead
 from models.base import FloatArray
 from models.kinematics import ground_along
-from models.observed import Observed
 from models.piecewise import trajectories
 
 LEVEL = 0.1
@@ -58,9 +55,8 @@ def from_rest(predictor: Predictor, point: Point, recording: int, samples: int) 
         m.model, [part.values for part in parts], np.array([[part.first for part in parts[1:]]], np.int64), shaking,
         first=first, samples=run, initial={}, options=predictor.options,
     )  # fmt: skip
-    seen = Observed({name: partial(held, ran, name, (1, 1, run), np.array([run - 1])) for name in ran})
     along = ground_along(shaking, first, run)
-    true = m.sensed(seen, shaking.time_step, along)
+    true = m.sensed(ran, shaking.time_step, along)
     around = m.around(taken.time_step, along[0], np.zeros((1, 1)))
     recorded = recorded_in_stages({c: true[c] for c in m.channels}, sets, around)
     return np.stack([np.ravel(recorded[c])[:samples] for c in m.channels])

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from diagnosis.data.measured import Measured
 from diagnosis.fit.carrying import Asked, Carrying, Setting
+from diagnosis.fit.lanes import Lanes, Ways, held, together_along
 from diagnosis.fit.through import run_through
 from diagnosis.fit.unknowns import instruments_of, without_instruments
 from grids.instruments.base import Switched
@@ -26,14 +27,11 @@ from grids.recordings.base import Recording
 from grids.stages import Stage, changes, first_sample
 from models.base import FloatArray
 from models.identification import Rung
-from models.kinematics import ground_along
 from models.observed import Observed
 from models.piecewise import Part, trajectories
-from models.shaking import Shaking
+from models.shaking import Shaking, Shakings
 
 Stages = Mapping[str, Sequence[Stage]]
-Ways = Sequence[tuple[int, frozenset[str]]]
-"""From which sample on which mechanisms do not act."""
 
 
 @dataclass(frozen=True)
@@ -108,19 +106,25 @@ class Predictor:
             ]
             if m.stretches is not None:
                 plain = (m.shakings if shakings is None else shakings)[r]
-                for members, sets in alike:
+                for own, sets in alike:
                     shaken = moved_in_stages(plain, sets)
-                    self._through(r, points, members, windows, shaken, complete, instruments, out)
+                    self._through(r, points, own, windows, shaken, complete, instruments, out)
                 continue
             grounds = [moved_in_stages(m.shakings[r], sets, moved_in_windows) for _, sets in alike]
             moves.append(_Moves(r, windows, alike, grounds))
-        for one, carried in zip(moves, self._carried(moves, points, complete, instruments), strict=True):
-            for (own, acting), ground in zip(one.alike, one.grounds, strict=True):
+        carried = self._carried(moves, points, complete, instruments)
+        together: dict[tuple[object, ...], list[Lanes]] = {}
+        for one, at_start in zip(moves, carried, strict=True):
+            recording = m.recordings[one.r]
+            for (members, acting), ground in zip(one.alike, one.grounds, strict=True):
                 shaking = ground if shakings is None else moved_in_stages(shakings[one.r], acting, moved_in_windows)
                 # probes of the base are disturbances of the model: accelerometers are on the base as it moves
-                around = m.disturbed(shaking, one.r), ground
-                recording = m.recordings[one.r]
-                self._run(points, own, one.windows, around, complete, recording, instruments, carried, out)
+                shaking = m.disturbed(shaking, one.r)
+                ways = [self._ways(recording, points[p].stages) for p in members]
+                lanes = Lanes(one.r, one.windows, members, shaking, ground, ways, at_start)
+                together.setdefault((recording.time_step, *lanes.kind), []).append(lanes)
+        for lanes_alike in together.values():
+            self._run(points, lanes_alike, complete, instruments, out)
         return out if m.as_it_was is None else out - m.as_it_was.offset
 
     def declared(self, points: Sequence[Point]) -> list[Point]:
@@ -132,7 +136,9 @@ class Predictor:
         if not any("." in name for values in complete[:1] for name in values):
             return [replace(point, coordinates=()) for point in points]
         names = points[given[0]].coordinates
-        own = self.measured.model.declared(self._values(complete, frozenset(), 1), names, self.options)
+        own = self.measured.model.declared(
+            self._values(complete, frozenset(), np.arange(len(given))), names, self.options
+        )
         for i, k in enumerate(given):
             values = {name: float(np.broadcast_to(x, (len(given),))[i]) for name, x in own.items()}
             found[k] = replace(points[k], values={**points[k].values, **values}, coordinates=())
@@ -213,49 +219,58 @@ class Predictor:
     def _run(
         self,
         points: Sequence[Point],
-        members: Sequence[int],
-        windows: NDArray[np.intp],
-        shakings: tuple[Shaking, Shaking],
+        parts: Sequence[Lanes],
         complete: Sequence[Mapping[str, float]],
-        recording: Recording,
         instruments: Sequence[Switched],
-        carried: Mapping[str, FloatArray],
         out: FloatArray,
     ) -> None:
-        m, time_step = self.measured, recording.time_step
-        ways = [self._ways(recording, points[p].stages) for p in members]
-        shaking, ground = shakings
-        compared = np.array([m.windows[w].samples for w in windows])
-        ahead = max(seconds_ahead(instruments[p]) for p in members)
-        wanted = compared + int(np.ceil(ahead / time_step)) + any(place.order for place in m.places.values())
-        longest, samples = int(compared.max()), int(wanted.max())
-        n, count = len(windows), len(members)
-        parts = [self._values([complete[p] for p in members], off, n) for _, off in ways[0]]
-        instants = np.repeat(np.array([[first for first, _ in own[1:]] for own in ways], np.int64), n, axis=0)
-        states = np.stack([points[p].states[windows] for p in members])
-        initial = {s: states[:, :, k].ravel() for k, s in enumerate(m.free)}
+        """One call of the model for windows of recordings that are sampled alike, in which the same things act."""
+        m, time_step = self.measured, self.measured.recordings[parts[0].r].time_step
+        point = np.concatenate([np.repeat(one.members, one.windows.size) for one in parts])
+        window = np.concatenate([np.tile(one.windows, len(one.members)) for one in parts])
+        under = np.repeat(np.arange(len(parts)), [one.size for one in parts])
+        compared = np.array([one.samples for one in m.windows])
+        ahead = [int(np.ceil(seconds_ahead(switched) / time_step)) for switched in instruments]
+        wanted = compared[window] + np.array(ahead)[point] + any(place.order for place in m.places.values())
+        longest, samples = int(compared[window].max()), int(wanted.max())
+        first, states = m.first[window], np.stack([one.states for one in points])[point, window]
+        initial = {s: states[:, k] for k, s in enumerate(m.free)}
         initial |= {s: initial[of] for s, of in m.alike.items() if s not in initial}
-        initial |= {k: np.tile(v[windows], count) for k, v in m.memory.items()}
-        initial |= {k: v[members].reshape(n * count, *v.shape[2:]) for k, v in carried.items()}
-        first = np.tile(m.first[windows], count)
+        initial |= {k: v[window] for k, v in m.memory.items()}
+        initial |= {k: np.concatenate([one.at_start(k) for one in parts]) for k in parts[0].carried}
+        shakings = Shakings(tuple(one.shaking for one in parts), under)
         ran = trajectories(
-            m.model, parts, instants, shaking, first=first, samples=np.tile(wanted, count), initial=initial,
+            m.model, [self._values(complete, off, point) for _, off in parts[0].ways[0]],
+            np.concatenate([one.instants for one in parts]), shakings, first=first, samples=wanted, initial=initial,
             options=self.options,
         )  # fmt: skip
-        last = np.clip(shaking.horizontal.size - 1 - m.first[windows], 0, wanted - 1)
-        seen = Observed({c: partial(held, ran, c, (count, n, samples), last) for c in ran})
-        along = ground_along(ground, m.first[windows], samples)
-        found = m.sensed(seen, shaking.time_step, along)
-        start = np.asarray(time_step * m.first[windows, None], float)
-        around = m.around(time_step, along[0], start)
-        for alike in _alike([instruments[p] for p in members]):
-            true = {c: found[c][alike] for c in m.channels}
-            leader = members[alike[0]]
-            sets = self.sets(instruments[leader], recording, points[leader].stages)
+        last = np.clip(shakings.ends - first, 0, wanted - 1)
+        seen = Observed({c: partial(held, ran, c, last) for c in ran})
+        along = together_along([one.along(m.first, samples) for one in parts])
+        found = m.sensed(seen, shakings.first.time_step, along)
+        for lanes, sets in self._recorded_alike(points, parts, instruments):
+            true = {c: found[c][lanes] for c in m.channels}
+            around = m.around(time_step, along[0][lanes], time_step * first[lanes, None])
             recorded = recorded_in_stages(true, sets, around, recorded_in_windows)
-            rows = np.array([members[k] for k in alike])[:, None]
             for c, channel in enumerate(m.channels):
-                out[rows, windows, c, :longest] = recorded[channel][..., :longest]
+                out[point[lanes], window[lanes], c, :longest] = recorded[channel][..., :longest]
+
+    def _recorded_alike(
+        self, points: Sequence[Point], parts: Sequence[Lanes], instruments: Sequence[Switched]
+    ) -> Iterable[tuple[NDArray[np.intp] | slice, Sets]]:
+        """The lanes that the same instruments record from the same samples on, and these instruments."""
+        groups: dict[tuple[object, ...], tuple[list[NDArray[np.intp]], Sets]] = {}
+        begin = 0
+        for one in parts:
+            n = one.windows.size
+            for p in one.members:
+                sets = self.sets(instruments[p], self.measured.recordings[one.r], points[p].stages)
+                key = tuple((at, *((k, frozenset(v.items())) for k, v in acting.items())) for at, acting in sets)
+                groups.setdefault(key, ([], sets))[0].append(np.arange(begin, begin + n))
+                begin += n
+        if len(groups) == 1:
+            return [(slice(None), sets) for _, sets in groups.values()]
+        return [(np.concatenate(lanes), sets) for lanes, sets in groups.values()]
 
     def _through(
         self,
@@ -320,34 +335,15 @@ class Predictor:
         return [Part(first, acting(off)) for first, off in self._ways(recording, stages)]
 
     def _values(
-        self, points: Sequence[Mapping[str, float]], off: frozenset[str], windows: int
+        self, complete: Sequence[Mapping[str, float]], off: frozenset[str], point: NDArray[np.intp]
     ) -> dict[str, float | FloatArray]:
-        """Values of the points for their lanes, one for all or (points x windows,); those of ``off`` at their nulls."""
+        """Values of every lane's ``point`` (n,), one where all have the same; those of ``off`` at their nulls."""
         values: dict[str, float | FloatArray] = {}
-        for name in points[0]:
+        for name in complete[0]:
             mechanism, _, parameter = name.partition(".")
-            column = np.array([point[name] for point in points])
             if mechanism in off:
-                column[:] = self.measured.model.mechanisms[mechanism].parameter(parameter).null
-            values[name] = column[0] if np.all(column == column[0]) else np.repeat(column, windows)
+                values[name] = self.measured.model.mechanisms[mechanism].parameter(parameter).null
+                continue
+            column = np.array([one[name] for one in complete])
+            values[name] = column[0] if np.all(column == column[0]) else column[point]
         return values
-
-
-def _alike(instruments: Sequence[Switched]) -> list[list[int]]:
-    """Which of several settings of the instruments are the same."""
-    groups: dict[frozenset[object], list[int]] = {}
-    for k, switched in enumerate(instruments):
-        key = frozenset((name, frozenset(values.items())) for name, values in switched.items())
-        groups.setdefault(key, []).append(k)
-    return list(groups.values())
-
-
-def held(ran: Mapping[str, FloatArray], name: str, shape: tuple[int, ...], last: NDArray[np.int64]) -> FloatArray:
-    """A channel in the shape (P, n, samples) with the value at sample ``last`` (n,) held beyond it."""
-    channel = ran[name].reshape(shape)
-    short = np.flatnonzero(last < shape[2] - 1)
-    if short.size:
-        channel = channel.copy()
-        for w, end in zip(short, last[short], strict=True):
-            channel[:, w, end + 1 :] = channel[:, w, end, None]
-    return channel

@@ -20,7 +20,7 @@ from models.interface.poses import poses
 from models.interface.tangent import unstressed
 from models.model import Model
 from models.runs import Prescribed, Request, Run
-from models.shaking import Shaking
+from models.shaking import Shakings
 
 
 class Interface(Model[LayeredWall]):
@@ -99,7 +99,7 @@ class Interface(Model[LayeredWall]):
     def carry_lanes(
         self,
         coefficients: LayeredWall,
-        shakings: Sequence[Shaking],
+        shakings: Shakings,
         along: Prescribed,
         initial: Mapping[str, FloatArray],
     ) -> dict[str, FloatArray]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from models.interface_linear.identification import IDENTIFICATION
 from models.interface_linear.observe import observe
 from models.interface_linear.poses import poses
 from models.runs import Prescribed, Request, Run
-from models.shaking import Shaking
+from models.shaking import Shakings
 
 
 class InterfaceLinear(Interface):
@@ -65,7 +65,7 @@ class InterfaceLinear(Interface):
     def carry_lanes(
         self,
         coefficients: LayeredWall,
-        shakings: Sequence[Shaking],
+        shakings: Shakings,
         along: Prescribed,
         initial: Mapping[str, FloatArray],
     ) -> dict[str, FloatArray]:

@@ -12,7 +12,7 @@ Counts = NDArray[np.int64]
 
 
 class Record(NamedTuple):
-    """Channels of the base's motion at the ends of equal steps, with a quiet tail and a step to spare.
+    """Channels of the base's motion at the ends of equal steps, with a quiet tail and a step or more to spare.
 
     ``samples`` (channels + 1, m): a and a_z (m s-2) and what else a kernel reads, then 1 for the steps of the
     shaking. ``extremes`` (channels, chunks): the largest size of each channel in every full chunk of

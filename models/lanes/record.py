@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from models.base import FloatArray
 from models.errors import InputError
 from models.lanes.arrays import Record
-from models.lanes.chunks import extremes
+from models.lanes.chunks import CHUNK, extremes
 from models.pitch import pitch
-from models.shaking import Shaking
+from models.shaking import Shaking, Shakings
 
 LONGEST_KEPT = 50_000
 """Steps of a record, 2 MB, up to which it is kept for the next call."""
@@ -34,7 +34,7 @@ def recorded(shaking: Shaking, per_sample: int, tail: float, more: Sequence[Floa
             f"the run takes {end:.3g} steps of {step:.3g} s ({end * step:.3g} s), more than {MOST_STEPS:.0e}: "
             "shorten the motion or its tail, or stretch time less"
         )
-    samples = np.zeros((len(channels) + 1, end + 2))
+    samples = np.zeros((len(channels) + 1, -(-(end + 2) // CHUNK) * CHUNK))  # full chunks: records join end to end
     samples[-1, :shaken] = 1.0
     fine = np.arange(shaken + 1) / per_sample
     for row, channel in enumerate(channels):
@@ -53,16 +53,15 @@ def pitched(shaking: Shaking, per_sample: int, tail: float, low_pass: float) -> 
     return shaking.once((__name__, per_sample, tail, low_pass), make) if short else make()
 
 
-def of_lanes(
-    shakings: Sequence[Shaking], more: Callable[[Shaking], Sequence[FloatArray | None]] = lambda shaking: ()
-) -> tuple[Record, NDArray[np.int64]]:
-    """The shaking of each of n lanes at its own samples, each once, and where that of a lane begins (n,).
+def of_lanes(shakings: Shakings, make: Callable[[Shaking], Record]) -> tuple[Record, NDArray[np.int64]]:
+    """The records that ``make`` gives of the motions of n lanes, as one, and the step where that of a lane begins (n,).
 
-    ``more``: channels beyond a and a_z, as of `recorded`.
+    A lane stays within its own.
     """
-    distinct = {id(shaking): shaking for shaking in shakings}
-    record, begins = _end_to_end([recorded(shaking, 1, 0.0, more(shaking)) for shaking in distinct.values()])
-    return record, begins[[list(distinct).index(id(shaking)) for shaking in shakings]]
+    if len(shakings.each) == 1:
+        return make(shakings.first), np.zeros(shakings.of.size, np.int64)
+    record, begins = _end_to_end([make(shaking) for shaking in shakings.each])
+    return record, begins[shakings.of]
 
 
 def _end_to_end(records: Sequence[Record]) -> tuple[Record, NDArray[np.int64]]:
@@ -70,5 +69,6 @@ def _end_to_end(records: Sequence[Record]) -> tuple[Record, NDArray[np.int64]]:
     samples = np.concatenate([record.samples for record in records], axis=1)
     begins = np.cumsum([0, *(record.samples.shape[1] for record in records[:-1])])
     last = records[-1]
-    joined = Record(samples, extremes(samples[:-1]), last.step, int(begins[-1]) + last.shaken, samples.shape[1] - 2)
+    largest = np.concatenate([record.extremes for record in records], axis=1)
+    joined = Record(samples, largest, last.step, int(begins[-1]) + last.shaken, int(begins[-1]) + last.end)
     return joined, begins.astype(np.int64)

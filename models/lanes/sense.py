@@ -13,6 +13,8 @@ CREATED = 0.1
 
 def impulse(request: Request) -> FloatArray:
     """Scale times the integral of |a| + |a_z| over the shaking (n,) in m s-1: the velocity that it can give."""
-    shaking = request.shaking
-    size = np.abs(shaking.horizontal) + (0.0 if shaking.vertical is None else np.abs(shaking.vertical))
-    return np.asarray(np.abs(request.scale) * size.sum() * shaking.time_step)
+    sizes = [
+        np.abs(one.horizontal).sum() + (0.0 if one.vertical is None else np.abs(one.vertical).sum())
+        for one in request.shakings.each
+    ]
+    return np.asarray(np.abs(request.scale) * np.array(sizes)[request.shakings.of] * request.shaking.time_step)

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 import pytest
 
 import models
+from models.base import FloatArray
 from models.errors import InputError
+from models.model import Model
 from models.piecewise import Part, begun_at, simulate, trajectories
 from models.pitch import pitch
 from models.runs import DONE
-from models.shaking import Shaking
+from models.shaking import Shaking, Shakings
 
 STEP = 0.005
 TIME = STEP * np.arange(1601)
@@ -158,6 +163,43 @@ def test_lanes_of_their_own_lengths_are_those_of_the_longest_to_their_ends(name:
         assert work[1] < 0.8 * work[0]  # what nobody asked for is not run: .62 of the samples were
         for k, length in enumerate(lengths):
             np.testing.assert_array_equal(own[k, :length], whole[k, :length])
+
+
+def alone(
+    model: Model[Any], values: Mapping[str, float], other: Mapping[str, float] | None, shaking: Shaking, first: int
+) -> FloatArray:
+    """One lane of 300 samples, with ``other`` values from sample 200 on."""
+    parts, cuts = ([values], np.zeros((1, 0), np.int64)) if other is None else ([values, other], np.full((1, 1), 200))
+    ran = trajectories(model, parts, cuts, shaking, first=np.array([first]), samples=300, initial={})
+    return ran["rotation_1"][0]
+
+
+@pytest.mark.parametrize("cut", [False, True])
+@pytest.mark.parametrize(("name", "values"), [*OF_MODEL.items(), ("housner", PITCHED[0][1]), ("housner", DRIVEN)])
+def test_lanes_under_motions_of_their_own_move_as_under_each_alone(
+    name: str, values: dict[str, float], cut: bool
+) -> None:
+    model = models.get(name)
+    other = {**values, "pivot_inset.inset_over_half_width": 0.05} if cut else None
+    values = {**values, "pivot_inset.inset_over_half_width": 0.0}
+    strong, short = SHAKING.scaled(1.5), Shaking(STEP, 1.2 * SHAKING.horizontal[:260])
+    motions = Shakings((strong, short, SHAKING.scaled(-1.3)), np.array([0, 1, 2, 1, 0]))
+    first = np.array([0, 0, 40, 30, 90])
+    parts = [values] if other is None else [values, other]
+    changes = np.full((5, len(parts) - 1), 200)
+    found = trajectories(model, parts, changes, motions, first=first, samples=300, initial={})["rotation_1"]
+    assert np.ptp([np.max(np.abs(x)) for x in found]) > 0.005
+    for k, under in enumerate(motions.of):
+        inside = min(300, motions.each[under].horizontal.size - int(first[k]))
+        wanted = alone(model, values, other, motions.each[under], int(first[k]))
+        np.testing.assert_array_equal(found[k, :inside], wanted[:inside])
+
+
+def test_chains_on_bearings_run_under_one_motion() -> None:
+    two = Shakings((SHAKING, SHAKING.scaled(0.5)), np.array([0, 1]))
+    values = {"total_mass": 1e4, "bearing_stiffness": 4e4}
+    with pytest.raises(ValueError, match="one motion"):
+        models.get("isolated").trajectories(values, two, first=np.zeros(2, np.int64), samples=10, initial={})
 
 
 def test_what_remembers_more_than_its_states_is_refused() -> None:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -15,10 +15,12 @@ from models.housner.declaration import REST_VELOCITY
 from models.housner.lanes import rows as r
 from models.housner.lanes.advance import advance
 from models.housner.lanes.table import KNOTS
-from models.lanes.record import pitched
+from models.lanes.arrays import Record
+from models.lanes.record import of_lanes, pitched
 from models.lanes.tables import empty, filled, groups, logged, put
 from models.oscillator import felt
 from models.runs import Request, Run
+from models.shaking import Shaking
 
 EVENTS = ("onset", "impact", "rest", "overturned")
 LARGEST_PHASE = 0.0075
@@ -105,20 +107,17 @@ def run(block: Block, request: Request, refinement: int = 1) -> Run:
     fixed corners (m). ``initial`` may hold ``peak_rotation_1`` (rad), ``swing_peak_1`` (rad, since the last impact)
     and ``impacts`` before the run, too.
     """
-    shaking = request.shaking
     found, steps = empty(request, r.N_RESULT, 3), 0
     low_pass = np.where(block.pitch_per_acceleration != 0.0, block.pitch_low_pass, 0.0)
     gains = block.oscillator_motion, block.oscillator_force
     drives = (gains[0] != 0.0) | (gains[1] != 0.0)
     driven = [np.where(drives, x, 0.0) for x in (*gains, block.oscillator_frequency, block.oscillator_damping)]
-    steps_of = substeps(block, shaking.time_step) * refinement
+    steps_of = substeps(block, request.shaking.time_step) * refinement
     for (per_sample, corner, *oscillator), lanes in groups(steps_of, low_pass, *driven):
         whole = lanes.size == block.size
         part, asked = (block, request) if whole else (block.take(lanes), request.take(lanes))
-        shaking = felt(request.shaking, *oscillator)
-        asked = replace(asked, shaking=shaking)
-        record = pitched(shaking, per_sample, request.tail, corner)
-        first, last = asked.steps(per_sample, record.end)
+        record, begins = of_lanes(asked.shakings, partial(_record, oscillator, per_sample, request.tail, corner))
+        first, last = asked.steps(per_sample, record.end, begins)
         tables = found if whole else empty(asked, r.N_RESULT, 3)
         general = None if part.plain else 1 if np.any(part.tabulated) else True
         work = BENDING if np.any(np.isfinite(part.first_frequency)) else 1
@@ -130,6 +129,11 @@ def run(block: Block, request: Request, refinement: int = 1) -> Run:
         if not whole:
             put(found, lanes, tables)
     return Run(outputs(block, found.result), found.trace, logged(found, EVENTS), steps)
+
+
+def _record(oscillator: Sequence[float], per_sample: int, tail: float, corner: float, shaking: Shaking) -> Record:
+    """The shaking as it is felt through an oscillator, and the pitch of the base below ``corner`` Hz."""
+    return pitched(felt(shaking, *oscillator), per_sample, tail, corner)
 
 
 def outputs(block: Block, result: NDArray[np.float64]) -> dict[str, NDArray[Any]]:

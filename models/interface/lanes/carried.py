@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import partial
 
 import numpy as np
@@ -18,22 +18,22 @@ from models.interface.lanes.carry import carry as advance
 from models.interface.lanes.effects.given import given_effects
 from models.interface.lanes.effects.rows import N_ENDED
 from models.interface.lanes.laws import HISTORY, given_laws, some
-from models.interface.lanes.run import given_table, low_passes, pitching, step_time, substeps
+from models.interface.lanes.run import given_table, low_passes, record_of, step_time, substeps
 from models.interface.layered import LayeredWall
 from models.lanes.record import of_lanes
 from models.lanes.tables import groups
 from models.runs import DONE, Prescribed
-from models.shaking import Shaking
+from models.shaking import Shakings
 
 
 def carry(
-    wall: LayeredWall, shakings: Sequence[Shaking], along: Prescribed, initial: Mapping[str, FloatArray]
+    wall: LayeredWall, shakings: Shakings, along: Prescribed, initial: Mapping[str, FloatArray]
 ) -> dict[str, FloatArray]:
     """The states that the motion does not hold, and the history of the layers, of n walls at k marks.
 
     As `models.model.Model.carry`.
     """
-    at_rest, effects, time_step = resting.at_rest(wall), wall.effects, shakings[0].time_step
+    at_rest, effects, time_step = resting.at_rest(wall), wall.effects, shakings.first.time_step
     motion, marks, rows, last = along.motion, along.marks, along.rows, along.ends
     rest = at_rest[:, :4]
     begun = {**initial, **{name: x[rows, 0] for name, x in motion.items()}}
@@ -50,9 +50,9 @@ def carry(
         part = wall if lanes.size == wall.size else wall.take(lanes)
         moved, past, more_moved = (np.zeros((lanes.size, *whole.shape[1:])) for whole in (states, history, others))
         more = None if effects is None else given_effects(part, part.effects, _of(begun, lanes), at_rest[lanes])
-        record, begins = of_lanes(shakings, partial(pitching, wall, low_pass=corner))
+        record, begins = of_lanes(shakings.take(lanes), partial(record_of, wall, corner, 0.0))
         advance(
-            record, along.first[lanes] + begins[lanes], last[lanes], given[lanes],
+            record, along.first[lanes] + begins, last[lanes], given[lanes],
             prescribed, rows[lanes], held, marks,
             moved, past, more_moved,
             None if wall.joints == "both" or more is not None else True, None if laws is None else True,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -20,8 +21,8 @@ from models.interface.lanes.laws import given_laws, stored_in_layers
 from models.interface.lanes.sense import SAME_TIME, agree, diverged, pressed
 from models.interface.layered import LayeredWall
 from models.interface.observe import with_onset
-from models.lanes.arrays import Tables
-from models.lanes.record import recorded
+from models.lanes.arrays import Record, Tables
+from models.lanes.record import of_lanes, recorded
 from models.lanes.tables import empty, filled, groups, logged, put
 from models.pitch import pitch
 from models.runs import Request, Run
@@ -129,20 +130,25 @@ def pitching(wall: LayeredWall, shaking: Shaking, low_pass: float) -> Sequence[F
     return pitch(shaking, low_pass) if low_pass > 0.0 else (None, None)
 
 
+def record_of(wall: LayeredWall, low_pass: float, tail: float, shaking: Shaking) -> Record:
+    """The shaking at its samples, then ``tail`` s of rest, with what a base that pitches needs."""
+    return recorded(shaking, 1, tail, pitching(wall, shaking, low_pass))
+
+
 def _advanced(wall: LayeredWall, request: Request, refinement: int, low_pass: float, tables: Tables) -> int:
     """Fill ``tables`` for lanes whose base pitches below ``low_pass`` (Hz; 0: not at all); returns the lane-steps."""
-    shaking, effects = request.shaking, wall.effects
-    record = recorded(shaking, 1, request.tail, pitching(wall, shaking, low_pass))
+    time_step, effects = request.shaking.time_step, wall.effects
+    record, begins = of_lanes(request.shakings, partial(record_of, wall, low_pass, request.tail))
     at_rest = resting.at_rest(wall)
     rest = at_rest[:, :4]
     squares = modes.at_rest(wall).squares
     given = given_table(wall, request.scale, request.initial, rest)
     given[:, r.Q_PERIOD] = 2.0 * np.pi / np.sqrt(np.abs(squares[:, 0]))
-    given[:, r.Q_STEPS] = substeps(wall, squares, shaking.time_step) * refinement
-    laws = given_laws(wall, at_rest, shaking.time_step / given[:, r.Q_STEPS], request.initial)
+    given[:, r.Q_STEPS] = substeps(wall, squares, time_step) * refinement
+    laws = given_laws(wall, at_rest, time_step / given[:, r.Q_STEPS], request.initial)
     more = None if effects is None else given_effects(wall, effects, request.initial, at_rest)
     steps = advance(
-        record, *request.steps(1, record.end), given, tables, request.history,
+        record, *request.steps(1, record.end, begins), given, tables, request.history,
         None if wall.joints == "both" or more is not None else True, None if laws is None else True, laws, more,
     )  # fmt: skip
     if not request.bare:

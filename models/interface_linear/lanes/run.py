@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -22,7 +23,7 @@ from models.interface_linear.declaration import BRIEF
 from models.interface_linear.lanes import rows as r
 from models.interface_linear.lanes.advance import advance
 from models.interface_linear.lanes.propagate import NORM
-from models.lanes.record import recorded
+from models.lanes.record import of_lanes, recorded
 from models.lanes.tables import empty, filled, logged, part
 from models.runs import Request, Run
 
@@ -90,11 +91,11 @@ def run(wall: LayeredWall, request: Request, refinement: int = 1, brief: float =
 
     ``brief``: shortest excursion from the switch of a joint, times the fastest rate; shorter ones are held.
     """
-    record = recorded(request.shaking, 1, request.tail)
+    record, begins = of_lanes(request.shakings, partial(recorded, per_sample=1, tail=request.tail))
     given = given_table(wall, request.scale, request.initial)
     divide(given, wall, request.shaking.time_step, refinement, brief)
     tables = empty(request, kept.N_RESULT, 8)
-    first, last = request.steps(1, record.end)
+    first, last = request.steps(1, record.end, begins)
     steps = 0
     for start in range(0, wall.size, LANES_AT_ONCE):
         some = slice(start, start + LANES_AT_ONCE)

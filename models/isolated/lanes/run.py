@@ -57,10 +57,12 @@ def run(chain: Chain, request: Request, refinement: int = 1) -> Run:
     Lanes of one length and step run together; none depends on the others. A sample holds x, then x', of the most
     levels (0 where there is none), and the bearings' force.
     """
+    if len(request.shakings.each) > 1:
+        raise ValueError("chains on bearings run under one motion")
     n, shaking = chain.size, request.shaking
     displaced, moving = (request.initial.get(name, np.zeros(n)) for name in STATES)
     quiet = int(np.ceil(request.tail / shaking.time_step - 1e-9))
-    first, last = request.steps(1, shaking.horizontal.size - 1 + quiet)
+    first, last = request.steps(1, shaking.horizontal.size - 1 + quiet, np.zeros(n, np.int64))
     found: dict[str, FloatArray] = {}
     trace, steps = np.zeros((n, request.samples, 2 * MOST_LEVELS + 1)), 0
     for (levels,), of_length in groups(chain.levels):

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from models.base import FloatArray
-from models.lanes.record import pitched
+from models.lanes.record import of_lanes, pitched
 from models.lanes.tables import empty, filled, groups, logged, put
 from models.runs import Request, Run
 from models.stacked.account import N_ACCOUNT, outputs
@@ -99,14 +100,15 @@ def run(stack: Stack, request: Request, refinement: int = 1) -> Run:
     Samples: theta_1, r (rad) and their rates (rad s-1).
     """
     found, steps = empty(request, r.N_RESULT, 4), 0
-    shaking = request.shaking
+    time_step = request.shaking.time_step
     low_pass = np.where(stack.pitch_per_acceleration != 0.0, stack.pitch_low_pass, 0.0)
     general = (low_pass > 0.0) | (stack.coulomb > 0.0)
-    for (per_sample, corner, more), lanes in groups(substeps(stack, shaking.time_step) * refinement, low_pass, general):
+    for (per_sample, corner, more), lanes in groups(substeps(stack, time_step) * refinement, low_pass, general):
         whole = lanes.size == stack.size
         part, asked = (stack, request) if whole else (stack.take(lanes), request.take(lanes))
-        record = pitched(shaking, per_sample, request.tail, corner)
-        first, last = asked.steps(per_sample, record.end)
+        make = partial(pitched, per_sample=per_sample, tail=request.tail, low_pass=corner)
+        record, begins = of_lanes(asked.shakings, make)
+        first, last = asked.steps(per_sample, record.end, begins)
         tables = found if whole else empty(asked, r.N_RESULT, 4)
         steps += advance(
             record, first, last, given_table(part, asked.scale, initial_state(asked.initial, part.size)), tables,

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from models.runs import Prescribed
-from models.shaking import Shaking
+from models.shaking import Shaking, Shakings
 from tests.models.interface.carried import AHEAD, COUNT, HELD, MARKS, NOISE, STEP, WALL, recorded, seen
 from tests.models.interface.walls import MODEL
 
@@ -73,7 +73,8 @@ def test_walls_on_bases_that_move_apart_are_carried_as_each_alone() -> None:
     channels = MODEL.simulate(values, shaking()).channels
     motion = {name: channels[name][None] for name in HELD}
     bases = [shaking(), replace(shaking(), horizontal=1.1 * shaking().horizontal)]
-    together = MODEL.carry(values, [bases[0], bases[1], bases[0]], Prescribed(motion, MARKS, np.zeros(3, np.int64)))
+    each_lane = Shakings.of_lanes([bases[0], bases[1], bases[0]])
+    together = MODEL.carry(values, each_lane, Prescribed(motion, MARKS, np.zeros(3, np.int64)))
     each = [MODEL.carry(values, base, Prescribed(motion, MARKS, np.zeros(1, np.int64))) for base in bases]
     for name, x in together.items():
         for k, base in enumerate((0, 1, 0)):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from models.runs import Prescribed
-from models.shaking import Shaking
+from models.shaking import Shaking, Shakings
 from tests.models.interface.carried import AHEAD, COUNT, HELD, MARKS, NOISE, STEP, WALL, recorded, seen
 from tests.models.interface_linear.walls import MODEL
 
@@ -67,7 +67,8 @@ def test_lanes_do_not_depend_on_one_another_and_what_cannot_stand_carries_nothin
     motion = {name: channels[name][None] for name in HELD}
     bases = [base, Shaking(STEP, 1.1 * base.horizontal), base]
     soft = np.array([4.0e7, 4.0e4, 8.0e7])
-    each = MODEL.carry({**WALL, "base_stiffness": soft}, bases, Prescribed(motion, MARKS, np.zeros(3, np.int64)))
+    along = Prescribed(motion, MARKS, np.zeros(3, np.int64))
+    each = MODEL.carry({**WALL, "base_stiffness": soft}, Shakings.of_lanes(bases), along)
     for name, together in each.items():
         assert np.all(np.isnan(together[1]))
         for k in (0, 2):
