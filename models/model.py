@@ -186,9 +186,13 @@ class Model(Placing, ABC, Generic[C]):
     ) -> C:
         """The coefficients with the mechanisms that ``values`` switch on (as ``mechanism.parameter``).
 
-        ``values`` and ``size`` broadcast to the lanes; ``vertical``: whether that motion acts. Raises InputError.
+        ``values`` and ``size`` broadcast to the lanes; ``vertical``: whether that motion acts. Raises InputError, also
+        for a name that the model does not have: it would be left out in silence.
         """
         plain = {name: value for name, value in values.items() if "." not in name}
+        known = [parameter.name for parameter in self.parameters]
+        for name in plain.keys() - set(known):
+            raise InputError(f"{self.name} has no parameter '{name}'; {nearest(name, known)}")
         lanes = int(np.prod(np.broadcast_shapes(*(np.shape(value) for value in values.values()), (size,))))
         chosen = self.resolve_options(options)
         found = applied(self.name, self.assemble(plain, chosen, vertical=vertical, size=lanes), values)

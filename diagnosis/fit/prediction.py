@@ -1,6 +1,6 @@
 """From parameters and window states to what the sensors would have recorded in every window.
 
-All windows, for many parameter points at once: one call of the model for each recording and each motion of the
+All windows, for many parameter points at once, by one call of the model: each lane under the motion of its recording's
 base, which carries the clock of the responses (`grids.instruments.windowed`). Mechanisms with stages act in their
 intervals: a window before or after an instant runs as it is then; one that holds it is cut there and goes on from its
 state (`models.piecewise`), and what instruments do to it changes at that sample.

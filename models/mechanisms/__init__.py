@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import Any, TypeVar
 
 from models.base import Mechanism, Values
-from models.errors import InputError
+from models.errors import InputError, nearest
 from models.mechanisms import (
     added_stiffness,
     bonded_layer,
@@ -82,6 +82,12 @@ def acting_on(model: str) -> Mapping[str, Mechanism]:
     return MappingProxyType({mechanism.name: mechanism for mechanism in MECHANISMS if model in mechanism.acts})
 
 
+@cache
+def names_on(model: str) -> frozenset[str]:
+    """All that values may switch on in a model, as ``mechanism.parameter``."""
+    return frozenset(f"{one.name}.{p.name}" for one in acting_on(model).values() for p in one.addressable(model))
+
+
 def applied(model: str, coefficients: Coefficients, values: Values) -> Coefficients:
     """What the mechanisms that ``values`` switch on (as ``mechanism.parameter``) make of a model's coefficients."""
     switched: dict[str, dict[str, Any]] = {}
@@ -93,6 +99,10 @@ def applied(model: str, coefficients: Coefficients, values: Values) -> Coefficie
     for name in switched:
         if name not in acting:
             raise InputError(f"the mechanism {name} does not act on the model {model}: leave it out")
+        for parameter in switched[name]:
+            if f"{name}.{parameter}" not in names_on(model):
+                known = [p.name for p in acting[name].addressable(model)]
+                raise InputError(f"the mechanism {name} has no parameter '{parameter}'; {nearest(parameter, known)}")
     for name, form in acting.items():
         if name in switched:
             coefficients = form.acts[model](coefficients, {**form.nulls, **switched[name]})

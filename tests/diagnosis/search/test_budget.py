@@ -84,19 +84,18 @@ def test_an_answer_is_given_however_little_work_it_may_take(monkeypatch: pytest.
 
 def test_what_a_lane_step_of_a_wall_takes_is_counted_by_what_acts() -> None:
     model, shaking = models.get("interface"), motion(1, duration=1.0)
+    steps, seconds = DONE.steps, DONE.seconds
+    model.evaluate(SHORT, shaking, np.ones(3), outputs=["status"], tail=0.0)
+    counted = (DONE.seconds - seconds - model.call_time) / (DONE.steps - steps)
 
-    def seconds(**more: float) -> float:
-        before = DONE.seconds
-        model.evaluate({**SHORT, **more}, shaking, np.ones(3), outputs=["status"], tail=0.0)
-        return DONE.seconds - before - model.call_time
+    def step(**more: float) -> float:
+        return model.step_time(model.build({**SHORT, **more}))
 
-    plain, damped, hard = (
-        seconds(),
-        seconds(**{"viscous_damping.couple_damping": 2e4}),
-        seconds(**{"hardening.beta2": 20.0}),
-    )
+    plain, damped = step(), step(**{"viscous_damping.couple_damping": 2e4})
+    hard = step(**{"hardening.beta2": 20.0})
+    assert counted == pytest.approx(plain)
     assert damped > 2.0 * plain and hard > 2.0 * plain
-    assert seconds(**{"viscous_damping.couple_damping": 2e4, "hardening.beta2": 20.0}) > 1.5 * max(damped, hard)
+    assert step(**{"viscous_damping.couple_damping": 2e4, "hardening.beta2": 20.0}) > 1.5 * max(damped, hard)
 
 
 def test_a_step_of_a_bending_wall_counts_as_several() -> None:
