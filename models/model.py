@@ -186,11 +186,10 @@ class Model(Placing, ABC, Generic[C]):
     ) -> C:
         """The coefficients with the mechanisms that ``values`` switch on (as ``mechanism.parameter``).
 
-        ``values`` and ``size`` broadcast to the lanes; ``vertical``: whether that motion acts. Raises InputError, also
-        for a name that the model does not have: it would be left out in silence.
+        ``values`` and ``size`` broadcast to the lanes; ``vertical``: whether that motion acts. Raises InputError, for
+        names that the model does not have too.
         """
-        plain = {name: value for name, value in values.items() if "." not in name}
-        known = [parameter.name for parameter in self.parameters]
+        plain, known = {k: value for k, value in values.items() if "." not in k}, [p.name for p in self.parameters]
         for name in plain.keys() - set(known):
             raise InputError(f"{self.name} has no parameter '{name}'; {nearest(name, known)}")
         lanes = int(np.prod(np.broadcast_shapes(*(np.shape(value) for value in values.values()), (size,))))
@@ -224,8 +223,7 @@ class Model(Placing, ABC, Generic[C]):
                 some = coefficients.take(lanes)
                 return self.observe(some, self.run(integrator, some, part).samples)
 
-            stands = np.full(scale.size, np.nan)
-            found |= peaks(observed, request, wanted, found.get("overturning_time", stands))
+            found |= peaks(observed, request, wanted, found.get("overturning_time", np.full(scale.size, np.nan)))
         return answers(self.outputs, found, outputs)
 
     def trajectories(

@@ -49,5 +49,6 @@ class FakeWall(Housner):
     def build(
         self, values: Values, options: Mapping[str, str] | None = None, *, vertical: bool = False, size: int = 1
     ) -> Block:
-        real = {name: value for name, value in values.items() if name.partition(".")[0] not in ("stop", "slip")}
+        own = ("cover", "stop", "slip")
+        real = {name: value for name, value in values.items() if name.partition(".")[0] not in own}
         return HOUSNER.build(real, options, vertical=vertical, size=size)

@@ -49,12 +49,12 @@ def bends(fitted: Fitted) -> np.ndarray:
 
 
 def test_a_parameter_that_changes_nothing_is_no_obstacle() -> None:
-    """A restitution in a range without a prior, of a joint that never closes in short windows."""
+    """The corner of a pitch that the base does not make, as a restitution of a joint that never closes would be."""
     fitted = stack(5, 6)
-    idle = Unknown("nothing", "1", 0.0, 2.0, 1.0, 1.0)
+    idle = Unknown("table_pitch.low_pass_hz", "Hz", 0.0, 2.0, 1.0, 1.0)
     misfit = replace(fitted.misfit, unknowns=(*fitted.misfit.unknowns, idle))
     wider = replace(fitted, misfit=misfit, u=np.append(fitted.u, 1.0))
-    moved = [point.values["nothing"] for point in changed_points(wider)]
+    moved = [point.values["table_pitch.low_pass_hz"] for point in changed_points(wider)]
     assert moved and np.all(np.isfinite(moved)) and np.ptp(moved) < 1e-6
 
 
