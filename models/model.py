@@ -190,7 +190,7 @@ class Model(Placing, ABC, Generic[C]):
         names that the model does not have too.
         """
         plain, known = {k: value for k, value in values.items() if "." not in k}, [p.name for p in self.parameters]
-        for name in plain.keys() - set(known):
+        for name in (name for name in plain if name not in known):
             raise InputError(f"{self.name} has no parameter '{name}'; {nearest(name, known)}")
         lanes = int(np.prod(np.broadcast_shapes(*(np.shape(value) for value in values.values()), (size,))))
         chosen = self.resolve_options(options)

@@ -119,6 +119,10 @@ class Shakings:
     each: tuple[Shaking, ...]
     of: NDArray[np.int64]
 
+    def __post_init__(self) -> None:
+        if len({(one.time_step, one.vertical is None, one.vertical_acts) for one in self.each}) != 1:
+            raise ValueError("lanes run together under motions of one step, with a vertical motion in all or in none")
+
     @classmethod
     def of_lanes(cls, lanes: Sequence[Shaking]) -> Shakings:
         """Lanes under these motions, the same object in several lanes held once."""
@@ -146,8 +150,9 @@ class Shakings:
         return np.array([one.horizontal.size - 1 for one in self.each], np.int64)[self.of]
 
     def take(self, lanes: Any) -> Shakings:
-        """Those of the lanes of an index array, slice or mask."""
-        return Shakings(self.each, self.of[lanes])
+        """Those of the lanes of an index array, slice or mask; motions that none of them is under are left out."""
+        used, of = np.unique(self.of[lanes], return_inverse=True)
+        return Shakings(tuple(self.each[k] for k in used), of)
 
 
 def _sharpened(samples: NDArray[np.float64]) -> NDArray[np.float64]:

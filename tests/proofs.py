@@ -1,4 +1,4 @@
-"""Long tests that `make proofs` runs; shorter ones of the same, or other cases, are among those of `make test`."""
+"""Long tests that `make proofs` runs; of most of what they show `make test` has shorter tests, or other cases."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ from diagnosis.data.windows import ABOVE_NOISE
 from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.unknowns import instruments_of
 from grids.instruments.staged import moved_in_stages, recorded_in_stages
-from grids.instruments.windowed import seconds_ahead
+from grids.instruments.windowed import samples_ahead
 from models.base import FloatArray
 from models.kinematics import ground_along
 from models.piecewise import trajectories
@@ -48,7 +48,7 @@ def from_rest(predictor: Predictor, point: Point, recording: int, samples: int) 
     instruments = instruments_of(point.values)
     sets = predictor.sets(instruments, taken)
     shaking = moved_in_stages(m.shakings[recording], sets)
-    run = min(samples + int(np.ceil(seconds_ahead(instruments) / taken.time_step)) + 1, shaking.horizontal.size)
+    run = min(samples + samples_ahead(instruments, taken.time_step) + 1, shaking.horizontal.size)
     parts = predictor.parts(point.values, taken)
     first = np.zeros(1, np.int64)
     ran = trajectories(

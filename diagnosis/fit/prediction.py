@@ -1,7 +1,8 @@
 """From parameters and window states to what the sensors would have recorded in every window.
 
-All windows, for many parameter points at once, by one call of the model: each lane under the motion of its recording's
-base, which carries the clock of the responses (`grids.instruments.windowed`). Mechanisms with stages act in their
+All windows, for many parameter points at once. Those that are sampled alike and in which the same things act run in one
+call of the model, each lane under the motion of its recording's base, which carries the clock of the responses
+(`grids.instruments.windowed`). Mechanisms with stages act in their
 intervals: a window before or after an instant runs as it is then; one that holds it is cut there and goes on from its
 state (`models.piecewise`), and what instruments do to it changes at that sample.
 """
@@ -22,7 +23,7 @@ from diagnosis.fit.through import run_through
 from diagnosis.fit.unknowns import instruments_of, without_instruments
 from grids.instruments.base import Switched
 from grids.instruments.staged import Sets, moved_in_stages, recorded_in_stages
-from grids.instruments.windowed import moved_in_windows, recorded_in_windows, same_base, seconds_ahead
+from grids.instruments.windowed import moved_in_windows, recorded_in_windows, same_base, samples_ahead
 from grids.recordings.base import Recording
 from grids.stages import Stage, changes, first_sample
 from models.base import FloatArray
@@ -230,7 +231,7 @@ class Predictor:
         window = np.concatenate([np.tile(one.windows, len(one.members)) for one in parts])
         under = np.repeat(np.arange(len(parts)), [one.size for one in parts])
         compared = np.array([one.samples for one in m.windows])
-        ahead = [int(np.ceil(seconds_ahead(switched) / time_step)) for switched in instruments]
+        ahead = [samples_ahead(switched, time_step) for switched in instruments]
         wanted = compared[window] + np.array(ahead)[point] + any(place.order for place in m.places.values())
         longest, samples = int(compared[window].max()), int(wanted.max())
         first, states = m.first[window], np.stack([one.states for one in points])[point, window]

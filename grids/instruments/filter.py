@@ -123,6 +123,11 @@ def run(system: Discrete, signal: FloatArray, time_step: float, later: int = 0, 
     return np.asarray(passed)[..., count + later : count + later + samples]
 
 
+def reach(values: Values) -> int:
+    """Samples after one that tell the signal around it."""
+    return REACH
+
+
 def delay(values: Values) -> float:
     """Delay (s) of slow signals: b_1/omega_c with b_1 the linear coefficient of the Butterworth polynomial."""
     found = 0.0
@@ -173,7 +178,7 @@ MECHANISM = Mechanism(
         "high_pass_hz": "the response channels went through a causal high-pass of order {order:.0f} at "
         "{high_pass_hz:.3g} Hz"
     },
-    acts={"response": respond, "lag": delay, "windowed": respond_in_windows},
+    acts={"response": respond, "lag": delay, "reach": reach, "windowed": respond_in_windows},
     static_test="look up the filter settings of the logger",
     source="anti-alias and display filters of loggers",
 )  # fmt: skip

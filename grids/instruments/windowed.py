@@ -17,9 +17,12 @@ from models.base import FloatArray
 from models.shaking import Shaking
 
 
-def seconds_ahead(mechanisms: Switched) -> float:
-    """Time in s beyond a window's end for which the instruments need the motion."""
-    return float(sum(one.acts["lag"](values) for one, values in switched_on(mechanisms) if "lag" in one.acts))
+def samples_ahead(mechanisms: Switched, time_step: float) -> int:
+    """Samples beyond a window's end for which the instruments need the motion: it then is the same in any company."""
+    on = switched_on(mechanisms)
+    lag = sum(one.acts["lag"](values) for one, values in on if "lag" in one.acts)
+    reach = max((one.acts["reach"](values) for one, values in on if "reach" in one.acts), default=0)
+    return int(np.ceil(lag / time_step)) + int(reach)
 
 
 def same_base(mechanisms: Switched) -> tuple[object, ...]:

@@ -36,7 +36,7 @@ def test_null_changes_nothing(name: str) -> None:
 def test_declares_what_a_fit_needs(name: str) -> None:
     sensor = INSTRUMENTS[name]
     assert sensor.name == name
-    assert sensor.acts and set(sensor.acts) <= {"base", "clock", "response", "lag", "windowed", "whole"}
+    assert sensor.acts and set(sensor.acts) <= {"base", "clock", "response", "lag", "reach", "windowed", "whole"}
     first = sensor.parameters[0]
     assert first.low < first.high and (np.isinf(first.null) or first.low <= first.null <= first.high)
     assert sensor.sentence.format_map(sensor.nulls)

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 import models
-from models.shaking import KEPT, Shaking
+from models.shaking import KEPT, Shaking, Shakings
 
 
 def test_a_result_is_made_once_and_the_oldest_is_forgotten() -> None:
@@ -75,3 +76,19 @@ def test_straight_lines_stay_as_they_are_and_both_components_are_treated_alike()
     ramp = Shaking(0.01, np.linspace(-1.0, 2.0, 40), band_limited=True).lines.horizontal
     np.testing.assert_allclose(ramp[2:-2], np.linspace(-1.0, 2.0, 40)[2:-2], atol=1e-15)
     assert Shaking(0.01, np.ones(2), band_limited=True).lines.horizontal.tolist() == [1.0, 1.0]
+
+
+def test_lanes_that_are_taken_leave_the_motions_of_others_behind() -> None:
+    """Records are made of what is left: a call with many motions, taken apart lane by lane, would make each of them."""
+    each = tuple(Shaking(0.01, np.full(10 + k, float(k))) for k in range(4))
+    some = Shakings(each, np.array([0, 1, 3, 3, 2])).take(np.array([2, 1, 3]))
+    assert some.each == (each[1], each[3]) and some.of.tolist() == [1, 0, 1]
+    assert some.ends.tolist() == [12, 10, 12]
+    assert Shakings.of_lanes([each[3], each[1], each[3]]).each == (each[3], each[1])
+
+
+def test_lanes_under_motions_of_other_steps_do_not_run_together() -> None:
+    quick, up = Shaking(0.005, np.zeros(9)), Shaking(0.01, np.zeros(9), np.zeros(9))
+    for other in (quick, up):
+        with pytest.raises(ValueError, match="one step"):
+            Shakings((Shaking(0.01, np.zeros(9)), other), np.array([0, 1]))

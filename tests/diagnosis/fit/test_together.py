@@ -55,6 +55,26 @@ def test_points_with_stages_of_their_own_are_predicted_as_by_predictors_with_the
     np.testing.assert_array_equal(predictor.predict([points[1], plain])[1], predictor.predict([plain])[0])
 
 
+def test_a_point_is_predicted_alike_in_any_company() -> None:
+    """Of instruments that move the base otherwise and look ahead further, of recordings sampled otherwise."""
+    slow = recording("b", 2)
+    slow = replace(
+        slow, time_step=2.0 * slow.time_step, time=slow.time[::2],
+        channels={name: x[::2] for name, x in slow.channels.items()},
+    )  # fmt: skip
+    measured = measure(SPECIMEN, [recording("a", 1), slow, recording("c", 3)], reference_peak=0.03)
+    sensors: list[dict[str, float]] = [
+        {}, {"filter.corner_hz": 20.0, "filter.order": 2.0}, {"filter.corner_hz": 9.0, "filter.order": 4.0},
+        {"filter.high_pass_hz": 0.3, "filter.order": 1.0}, {"clock.rate": 2e-3}, {"delay.delay": 0.007},
+        {"filter.corner_hz": 30.0, "filter.order": 2.0, "base_gain.gain": 0.05},
+    ]  # fmt: skip
+    points = [Point({**TRUE, **one}, measured.states + 1e-4 * k) for k, one in enumerate(sensors)]
+    predictor = Predictor(measured)
+    together, mask = predictor.predict(points), measured.mask
+    for one, point in zip(together, points, strict=True):
+        np.testing.assert_allclose(one[mask], predictor.predict([point])[0][mask], rtol=0.0, atol=1e-13)
+
+
 def test_what_a_wall_carries_is_that_of_the_points_stages() -> None:
     measured = wall.measured_of(wall.seen(wall.made(tuple(wall.HARDENING.items())), {}))
     spans = [(2.0, np.inf), (3.1, np.inf), (0.0, 2.6), (0.0, 0.0)]
