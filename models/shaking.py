@@ -126,8 +126,8 @@ class Shakings:
     @classmethod
     def of_lanes(cls, lanes: Sequence[Shaking]) -> Shakings:
         """Lanes under these motions, the same object in several lanes held once."""
-        place = {key: k for k, key in enumerate(dict.fromkeys(id(one) for one in lanes))}
         each = {id(one): one for one in lanes}
+        place = {key: k for k, key in enumerate(each)}
         return cls(tuple(each.values()), np.array([place[id(one)] for one in lanes], np.int64))
 
     @classmethod

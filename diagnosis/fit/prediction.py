@@ -2,9 +2,9 @@
 
 All windows, for many parameter points at once. Those that are sampled alike and in which the same things act run in one
 call of the model, each lane under the motion of its recording's base, which carries the clock of the responses
-(`grids.instruments.windowed`). Mechanisms with stages act in their
-intervals: a window before or after an instant runs as it is then; one that holds it is cut there and goes on from its
-state (`models.piecewise`), and what instruments do to it changes at that sample.
+(`grids.instruments.windowed`). Mechanisms with stages act in their intervals: a window before or after an instant runs
+as it is then; one that holds it is cut there and goes on from its state (`models.piecewise`), and what instruments do
+to it changes at that sample.
 """
 
 from __future__ import annotations
