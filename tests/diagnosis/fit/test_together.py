@@ -75,6 +75,23 @@ def test_a_point_is_predicted_alike_in_any_company() -> None:
         np.testing.assert_allclose(one[mask], predictor.predict([point])[0][mask], rtol=0.0, atol=1e-13)
 
 
+def test_a_filter_looks_ahead_of_the_end_of_a_motion_to_where_the_block_stayed() -> None:
+    """Not to zero rotation: what is recorded in a window at its end is near that of a motion that goes on."""
+    measured = measure(SPECIMEN, [recording("a", 1)], reference_peak=0.03)
+    window, (whole,) = measured.windows[3], measured.shakings
+    cut = replace(whole, horizontal=whole.horizontal[: window.first + window.samples])
+    point, only = (
+        Point({**TRUE, "filter.corner_hz": 9.0, "filter.order": 4.0}, measured.states),
+        np.arange(len(measured.windows)) == 3,
+    )
+    wanted, found = (
+        Predictor(replace(measured, shakings=(motion,))).predict([point], only=only)[0, 3][measured.mask[3]]
+        for motion in (whole, cut)
+    )
+    rate = np.max(np.abs(np.diff(wanted)))
+    assert 0.0 < np.max(np.abs(found - wanted)) < 2.0 * rate < 0.5 * np.abs(wanted[-1])
+
+
 def test_what_a_wall_carries_is_that_of_the_points_stages() -> None:
     measured = wall.measured_of(wall.seen(wall.made(tuple(wall.HARDENING.items())), {}))
     spans = [(2.0, np.inf), (3.1, np.inf), (0.0, 2.6), (0.0, 0.0)]
