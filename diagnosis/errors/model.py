@@ -89,7 +89,12 @@ class Errors:
     @property
     def scatters(self) -> bool:
         """Whether events scatter, and no more than they may."""
-        return REPEATS <= self.scatter < AT_MOST * float(np.sqrt(LARGEST["scatter"]))
+        return REPEATS <= self.scatter < self.most_scatter
+
+    @property
+    def most_scatter(self) -> float:
+        """Scatter from which on it is as large as it may be: then it is a law that differs."""
+        return AT_MOST * float(np.sqrt(LARGEST["scatter"]))
 
     def of_sensors(self, measured: Measured) -> Whitening:
         """The sensors' errors in windows of other recordings; those of channels not known are taken for white."""

@@ -47,13 +47,31 @@ class Whitening:
 
     def __call__(self, difference: FloatArray) -> FloatArray:
         """Whitened residuals (..., W, M) of differences (..., W, C, N)."""
-        flat = self.of_sensors(self.measured.averaged(difference))
+        return self.of_averages(self.measured.averaged(difference))
+
+    def of_averages(self, averages: FloatArray) -> FloatArray:
+        """Whitened residuals (..., W, M) of averages (..., W, C, n)."""
+        flat = self.of_sensors(averages)
         if self.basis is None or self.shrink is None:
             return flat
         rows = np.moveaxis(flat.reshape(-1, *flat.shape[-2:]), 0, -1)
         inside = np.swapaxes(self.basis, 1, 2) @ rows
         rows = rows - self.basis @ (self.shrink[:, :, None] * inside)
         return np.ascontiguousarray(np.moveaxis(rows, -1, 0)).reshape(flat.shape)
+
+    def averages(self, rows: FloatArray) -> FloatArray:
+        """Averages (..., W, C, n) whose residuals are ``rows`` (..., W, M); 0 where nothing is compared."""
+        if self.basis is not None and self.shrink is not None:
+            inside = np.einsum("wmk,...wm->...wk", self.basis, rows, optimize=True)
+            more = self.shrink / (1.0 - self.shrink)
+            rows = rows + np.einsum("wmk,...wk->...wm", self.basis, more * inside, optimize=True)
+        each = rows.reshape(*rows.shape[:-1], *self.sensor.shape[1:3])
+        compared = self.measured.compared
+        if self.sensor.ndim == 3:
+            return np.asarray(np.where(compared, each / np.where(compared, self.sensor, 1.0), 0.0))
+        factor = np.linalg.inv(self.sensor + np.eye(compared.shape[2]) * ~compared[..., None])
+        found = np.einsum("wcij,...wcj->...wci", factor, np.where(compared, each, 0.0), optimize=True)
+        return np.asarray(found)
 
     def of_windows(self, windows: NDArray[np.int64]) -> Whitening:
         """The whitening of some of the windows."""

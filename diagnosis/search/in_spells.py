@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,6 +47,18 @@ class Screened:
     ends: NDArray[np.int64]
     cost: float
 
+    @cached_property
+    def in_runs(self) -> tuple[list[InRuns], ...]:
+        """All mechanisms in all runs, by both screens."""
+        return tuple(in_runs(screen, scores, self.ends) for screen, scores in self.both)
+
+    @cached_property
+    def hides(self) -> bool:
+        """Whether white noise shows more than chance brings under the errors as they are, which may be coloured."""
+        (screen, _), (white, scores) = self.both
+        largest = max((float(one.statistic.max(initial=0.0)) for one in self.in_runs[1]), default=0.0)
+        return largest > chance(white, scores, self.ends, screen)
+
     @classmethod
     def of(cls, found: Search, start: Explanation, scores: Sequence[Score]) -> Screened:
         screen = linearise_about(start.fitted)
@@ -53,21 +66,18 @@ class Screened:
         ends = runs(len(found.measured.windows))
         return cls(((screen, scores), white), ends, price_of_a_spell(screen, scores, ends))
 
-    def in_runs(self) -> list[list[InRuns]]:
-        return [in_runs(screen, scores, self.ends) for screen, scores in self.both]
-
 
 def price_of_a_spell(screen: Linearisation, scores: Sequence[Score], ends: NDArray[np.int64]) -> float:
     """What a spell costs: how much larger chance makes the largest statistic with all runs of windows than without."""
-    return max(0.0, chance(screen, scores, ends).band - null_distribution(screen, scores).band)
+    return max(0.0, chance(screen, scores, ends) - null_distribution(screen, scores).band)
 
 
 def in_spells(found: Search, start: Explanation, screened: Screened) -> list[Explanation]:
     """The explanation with one more mechanism, in its spell, the best first; none that gains too little."""
     ends, cost = screened.ends, screened.cost
-    plain, white = screened.in_runs()
+    plain, white = screened.in_runs
     fits = list(quick(found, start, plain, ends, cost))
-    hidden = list(quick(found, start, white, ends, cost, MOST_HIDDEN))
+    hidden = list(quick(found, start, white, ends, cost, MOST_HIDDEN)) if fits or screened.hides else []
     fits += hidden
     if start is found.base:
         strongest = (one for one in found.singles[:MOST_SINGLES] if found.affordable(at_an_instant(one.names[0])))

@@ -2,7 +2,8 @@
 
 A model declares which ones (`models.identification.Rung`). Each is fitted to the same windows and channels, the
 specimen's parameters with their tolerances carried over and what it has more searched in its ranges. It is tried where
-the base model with the best mechanism leaves more than the sensors' noise. It is named where it explains clearly more
+the base model with the best mechanism leaves more than the sensors' noise and its errors, as estimated, hold a smooth
+error of the model beyond chance, or events that scatter as much as they may. It is named where it explains clearly more
 than the base model with all mechanisms found, each under the errors estimated with itself
 (`diagnosis.errors.comparison`): twice the log likelihood rises by what a further effect must bring, after the other
 model has paid for its parameters and for every state more that it starts a window from, and still does without the
@@ -32,7 +33,7 @@ from diagnosis.progress import Progress
 from diagnosis.search.budget import ENDED, LADDER, Budget
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.details import least
-from diagnosis.search.found import Search, adjusted, left_over_white_noise, price
+from diagnosis.search.found import Search, adequate, adjusted, left_over_white_noise, price
 from diagnosis.search.refit import Explanation, gain_by_window
 from diagnosis.search.weighing import reweighed
 from grids.recordings.base import Recording
@@ -44,6 +45,8 @@ from models.identification import Rung
 
 LEFT = 1.5
 """Misfit per sample, over the sensors' noise, from which on other base models are tried."""
+CHANCE = 0.05
+"""p-value of a smooth error of the model above which coloured noise and scatter of events explain what is left."""
 DECISIVE = 2.0
 """Gain over that of the best single mechanism with which another base model that errs nowhere ends the search."""
 WORSE = "it explains less of the recordings than what was found with the base model"
@@ -94,7 +97,7 @@ def rungs(
     ``held``: recordings held out, which have to hold what the other model starts a window from.
     """
     ladder = found.measured.identification.ladder
-    if not ladder or (left_over_white_noise(found.chosen, found.errors) < LEFT and not inadequacy(found.errors).large):
+    if not ladder or not _asked(found):
         return []
     budget = Budget(LADDER)
     recordings = [*found.measured.recordings, *held]
@@ -114,6 +117,17 @@ def rungs(
             found.not_tried[rung.name] = why
     found.budget = found.budget.after(budget)  # the search's own work goes on where it was
     return tried
+
+
+def _asked(found: Search) -> bool:
+    """Whether what stands leaves more than the sensors' noise, and its errors hold what no sensor explains."""
+    smooth, errors = inadequacy(found.errors), found.errors
+    if smooth.large:
+        return True
+    if left_over_white_noise(found.chosen, errors) < LEFT:
+        return False
+    unlikely = not smooth.judged or smooth.p_value < CHANCE or errors.scatter >= errors.most_scatter
+    return unlikely or not adequate(found.chosen)
 
 
 def climb(found: Search, tried: Sequence[tuple[Rung, Weighed]], *, decisive: bool) -> Climbed | None:

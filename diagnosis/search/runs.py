@@ -16,10 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import chi2
 
 from diagnosis.fit.linearisation import Linearisation
-from diagnosis.search.null import TAIL, Null
 from diagnosis.search.screen import Score
 from models.base import FloatArray
 
@@ -28,6 +26,7 @@ SHORTEST = 2
 FEWEST = 1e-3
 """Information of a run over that of all windows under which it is not tried."""
 DRAWS, AT_ONCE = 1000, 100
+LEVEL = 0.05
 
 
 @dataclass(frozen=True)
@@ -76,17 +75,28 @@ def in_runs(screen: Linearisation, scores: Sequence[Score], ends: NDArray[np.int
     return found
 
 
-def chance(screen: Linearisation, scores: Sequence[Score], ends: NDArray[np.int64], seed: int = 0) -> Null:
-    """What chance alone does to the largest statistic of all mechanisms in all runs: noise drawn and screened alike."""
-    rng = np.random.default_rng(seed)
-    root = np.sqrt(screen.weights)
+def chance(
+    screen: Linearisation, scores: Sequence[Score], ends: NDArray[np.int64], errors: Linearisation | None = None
+) -> float:
+    """What the largest statistic of all mechanisms in all runs exceeds by chance with 5 % probability."""
+    return float(np.quantile(largest_by_chance(screen, scores, ends, errors), 1.0 - LEVEL))
+
+
+def largest_by_chance(
+    screen: Linearisation, scores: Sequence[Score], ends: NDArray[np.int64], errors: Linearisation | None = None
+) -> FloatArray:
+    """Draws of the largest statistic of all mechanisms in all runs: of noise drawn and screened alike.
+
+    ``errors``: the same fit under the errors as they are, if the screen is against others.
+    """
+    rng = np.random.default_rng(0)
     # what priors hold may lie off their means too: without it the base parameters would take up more than they do
     values, vectors = np.linalg.eigh(screen.fitted.misfit.prior_normal(screen.fitted.u)[0])
     of_priors = np.sqrt(np.maximum(values, 0.0)) * vectors
     sums = [_Sums.of(screen, one.column, ends) for one in scores]
     largest = np.zeros(DRAWS)
     for start in range(0, DRAWS, AT_ONCE):
-        noise = root[:, None] * rng.normal(size=(AT_ONCE, *screen.residual.shape))
+        noise = screen.weights[:, None] * _drawn(screen, errors or screen, rng)
         gradient = np.einsum("wmi,swm->si", screen.by_unknown, noise, optimize=True)
         gradient += rng.normal(size=(AT_ONCE, values.size)) @ of_priors.T
         part = slice(start, start + AT_ONCE)
@@ -94,10 +104,18 @@ def chance(screen: Linearisation, scores: Sequence[Score], ends: NDArray[np.int6
             along = np.einsum("wm,swm->sw", one.column, noise, optimize=True)
             amount = over_runs(along, ends) - gradient @ screen.inverse @ of_runs.path.T
             largest[part] = np.maximum(largest[part], of_runs.statistic(amount, one.side).max(axis=1, initial=0.0))
-    draws = np.sort(largest)
-    level = float(np.quantile(draws, 1.0 - TAIL))
-    effective = TAIL / float(chi2.sf(level, 1)) if level > 0.0 else 1.0
-    return Null(draws, max(effective, 1.0))
+    return largest
+
+
+def _drawn(screen: Linearisation, errors: Linearisation, rng: np.random.Generator) -> FloatArray:
+    """Residuals (`AT_ONCE`, W, M) of a screen, of noise as ``errors`` expects it: windows weighed less err more."""
+    drawn = rng.normal(size=(AT_ONCE, *errors.residual.shape)) / np.sqrt(errors.weights)[:, None]
+    if errors is screen:  # the errors that windows share are among its unknowns
+        return drawn
+    of, shared = errors.fitted.misfit.whitening, errors.fitted.misfit.whitening.shared
+    if shared is not None:
+        drawn += np.einsum("wmk,sk->swm", shared, rng.normal(size=(AT_ONCE, shared.shape[2])), optimize=True)
+    return screen.fitted.misfit.whitening.of_averages(of.averages(drawn))
 
 
 @dataclass(frozen=True)

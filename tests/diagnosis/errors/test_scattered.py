@@ -15,6 +15,7 @@ from diagnosis.errors.scattered import Events, known_changes, linear_about
 from diagnosis.fit.intervals import covariances
 from diagnosis.fit.setup import base_fit, measure
 from diagnosis.fit.solver import Fitted
+from diagnosis.fit.whitening import sensor_noise_only
 from grids.recordings.base import Recording
 from models.shaking import Shaking
 from tests.diagnosis import made
@@ -127,3 +128,15 @@ def test_pulses_that_stood_for_what_is_gone_go_too() -> None:
     assert again.measured.as_it_was is None and not found.scatters
     sd = np.sqrt(np.diag(covariances(fitted)[0]))
     assert np.all(np.abs(again.u - fitted.u) < 0.2 * sd)
+
+
+def test_averages_of_residuals_have_these_residuals() -> None:
+    """Of errors that are coloured, scatter and come from the base, and of white ones."""
+    fitted, errors = scene()
+    assert errors.whitening.sensor.ndim == 4 and errors.whitening.basis is not None
+    for whitening in (errors.whitening, sensor_noise_only(fitted.misfit.predictor).with_columns(errors.base)):
+        compared = fitted.measured.compared.reshape(fitted.measured.compared.shape[0], -1)
+        rows = np.random.default_rng(1).normal(size=(3, *compared.shape)) * compared
+        averages = whitening.averages(rows)
+        assert averages.shape[-2:] == fitted.measured.compared.shape[1:]
+        np.testing.assert_allclose(whitening.of_averages(averages), rows, atol=1e-9)

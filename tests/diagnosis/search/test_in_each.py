@@ -124,11 +124,10 @@ def test_instants_that_hardly_count_are_taken_off(monkeypatch: pytest.MonkeyPatc
 
 def test_what_the_budget_does_not_reach_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(beginnings, "RESERVED", 0.0)
-    recordings = [engaged(name, seed, "viscous_damping.rate", 0.6, 0.0) for name, seed in (("a", 1), ("b", 6))]
-    found, yielded = searched(recordings)
+    found, yielded = searched([made("a", 13, []), made("b", 6, [(6.0, {})], 0.06)])
     assert yielded == [] and found.best is None
     assert found.not_tried["effects that come and go in every recording"] == ENDED
-    assert found.not_tried["viscous_damping from or to an instant"] == ENDED
+    assert found.not_tried["offset from or to an instant"] == ENDED
 
 
 def test_the_recordings_ask_for_the_true_intervals_from_wrong_ones(dashpot: tuple[Search, list[Search]]) -> None:

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from diagnosis.search.runs import FEWEST, chance, in_runs, largest_run, runs
+from diagnosis.fit.linearisation import linearise_about
+from diagnosis.search.runs import FEWEST, chance, in_runs, largest_by_chance, largest_run, runs
 from diagnosis.search.screen import score
 from diagnosis.search.spells import Spell, of_windows
 from grids.stages import intervals
@@ -68,13 +69,26 @@ def test_chance_of_one_run_is_that_of_chi_squared_and_grows_with_their_number() 
     measured, screen = opened()
     ends = runs(len(measured.windows))
     plain = [one for one in screened() if one.side == 0][:1]
-    one = chance(screen, plain, ends[:1])
+    one = largest_by_chance(screen, plain, ends[:1])
     for probability in (0.5, 0.8, 0.95):
-        drawn = float(np.quantile(one.draws, probability))
+        drawn = float(np.quantile(one, probability))
         assert chi2.cdf(drawn, 1) == pytest.approx(probability, abs=4 * np.sqrt(probability * (1 - probability) / 1000))
     many = chance(screen, plain, ends)
-    assert many.band > one.band + 2.0
-    assert chance(screen, screened(), ends).band > many.band
+    assert many > chance(screen, plain, ends[:1]) + 2.0
+    assert chance(screen, screened(), ends) > many
+
+
+def test_chance_under_the_errors_of_the_screen_itself_is_the_same_and_grows_with_them() -> None:
+    measured, screen = opened()
+    ends = runs(len(measured.windows))
+    own = chance(screen, screened(), ends)
+    again = linearise_about(screen.fitted)
+    assert again is not screen and chance(screen, screened(), ends, again) == pytest.approx(own, rel=0.08)
+    misfit = screen.fitted.misfit
+    twice = replace(misfit.whitening, sensor=misfit.whitening.sensor / 2.0)
+    loud = replace(screen.fitted, misfit=replace(misfit, whitening=twice))
+    noisy = replace(again, fitted=loud)
+    assert chance(screen, screened(), ends, noisy) == pytest.approx(4.0 * own, rel=0.08)
 
 
 def test_the_largest_run_of_two_windows_at_least_is_the_one_with_the_largest_sum() -> None:
