@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import pytest
@@ -60,7 +61,9 @@ SLOW = (
 """Files and folders that fit recordings, compare whole families of runs, or compile a kernel of their own."""
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    if not any("::" in str(argument) for argument in config.args):
+        refuse_unknown(PROOFS, [item.nodeid.removeprefix("tests/") for item in items])
     listed = [HERE / path for path in SLOW]
     files = {item.path for item in items}  # of thousands of tests a few hundred
     slow = {file for file in files if any(path == file or path in file.parents for path in listed)}
@@ -71,3 +74,14 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.add_marker(pytest.mark.slow)
     # short files last: of two processes neither waits long for the other
     items.sort(key=lambda item: item.get_closest_marker("slow") is None)
+
+
+def refuse_unknown(proofs: Iterable[str], names: Sequence[str]) -> None:
+    """Raises UsageError where a proof is no beginning of a name among the tests of its file, if that was collected."""
+    of_file: dict[str, list[str]] = {}
+    for name in names:
+        of_file.setdefault(name.partition("::")[0], []).append(name)
+    for proof in proofs:
+        collected = of_file.get(proof.partition("::")[0])
+        if collected is not None and not any(name.startswith(proof) for name in collected):
+            raise pytest.UsageError(f"tests/proofs.py: no test is called {proof}")
