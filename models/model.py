@@ -69,7 +69,7 @@ class Model(Placing, ABC, Generic[C]):
     resumes_with: tuple[str, ...] | None = None
     takes_vertical: bool = True
     vertical_by_default: bool = False
-    call_time: float = 1.5e-3
+    call_time: float = 7e-3
 
     # --- what a model gives
 
@@ -147,7 +147,7 @@ class Model(Placing, ABC, Generic[C]):
 
     def step_time(self, coefficients: C) -> float:
         """What a lane-step of the kernel takes a typical core (s), with what a diagnosis makes of its samples."""
-        return 5e-8
+        return 2e-7
 
     def settle(self, run: Run, time_step: float) -> FloatArray:
         """States of a history in which what has overturned stays where it lies; default: as computed."""

@@ -72,4 +72,4 @@ def held(ran: Mapping[str, FloatArray], name: str, last: NDArray[np.int64]) -> F
     samples = np.arange(channel.shape[1])
     if np.all(last >= samples[-1]):
         return channel
-    return np.asarray(np.take_along_axis(channel, np.minimum(samples, last[:, None]), axis=1))
+    return np.asarray(np.where(samples > last[:, None], np.take_along_axis(channel, last[:, None], axis=1), channel))

@@ -7,21 +7,21 @@ from dataclasses import dataclass, field, replace
 
 from models.runs import DONE
 
-MOST = 50.0
+MOST = 90.0
 """s of the search for the first effect."""
-JOINTS = 25.0
+JOINTS = 45.0
 """s for the law of the strongest single at other joints."""
-UNTRIED = 35.0
+UNTRIED = 60.0
 """s for what is left of the screen, in the place of the strongest single."""
-FURTHER = 60.0
+FURTHER = 150.0
 """s for effects beside the first, kept back from all that comes before: where two act, the first explains little."""
-LAST = 25.0
+LAST = 40.0
 """s for others in the place of each of several effects at the end, whatever was spent before."""
-RESERVED = 80.0
+RESERVED = 110.0
 """s for effects that begin or end: they may explain everything."""
-LADDER = 70.0
+LADDER = 90.0
 """s after which no further base model is tried."""
-SEARCH, ANSWER = 150.0, 190.0
+SEARCH, ANSWER = 300.0, 320.0
 """s of all searches together, calibration included, and of an answer with the law in a table that it may lack."""
 ENDED = "the search's budget of work ended before it"
 

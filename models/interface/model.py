@@ -43,7 +43,7 @@ class Interface(Model[LayeredWall]):
     states = declaration.STATES
     identification = IDENTIFICATION
     bodies = 2
-    call_time = 1e-2
+    call_time = 2e-2
     not_placed = ("wall_flexibility",)
     turns_base: tuple[str, ...] = ("table_pitch",)
     vertical_by_default = True

@@ -22,5 +22,5 @@ IDENTIFICATION = Identification(
         integrals=(("level_displacement_x", "level_acceleration_x"),),
     ),
     most_effects=4,
-    further_work=4.0,
+    further_work=3.2,
 )

@@ -35,7 +35,7 @@ class Isolated(Model[Chain]):
     observables = declaration.OBSERVABLES
     states = declaration.STATES
     identification = IDENTIFICATION
-    call_time = 4e-3
+    call_time = 8e-3
     takes_vertical = False
 
     def assemble(self, values: Values, options: Mapping[str, str], *, vertical: bool, size: int) -> Chain:
@@ -47,6 +47,9 @@ class Isolated(Model[Chain]):
     def derive(self, values: Values, options: Mapping[str, str] | None = None) -> dict[str, FloatArray]:
         """Mass, natural frequencies and modal damping at small strain, arrays ``(n,)``."""
         return modes.derived(self.build(values, options))
+
+    def step_time(self, coefficients: Chain) -> float:
+        return 1e-7
 
     def run_lanes(self, coefficients: Chain, request: Request) -> Run:
         from models.isolated.lanes.run import run

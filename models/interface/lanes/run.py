@@ -35,7 +35,7 @@ FINER, FINEST = 4, 16
 """Steps of lanes that are taken again: how much finer than before, and how much finer than the first at most."""
 
 
-PLAIN, WITH_MORE, WITH_BOTH = 2.5e-8, 9.5e-8, 2e-7
+PLAIN, WITH_MORE, WITH_BOTH = 5e-8, 1.9e-7, 4e-7
 """s of a lane-step, of one with laws or effects, and of one with both."""
 
 
