@@ -9,6 +9,7 @@ import pytest
 from scipy.stats import chi2
 
 from diagnosis.fit.linearisation import linearise_about
+from diagnosis.fit.whitening import Whitening
 from diagnosis.search.runs import FEWEST, chance, in_runs, largest_by_chance, largest_run, runs
 from diagnosis.search.screen import score
 from diagnosis.search.spells import Spell, of_windows
@@ -78,17 +79,22 @@ def test_chance_of_one_run_is_that_of_chi_squared_and_grows_with_their_number() 
     assert chance(screen, screened(), ends) > many
 
 
-def test_chance_under_the_errors_of_the_screen_itself_is_the_same_and_grows_with_them() -> None:
+def test_chance_is_that_of_the_errors_as_they_are() -> None:
     measured, screen = opened()
-    ends = runs(len(measured.windows))
-    own = chance(screen, screened(), ends)
-    again = linearise_about(screen.fitted)
-    assert again is not screen and chance(screen, screened(), ends, again) == pytest.approx(own, rel=0.08)
+    ends, scores = runs(len(measured.windows)), screened()
+    own, again = chance(screen, scores, ends), linearise_about(screen.fitted)
     misfit = screen.fitted.misfit
+    assert again is not screen and chance(screen, scores, ends, again) == pytest.approx(own, rel=0.08)
+    assert chance(screen, scores, ends, replace(again, weights=again.weights / 4.0)) == pytest.approx(4 * own, rel=0.08)
+
+    def under(whitening: Whitening) -> float:
+        fitted = replace(screen.fitted, misfit=replace(misfit, whitening=whitening))
+        return chance(screen, scores, ends, replace(again, fitted=fitted))
+
     twice = replace(misfit.whitening, sensor=misfit.whitening.sensor / 2.0)
-    loud = replace(screen.fitted, misfit=replace(misfit, whitening=twice))
-    noisy = replace(again, fitted=loud)
-    assert chance(screen, screened(), ends, noisy) == pytest.approx(4.0 * own, rel=0.08)
+    assert under(twice) == pytest.approx(4.0 * own, rel=0.08)
+    column = scores[0].column[..., None]  # an error that windows share looks as this mechanism does
+    assert under(replace(misfit.whitening, shared=20.0 * column / np.linalg.norm(column))) > 10.0 * own
 
 
 def test_the_largest_run_of_two_windows_at_least_is_the_one_with_the_largest_sum() -> None:
