@@ -24,7 +24,7 @@ from diagnosis.search.runs import InRuns
 from diagnosis.search.screen import score
 from diagnosis.search.select import first_effect, further_effects
 from diagnosis.search.spells import Spell
-from tests.diagnosis.made import SPECIMEN
+from tests.diagnosis.made import SPECIMEN, scattered
 from tests.diagnosis.search.changing import FEW, MODEL, made, searched
 
 
@@ -79,6 +79,18 @@ def test_what_acts_for_too_short_a_time_is_said_and_not_named() -> None:
 def test_nothing_begins_where_nothing_is_missing() -> None:
     _, yielded = searched([made("a", 13, []), made("b", 6, [])])
     assert yielded == []
+
+
+def test_what_white_noise_shows_of_impacts_that_scatter_is_chance_and_of_a_law_that_changes_is_not() -> None:
+    """Both are scatter to the errors about the base."""
+    scatters = searched([scattered("a", 4, 0.02), scattered("b", 13, 0.02)], among=("restitution", "offset"))[0]
+    changed = made("b", 6, [(5.0, {"restitution.factor_on_housner": 0.985})])
+    changing = searched([made("a", 4, []), changed], among=("restitution", "offset"))[0]
+    for found, hides in ((scatters, False), (changing, True)):
+        assert found.errors.scatter > 0.005
+        screened = in_spells.Screened.of(found, found.base, found.scores)
+        largest = max(float(one.statistic.max()) for one in screened.in_runs[1])
+        assert largest > 300.0 and screened.hides is hides
 
 
 def test_what_always_acts_does_not_begin() -> None:

@@ -7,6 +7,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 import models
 from diagnosis.answer.ladder import confirmed, other_model
@@ -21,7 +22,7 @@ from diagnosis.progress import silent
 from diagnosis.report import extend
 from diagnosis.search import ladder
 from diagnosis.search.budget import ENDED, Budget
-from diagnosis.search.found import MISSING, Search
+from diagnosis.search.found import MISSING, Search, left_over_white_noise
 from diagnosis.search.refit import Explanation
 from grids.recordings.base import Recording
 from grids.specimen import Specimen, parse_specimen
@@ -112,7 +113,6 @@ def test_a_block_that_is_one_stays_one_whatever_is_tried(monkeypatch: pytest.Mon
     fitted, errors = calibrated_fit("housner", 2)
     assert fitted.measured.channels == ("rotation_1", "rotation_2")
     found = Search(Explanation((), fitted), (), errors)
-    assert ladder.rungs(found, PIER, [], 0, silent) == [] and not found.not_tried
     monkeypatch.setattr(ladder, "_asked", lambda _: True)
     tried = ladder.rungs(found, PIER, [], 0, silent)
     assert {rung.name for rung, _ in tried} | set(found.not_tried) == {"second_body", "compliant_base"}
@@ -146,6 +146,20 @@ def test_nothing_is_tried_where_the_base_model_explains_the_recordings() -> None
     fitted, errors = calibrated_fit("housner", 2)
     found = Search(Explanation((), fitted), (), errors)
     assert ladder.rungs(found, PIER, [], 0, silent) == [] and not found.not_tried
+
+
+def test_nothing_is_tried_where_noise_that_is_coloured_explains_what_is_left() -> None:
+    """White noise of the sensor would leave more than twice as much; rubber under the pier is asked for."""
+    plain = recorded("housner", 1)
+    peak = float(np.max(np.abs(plain.channels["rotation_1"])))
+    slow = lfilter([np.sqrt(1.0 - 0.9**2)], [1.0, -0.9], np.random.default_rng(5).normal(size=plain.time.size))
+    channels = {**plain.channels, "rotation_1": plain.channels["rotation_1"] + 0.01 * peak * slow}
+    fitted, errors = calibrated(PIER, measure(PIER, [replace(plain, channels=channels)]))
+    found = Search(Explanation((), fitted), (), errors)
+    assert left_over_white_noise(found.base, errors) > 2.0 > ladder.LEFT
+    assert ladder.rungs(found, PIER, [], 0, silent) == [] and not found.not_tried
+    fitted, errors = calibrated_fit("interface", 1)
+    assert ladder._asked(Search(Explanation((), fitted), (), errors))
 
 
 def test_rungs_that_cannot_be_tried_say_why() -> None:
