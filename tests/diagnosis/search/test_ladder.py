@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +13,7 @@ from scipy.signal import lfilter
 
 import models
 from diagnosis.answer.ladder import confirmed, other_model
+from diagnosis.errors.adequacy import Inadequacy
 from diagnosis.errors.model import Errors, calibrated
 from diagnosis.fit.growing import fit_from
 from diagnosis.fit.setup import base_fit, measure
@@ -160,6 +163,28 @@ def test_nothing_is_tried_where_noise_that_is_coloured_explains_what_is_left() -
     assert ladder.rungs(found, PIER, [], 0, silent) == [] and not found.not_tried
     fitted, errors = calibrated_fit("interface", 1)
     assert ladder._asked(Search(Explanation((), fitted), (), errors))
+
+
+@pytest.mark.parametrize(
+    ("left", "deviance", "scatter", "fits", "judged", "asked"),
+    [
+        (3.0, 0.0, 0.01, True, True, False),
+        (3.0, 4.0, 0.01, True, True, True),
+        (3.0, 0.0, 0.03, True, True, True),
+        (3.0, 0.0, 0.01, False, True, True),
+        (3.0, 0.0, 0.01, True, False, True),
+        (1.2, 4.0, 0.03, False, False, False),
+    ],
+)
+def test_what_asks_for_another_base_model(
+    left: float, deviance: float, scatter: float, fits: bool, judged: bool, asked: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A smooth error beyond chance or untold, scatter at its bound, or a misfit; nothing where little is left."""
+    monkeypatch.setattr(ladder, "left_over_white_noise", lambda *_: left)
+    monkeypatch.setattr(ladder, "inadequacy", lambda _: Inadequacy((0.0,), 0.5, deviance, judged))
+    monkeypatch.setattr(ladder, "adequate", lambda _: fits)
+    found: Any = SimpleNamespace(chosen=None, errors=SimpleNamespace(scatter=scatter, most_scatter=0.0285))
+    assert ladder._asked(found) is asked
 
 
 def test_rungs_that_cannot_be_tried_say_why() -> None:
