@@ -37,6 +37,8 @@ PROMISING, AT_STUCK = 2, 6
 SCATTERINGS = 3
 CLEARLY = 1.0
 """What other states must gain in a window."""
+HOPE = 3.0
+"""Times what is ahead if all were linear that a fit may gain: with less than is asked of it, it is given up."""
 NEAR, GOOD = 0.1, 0.75
 """Where all ahead is such a share of the loss the whole step alone is tried, and taken if it gains as much of it."""
 
@@ -206,9 +208,11 @@ class Place:
         return np.asarray(-largest * np.linalg.solve(hessian, gradient[..., None])[..., 0])
 
 
-def fit(misfit: Misfit, u: FloatArray, states: FloatArray, iterations: int = ITERATIONS) -> Fitted:
-    """The minimum of the loss next to (u, states)."""
-    return answered(_fitting(misfit, u, states, iterations), misfit.predictor)
+def fit(
+    misfit: Misfit, u: FloatArray, states: FloatArray, iterations: int = ITERATIONS, most: float = np.inf
+) -> Fitted:
+    """The minimum of the loss next to (u, states), given up on the way where it promises no loss of ``most``."""
+    return answered(_fitting(misfit, u, states, iterations, most), misfit.predictor)
 
 
 def fit_together(
@@ -232,7 +236,9 @@ def fit_together(
     return [found[k] for k in range(len(misfits))]
 
 
-def _fitting(misfit: Misfit, u: FloatArray, states: FloatArray, iterations: int) -> Asking[Fitted]:
+def _fitting(
+    misfit: Misfit, u: FloatArray, states: FloatArray, iterations: int, most: float = np.inf
+) -> Asking[Fitted]:
     u = clip(misfit.unknowns, np.asarray(u, float))
     if not iterations:
         predicted = yield [misfit.point(u, states)]
@@ -240,10 +246,10 @@ def _fitting(misfit: Misfit, u: FloatArray, states: FloatArray, iterations: int)
         return Fitted(misfit, u, states, window, float(window.sum()) + misfit.prior(u))
     place = yield from Place.at(misfit, u, states)
     damping, small, bold = 1.0, 0, True
-    for _ in range(iterations):
+    for turn in range(iterations):
         if not place.fresh:  # derivatives of another place say where to go, not that this is the end
             place = yield from Place.at(place.misfit, place.u, place.states)
-        if place.gain < TOLERANCE:
+        if place.gain < TOLERANCE or (turn and place.loss - HOPE * place.gain > most):
             break
         best, further = 0, None
         if bold and place.gain < NEAR * place.loss:

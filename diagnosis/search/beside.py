@@ -85,8 +85,11 @@ def extended(
     scores: Sequence[Score],
     widely: bool = False,
     but: Candidate | None = None,
+    most: float = np.inf,
 ) -> list[Explanation]:
     """Refits with one more mechanism, ``but`` one that was tried, best first: the strongest of a screen beside it.
+
+    Refits that promise no loss of ``most`` are given up on the way.
 
     ``widely``: those that explain much alone too, from where they stand alone, and second elements of a kind, whatever
     their scores. A law that carries part of what another parameter carried so far (the yielding of a spring and its
@@ -99,18 +102,18 @@ def extended(
     tried = [entry for entry in worth if entry.candidate != but][:SECOND_TRIES]
     for entry in tried:
         if found.affordable(entry.candidate.name):
-            ways = [extend(explanation, entry.candidate, at, QUICK) for at in starts_of(entry, scores)]
+            ways = [extend(explanation, entry.candidate, at, QUICK, most) for at in starts_of(entry, scores)]
             if entry.candidate.mechanism.beside:
-                ways.append(split(explanation, entry.candidate))
+                ways.append(split(explanation, entry.candidate, most))
             fits.append(best_of(ways))
     for element in _second_elements(scores) if widely else ():
         if element not in (but, *(entry.candidate for entry in tried)) and found.affordable(element.name):
-            fits.append(split(explanation, element))
+            fits.append(split(explanation, element, most))
     for single in _strong_alone(found, explanation) if widely else ():
         if not found.affordable(*single.names):
             continue
         try:
-            fits.append(joined(explanation, single))
+            fits.append(joined(explanation, single, most))
         except InputError as refusal:  # it does not act together with an effect of the explanation
             found.not_tried.setdefault(single.names[0], str(refusal))
     fits.sort(key=adjusted)
@@ -122,7 +125,7 @@ def _second_elements(scores: Sequence[Score]) -> list[Candidate]:
     return list({s.candidate.name: s.candidate for s in reversed(scores) if s.candidate.mechanism.beside}.values())
 
 
-def split(explanation: Explanation, candidate: Candidate) -> Explanation:
+def split(explanation: Explanation, candidate: Candidate, most: float = np.inf) -> Explanation:
     """Fit with the element that a further one stands beside split in two: half of it each, the shapes moved apart."""
     f = explanation.fitted
     first = next(c for c in explanation.candidates if c.name == candidate.mechanism.beside)
@@ -136,7 +139,7 @@ def split(explanation: Explanation, candidate: Candidate) -> Explanation:
             value = own.value(float(f.u[at]))
             u[at], start[k] = own.coordinate(value / APART), new.coordinate(value * APART)
     apart = replace(explanation, fitted=replace(f, u=clip(f.misfit.unknowns, u)))
-    return extend(apart, candidate, clip(candidate.unknowns, start), QUICK)
+    return extend(apart, candidate, clip(candidate.unknowns, start), QUICK, most)
 
 
 def _strong_alone(found: Search, explanation: Explanation) -> list[Explanation]:

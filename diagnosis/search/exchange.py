@@ -13,10 +13,10 @@ from diagnosis.progress import Progress
 from diagnosis.search.beside import extended, seconds
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.details import least
-from diagnosis.search.found import Search, adjusted
+from diagnosis.search.found import MISSING, Search, adjusted
 from diagnosis.search.left_out import predicts_worse
 from diagnosis.search.refit import Explanation, again, gain_by_window, over_ranges, reshaped, without
-from diagnosis.search.weighing import weigh_again
+from diagnosis.search.weighing import CLOSE, weigh_again
 
 ROUNDS = 4
 
@@ -36,8 +36,9 @@ def exchanged(found: Search, progress: Progress) -> None:
         if better is None:
             return
         others = frozenset(better.candidates) not in held
+        clearly = adjusted(found.best) - adjusted(better) >= MISSING
         found.best = better
-        if not others:
+        if not (others and clearly):  # what is as good as rivals are asks for no other errors
             return
         found.best = over_ranges(again(reshaped(better)))
         weigh_again(found)
@@ -96,14 +97,17 @@ def _try_others(found: Search, widely: bool) -> None:
     From where the others stand: fitted again without the effect they may move into another valley, as a clock does
     without the filter whose lag it then takes for its own. Where what stands is incomplete, from that valley too.
     First in the place of the effect without which least is lost: it is the least sure, and its refits are the shortest.
+    Refits that do not come near what stands are given up.
     """
     if (best := found.best) is None:
         return
+    creeps = best.measured.stretches is not None  # and what is ahead of a fit tells little of where it ends
+    most = np.inf if creeps else best.loss + CLOSE
     standing = {candidate: without(best, candidate, 0) for candidate in best.removable}
     for candidate, left in sorted(standing.items(), key=lambda entry: entry[1].loss):
         others = frozenset(best.candidates) - {candidate}
         if others not in found.exchanged and found.affordable(f"others in the place of {candidate.name}"):
             for rest in [left, *([without(best, candidate)] if widely else [])]:
-                found.tried += extended(found, rest, seconds(found, rest), widely, but=candidate)
+                found.tried += extended(found, rest, seconds(found, rest), widely, candidate, most)
             if not found.spent:  # else the others are tried when there is work left
                 found.exchanged.add(others)

@@ -224,7 +224,7 @@ def _fitted(
     places = [origins]
     if likely:
         places.append([_with(plain, origin, likely) for origin in origins])
-    fitted = min((fit_from(plain, place, seed) for place in places), key=lambda one: one.loss)
+    fitted = min((fit_from(plain, place, seed, found.loss) for place in places), key=lambda one: one.loss)
     if fitted.loss > found.loss:
         raise InputError(WORSE)
     own = tuple(x for x in plain.unknowns if x.name.startswith(f"{rung.name}."))

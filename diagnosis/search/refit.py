@@ -64,9 +64,16 @@ class Explanation:
 
 
 def extend(
-    explanation: Explanation, candidate: Candidate, start: FloatArray, iterations: int = ITERATIONS
+    explanation: Explanation,
+    candidate: Candidate,
+    start: FloatArray,
+    iterations: int = ITERATIONS,
+    most: float = np.inf,
 ) -> Explanation:
-    """Fit with one more mechanism, from the explanation's optimum and the candidate's ``start``; the best of `ways`."""
+    """Fit with one more mechanism, from the explanation's optimum and the candidate's ``start``; the best of `ways`.
+
+    Given up on the way where it promises no loss of ``most``.
+    """
     base = explanation.fitted
     misfit = replace(
         in_spell(base.misfit, candidate.name, candidate.spell),
@@ -76,7 +83,7 @@ def extend(
     grown = Explanation(
         (*explanation.candidates, candidate), replace(base, misfit=misfit, u=np.concatenate([base.u, start]))
     )
-    return best_of([further(way, iterations) for way in ways(grown)])
+    return best_of([further(way, iterations, most) for way in ways(grown)])
 
 
 def ways(explanation: Explanation) -> list[Explanation]:
@@ -87,20 +94,20 @@ def ways(explanation: Explanation) -> list[Explanation]:
     return [explanation, replace(explanation, fitted=replace(f, misfit=f.misfit.undisturbed))]
 
 
-def further(explanation: Explanation, iterations: int = ITERATIONS) -> Explanation:
+def further(explanation: Explanation, iterations: int = ITERATIONS, most: float = np.inf) -> Explanation:
     """The same model fitted from where it stands."""
     f = explanation.fitted
-    return replace(explanation, fitted=fit(f.misfit, f.u, f.states, iterations))
+    return replace(explanation, fitted=fit(f.misfit, f.u, f.states, iterations, most))
 
 
-def joined(explanation: Explanation, single: Explanation) -> Explanation:
+def joined(explanation: Explanation, single: Explanation, most: float = np.inf) -> Explanation:
     """Fit with the mechanism of a single as it stands alone; the base parameters from the better of both."""
     (candidate,) = single.candidates
     base, alone = explanation.fitted, single.fitted
     theirs = dict(zip((x.name for x in alone.misfit.unknowns), alone.u, strict=True))
     led = np.array([theirs.get(x.name, c) for x, c in zip(base.misfit.unknowns, base.u, strict=True)])
     ways = (explanation, replace(explanation, fitted=replace(base, u=led)))
-    return best_of([extend(way, candidate, single.part(candidate), QUICK) for way in ways])
+    return best_of([extend(way, candidate, single.part(candidate), QUICK, most) for way in ways])
 
 
 def without(explanation: Explanation, candidate: Candidate, iterations: int = ITERATIONS) -> Explanation:
