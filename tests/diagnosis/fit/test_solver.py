@@ -88,3 +88,33 @@ def test_a_fit_near_its_minimum_goes_on_with_the_derivatives_that_it_has(monkeyp
     other, more = asked()
     assert fewer < 0.7 * more
     assert loss < best.loss + 0.05 and other < best.loss + 0.05
+
+
+def test_a_fit_that_promises_less_than_is_asked_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    """And one that reaches it is the same as without."""
+    best = base_fit(SPECIMEN, measure(SPECIMEN, [recording("a", 1)]))
+    runs: list[int] = []
+    run = Predictor.predict
+    monkeypatch.setattr(Predictor, "predict", lambda *asked: runs.append(len(asked[1])) or run(*asked))
+
+    def fitted(away: float, most: float = np.inf) -> tuple[float, int]:
+        """Loss and runs of a fit from rates so many times their scatter away."""
+        runs.clear()
+        states = best.states.copy()
+        states[:, 1] += away * best.measured.state_size[1]
+        return fit(best.misfit, best.u + 0.5, states, most=most).loss, sum(runs)
+
+    near, far = fitted(0.2), fitted(8.0)
+    assert fitted(0.2, near[0] + 1.0) == near and fitted(8.0, far[0] + 1.0) == far
+    loss, took = fitted(8.0, near[0])
+    assert loss > far[0] > near[0] + 1000.0 and took < 0.7 * far[1]
+
+
+def test_a_search_far_from_a_loss_that_it_should_reach_ends_in_short_windows() -> None:
+    plain = of_a_stack().misfit
+    plain = replace(plain, whitening=sensor_noise_only(plain.predictor))
+    found = fit_from(plain, [nominal(plain)])
+    assert fit_from(plain, [nominal(plain)], most=found.loss).loss == found.loss
+    given_up = fit_from(plain, [nominal(plain)], most=0.1 * found.loss)
+    assert given_up.loss > 0.1 * found.loss
+    assert given_up.measured.mask.sum() < 0.6 * found.measured.mask.sum()

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
+import numpy as np
 import pytest
 
+from diagnosis.data.measured import Measured
 from diagnosis.errors.model import disturbance_about, estimate
 from diagnosis.fit.setup import base_fit, measure
 from diagnosis.progress import silent
-from diagnosis.search import exchange, select
+from diagnosis.search import exchange, select, weighing
 from diagnosis.search.beside import extended
 from diagnosis.search.budget import Budget
-from diagnosis.search.candidates import Candidate, candidates
+from diagnosis.search.candidates import candidates
 from diagnosis.search.exchange import exchanged
-from diagnosis.search.found import Search, adjusted
+from diagnosis.search.found import MISSING, Search, adjusted
 from diagnosis.search.refit import Explanation, extend, joined
 from diagnosis.search.screen import Score
 from diagnosis.search.weighing import reweighed
@@ -65,9 +68,9 @@ def test_an_effect_gives_way_to_one_that_explains_more_beside_the_other(
     """And others are tried again beside what stays once its company has changed."""
     asked: list[tuple[str, ...]] = []
 
-    def noted(found: Search, rest: Explanation, scores: list[Score], widely: bool, but: Candidate) -> list[Explanation]:
+    def noted(found: Search, rest: Explanation, scores: list[Score], *how: Any) -> list[Explanation]:
         asked.append(rest.names)
-        return extended(found, rest, scores, widely, but)
+        return extended(found, rest, scores, *how)
 
     monkeypatch.setattr(exchange, "extended", noted)
     best = exchanged_from(found, taken(found, "tilt", "velocity_restitution"))
@@ -96,6 +99,51 @@ def test_no_effect_gives_way_to_one_that_predicts_recordings_left_out_worse(
     assert set(best.names) == {"tilt", "velocity_restitution"}
 
 
+@pytest.mark.parametrize(("short", "weighed"), [(0.5 * MISSING, 0), (2.0 * MISSING, 1)])
+def test_what_is_as_good_as_a_rival_asks_for_no_other_errors(
+    found: Search, monkeypatch: pytest.MonkeyPatch, short: float, weighed: int
+) -> None:
+    """It takes its place all the same."""
+    asked: list[Search] = []
+    monkeypatch.setattr(exchange, "weigh_again", asked.append)
+    monkeypatch.setattr(exchange, "extended", lambda *_: [])
+    true, other = taken(found, *TRUE), taken(found, "tilt", "velocity_restitution")
+    standing = replace(other, fitted=replace(other.fitted, loss=true.loss + short))
+    search = replace(found, best=standing, tried=[true], exchanged=set(), budget=Budget())
+    monkeypatch.setattr(Unfinished, "incomplete", False)
+    monkeypatch.setattr(exchange, "drop", lambda _: None)
+    exchanged(search, silent)
+    assert search.best is not None and set(search.best.names) == set(TRUE)
+    assert len(asked) == weighed
+
+
+def test_refits_far_from_what_stands_are_given_up(found: Search, monkeypatch: pytest.MonkeyPatch) -> None:
+    """None where whole runs are compared: such fits creep."""
+    within: list[float] = []
+    monkeypatch.setattr(exchange, "extended", lambda *how: within.append(how[-1]) or [])
+    true = taken(found, *TRUE)
+    exchanged_from(found, true)
+    assert within and all(true.loss + 10.0 < most < true.loss + 100.0 for most in within)
+    within.clear()
+    for name, stands_in in (("seconds", []), ("without", taken(found, "tilt", "offset")), ("drop", None)):
+        monkeypatch.setattr(exchange, name, lambda *_, stands_in=stands_in: stands_in)
+    monkeypatch.setattr(Measured, "stretches", property(lambda _: ()), raising=False)
+    exchanged_from(found, true)
+    assert within and all(np.isinf(most) for most in within)
+
+
+@pytest.mark.parametrize(("far", "fitted_again"), [(30.0, False), (weighing.FAR, True)])
+def test_several_effects_far_from_what_stands_are_weighed_no_further(
+    found: Search, monkeypatch: pytest.MonkeyPatch, far: float, fitted_again: bool
+) -> None:
+    monkeypatch.setattr(weighing, "FAR", far)
+    true, other = taken(found, *TRUE), taken(found, "tilt", "velocity_restitution")
+    search = replace(found, best=true, tried=[true, other])
+    assert found.gain(other) > weighing.OWN * found.gain(true) and other.loss > true.loss + 2.0 * weighing.CLOSE
+    weighing.weigh_again(search)
+    assert (set(other.names) in [set(one.names) for one in search.tried]) == fitted_again
+
+
 def test_no_effect_is_named_that_the_last_errors_do_not_ask_for(found: Search, monkeypatch: pytest.MonkeyPatch) -> None:
     """However it came in: searches for more are left out here."""
     for more in ("_pairs", "_more", "settle_ties"):
@@ -116,7 +164,7 @@ def test_an_effect_that_is_no_longer_needed_is_dropped(found: Search) -> None:
 
 def test_the_least_sure_effect_is_questioned_first(found: Search, monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[Explanation] = []
-    monkeypatch.setattr(exchange, "extended", lambda found, rest, scores, widely, but: asked.append(rest) or [])
+    monkeypatch.setattr(exchange, "extended", lambda found, rest, *how: asked.append(rest) or [])
     exchanged_from(found, taken(found, *TRUE))
     standing = asked[::2]  # from where the others stand; fitted anew in between, for nothing completes this search
     assert {rest.names for rest in standing} == {(name,) for name in TRUE}
