@@ -30,8 +30,8 @@ SHORTEST, FIRST = 0.2, 0.4
 LEAST = 1.03
 """What all windows together grow by at least in a round."""
 ROUNDS = 8
-FAR = 1.5
-"""Times a loss that a fit should reach, from which on it is given up: freeing stuck windows takes off less."""
+HOPELESS = 2.0
+"""Times a loss that a fit should reach, from which on it is given up: longer windows add to it, stuck ones less."""
 DEVIATIONS = 2.0
 """By which what is fitted is changed; what is out of proportion may weigh as much as the change itself."""
 
@@ -40,13 +40,13 @@ def fit_from(plain: Misfit, origins: Sequence[Origin], seed: int = 0, most: floa
     """The minimum against the sensors' white noise, searched from ``origins`` over what is not known there.
 
     With windows that grow to their lengths where neighbouring trajectories part within one. Where it is far from a loss
-    of ``most``, as shorter windows tell at less cost, it ends there.
+    of ``most``, as shorter windows tell at less cost, it ends there, above that loss.
     """
     shares = SHARES if plain.measured.parts_quickly else ()
     stages = [*(_cut(plain, [share * w.samples for w in plain.measured.windows]) for share in shares), plain]
     found = searched(stages[0], origins, seed)
     for stage in stages:
-        if found.loss > FAR * most:
+        if found.loss > HOPELESS * most:
             break
         found = fit_thoroughly(stage, found.u, found.states)
     return found

@@ -38,7 +38,7 @@ SCATTERINGS = 3
 CLEARLY = 1.0
 """What other states must gain in a window."""
 HOPE = 3.0
-"""Times what is ahead if all were linear that a fit may gain: with less than is asked of it, it is given up."""
+"""Times what is ahead if all were linear that a fit is trusted to gain; one that needs more is given up."""
 NEAR, GOOD = 0.1, 0.75
 """Where all ahead is such a share of the loss the whole step alone is tried, and taken if it gains as much of it."""
 
@@ -182,6 +182,15 @@ class Place:
         states = self.misfit.weights(self.linear.residual) @ np.sum(along**2, axis=1)
         return float(states - inside @ (2.0 * gradient + hessian @ inside))
 
+    @cached_property
+    def promised(self) -> float:
+        """The loss that `HOPE` times what is ahead leads to, were the residuals linear (the loss of each is not)."""
+        change = self.change(0.0)
+        u, misfit = self.moved(change), self.misfit.at_level(self.level(change))
+        step = np.concatenate([u - self.u, change[self.u.size :]])
+        ahead = misfit.losses(self.reduced.residual + self.reduced.by_unknown @ step)
+        return self.loss - HOPE * (self.loss - float(ahead.sum()) - misfit.prior(u))
+
     def change(self, damping: float) -> FloatArray:
         """Of the unknowns and the level of the shared errors, coordinates that push against a bound held."""
         hessian, gradient = self.normals
@@ -211,7 +220,7 @@ class Place:
 def fit(
     misfit: Misfit, u: FloatArray, states: FloatArray, iterations: int = ITERATIONS, most: float = np.inf
 ) -> Fitted:
-    """The minimum of the loss next to (u, states), given up on the way where it promises no loss of ``most``."""
+    """The minimum of the loss next to (u, states); where it promises no loss of ``most``, given up after a step."""
     return answered(_fitting(misfit, u, states, iterations, most), misfit.predictor)
 
 
@@ -245,11 +254,11 @@ def _fitting(
         window = misfit.losses(misfit.whitened(predicted))[0]
         return Fitted(misfit, u, states, window, float(window.sum()) + misfit.prior(u))
     place = yield from Place.at(misfit, u, states)
-    damping, small, bold = 1.0, 0, True
-    for turn in range(iterations):
+    damping, small, bold, moved = 1.0, 0, True, False
+    for _ in range(iterations):
         if not place.fresh:  # derivatives of another place say where to go, not that this is the end
             place = yield from Place.at(place.misfit, place.u, place.states)
-        if place.gain < TOLERANCE or (turn and place.loss - HOPE * place.gain > most):
+        if place.gain < TOLERANCE or (moved and place.promised > most):
             break
         best, further = 0, None
         if bold and place.gain < NEAR * place.loss:
@@ -263,7 +272,7 @@ def _fitting(
             if small >= 2:
                 break
             continue
-        gain, place = place.loss - further.loss, further
+        gain, place, moved = place.loss - further.loss, further, True
         damping = max(damping * (0.3 if best == 0 else 1.0 if best == 1 else 3.0), 1e-6)
         small = small + 1 if gain < TOLERANCE else 0
         if small >= 2:

@@ -15,15 +15,20 @@ from diagnosis.search.candidates import Candidate
 from diagnosis.search.details import least
 from diagnosis.search.found import MISSING, Search, adjusted
 from diagnosis.search.left_out import predicts_worse
-from diagnosis.search.refit import Explanation, again, gain_by_window, over_ranges, reshaped, without
+from diagnosis.search.refit import Explanation, again, from_states_of, gain_by_window, over_ranges, reshaped, without
 from diagnosis.search.weighing import CLOSE, weigh_again
 
 ROUNDS = 4
 
 
 def exchanged(found: Search, progress: Progress) -> None:
-    """Exchange effects until none gets better."""
+    """Exchange effects until none gets better.
+
+    Where an exchange gains clearly the errors are estimated anew at once, and everything is tried again under these;
+    where it gains little, as a filter does in the place of a delay, once at the end.
+    """
     held: set[frozenset[Candidate]] = set()
+    unweighed = False
     for _ in range(ROUNDS):
         drop(found)
         if found.best is None or len(found.best.candidates) < 2:
@@ -32,19 +37,25 @@ def exchanged(found: Search, progress: Progress) -> None:
         progress("trying others in the place of each effect", 0.85)
         incomplete = found.incomplete
         _try_others(found, incomplete)
-        better = _better(found, incomplete)
+        standing, better = found.best, _better(found, incomplete)
         if better is None:
-            return
-        others = frozenset(better.candidates) not in held
-        clearly = adjusted(found.best) - adjusted(better) >= MISSING
+            break
         found.best = better
-        if not (others and clearly):  # what is as good as rivals are asks for no other errors
-            return
+        if frozenset(better.candidates) in held:
+            break
         found.best = over_ranges(again(reshaped(better)))
+        if adjusted(standing) - adjusted(found.best) < MISSING:
+            found.best = min(found.best, from_states_of(standing, [found.best]), key=adjusted)
+            found.tried.append(found.best)
+            unweighed = unweighed or found.best.candidates != standing.candidates
+            continue
         weigh_again(found)
+        unweighed = False
         found.exchanged.clear()  # what was tried beside effects that had not settled tells little
         if frozenset(found.best.candidates) in held:
-            return
+            break
+    if unweighed:
+        weigh_again(found)
 
 
 def _better(found: Search, incomplete: bool) -> Explanation | None:

@@ -74,7 +74,7 @@ class Search:
     passed_over: set[frozenset[Candidate]] = field(default_factory=set)
     """What is likelier than what was taken and does not count: it rests on one window, or is a detail of a law."""
     exchanged: set[frozenset[Candidate]] = field(default_factory=set)
-    """The mechanisms beside which others were tried in the place of one, since the last exchange."""
+    """The mechanisms beside which others were tried in the place of one, under the errors as they are."""
     weighed: Explanation | None = None
     """That with which the errors were estimated."""
     at_null: Search | None = None

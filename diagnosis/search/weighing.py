@@ -11,6 +11,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
+import numpy as np
+
 from diagnosis.errors.model import Errors, refitted
 from diagnosis.fit.solver import Fitted, fit
 from diagnosis.fit.whitening import sensor_noise_only
@@ -23,8 +25,6 @@ NEAR, OWN = 0.3, 0.4
 """Share of the leader's gain from which an explanation is taken along, and from which its own errors are estimated."""
 MOST, MOST_OWN = 6, 4
 TURNS = 2
-FAR = 500.0
-"""What windows that are stuck may cost an explanation: further from the best none is led by others."""
 CLOSE = 30.0
 """Gain from the best within which an explanation is fitted from other sizes, and led by others, too: three times what
 rivals have."""
@@ -66,7 +66,7 @@ def led_by_each_other(judged: Sequence[Judged], found: Search) -> list[Judged]:
 
     Two models of which one is stuck in windows would else be told apart by that.
     """
-    led, near = list(judged), min((one.loss for one in judged), default=0.0) + FAR
+    led, near = list(judged), np.inf
     for _ in range(TURNS):
         moved = False
         for k, one in enumerate(led):
@@ -117,13 +117,10 @@ def weigh_again(found: Search) -> None:
             fitted, errors = refitted(explanation.fitted, found.errors.base, found.errors)
             price = adjusted(explanation) - explanation.loss
             judged.append(Judged(errors.loss + price, replace(explanation, fitted=fitted), errors))
-    judged = led_by_each_other(judged, found)
-    loss, found.best, found.errors = min(judged, key=lambda entry: entry.loss)
+    _, found.best, found.errors = min(led_by_each_other(judged, found), key=lambda entry: entry.loss)
     found.weighed = found.best
     found.base = reweighed(found.base, found.errors)
-    far = (e.candidates for own, e, _ in judged if own > loss + FAR)
-    gone = {found.best.candidates, *(far if size > 1 else ())}  # further effects are sought beside singles that are far
-    others = [reweighed(e, found.errors) for e in near if e.candidates not in gone]
+    others = [reweighed(e, found.errors) for e in near if e.candidates != found.best.candidates]
     others = [from_states_of(e, [found.best]) for e in others]
     close = [e for e in others if adjusted(e) - adjusted(found.best) < CLOSE]
     if close and found.whole.spent:

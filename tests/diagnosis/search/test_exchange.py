@@ -12,7 +12,7 @@ from diagnosis.data.measured import Measured
 from diagnosis.errors.model import disturbance_about, estimate
 from diagnosis.fit.setup import base_fit, measure
 from diagnosis.progress import silent
-from diagnosis.search import exchange, select, weighing
+from diagnosis.search import exchange, select
 from diagnosis.search.beside import extended
 from diagnosis.search.budget import Budget
 from diagnosis.search.candidates import candidates
@@ -99,22 +99,42 @@ def test_no_effect_gives_way_to_one_that_predicts_recordings_left_out_worse(
     assert set(best.names) == {"tilt", "velocity_restitution"}
 
 
-@pytest.mark.parametrize(("short", "weighed"), [(0.5 * MISSING, 0), (2.0 * MISSING, 1)])
-def test_what_is_as_good_as_a_rival_asks_for_no_other_errors(
-    found: Search, monkeypatch: pytest.MonkeyPatch, short: float, weighed: int
+@pytest.mark.parametrize(("gain", "expected"), [(0.5 * MISSING, "ttw"), (2.0 * MISSING, "twtt")])
+def test_errors_are_estimated_anew_at_once_where_an_exchange_gains_clearly(
+    found: Search, monkeypatch: pytest.MonkeyPatch, gain: float, expected: str
 ) -> None:
-    """It takes its place all the same."""
-    asked: list[Search] = []
-    monkeypatch.setattr(exchange, "weigh_again", asked.append)
-    monkeypatch.setattr(exchange, "extended", lambda *_: [])
+    """Else once at the end (t: others tried, w: errors weighed); it takes its place all the same."""
+    asked: list[str] = []
+    monkeypatch.setattr(exchange, "weigh_again", lambda _: asked.append("w"))
+    monkeypatch.setattr(exchange, "extended", lambda *_: asked.append("t") or [])
     true, other = taken(found, *TRUE), taken(found, "tilt", "velocity_restitution")
-    standing = replace(other, fitted=replace(other.fitted, loss=true.loss + short))
-    search = replace(found, best=standing, tried=[true], exchanged=set(), budget=Budget())
+    standing = replace(other, fitted=replace(other.fitted, loss=true.loss + gain))
+    search = replace(
+        found, best=standing, tried=[true], exchanged={frozenset(standing.candidates[:1])}, budget=Budget()
+    )
     monkeypatch.setattr(Unfinished, "incomplete", False)
     monkeypatch.setattr(exchange, "drop", lambda _: None)
     exchanged(search, silent)
     assert search.best is not None and set(search.best.names) == set(TRUE)
-    assert len(asked) == weighed
+    assert "".join(asked) == expected
+
+
+def test_an_exchange_that_is_right_is_not_given_up(found: Search, monkeypatch: pytest.MonkeyPatch) -> None:
+    """However far off it starts, the wrong effect just taken out: it ends where it does without a bound."""
+    within: list[float] = []
+
+    def noted(*how: Any) -> list[Explanation]:
+        within.append(how[-1])
+        bounded, free = extended(*how), extended(*how[:-1])
+        right = [[e for e in each if set(e.names) == set(TRUE)] for each in (bounded, free)]
+        assert len(right[0]) == len(right[1])
+        for one, other in zip(*right, strict=True):
+            assert min(one.loss, within[-1]) == pytest.approx(min(other.loss, within[-1]), abs=1.0)
+        return bounded
+
+    monkeypatch.setattr(exchange, "extended", noted)
+    exchanged_from(found, taken(found, "tilt", "velocity_restitution"))
+    assert within and np.all(np.isfinite(within))
 
 
 def test_refits_far_from_what_stands_are_given_up(found: Search, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -130,18 +150,6 @@ def test_refits_far_from_what_stands_are_given_up(found: Search, monkeypatch: py
     monkeypatch.setattr(Measured, "stretches", property(lambda _: ()), raising=False)
     exchanged_from(found, true)
     assert within and all(np.isinf(most) for most in within)
-
-
-@pytest.mark.parametrize(("far", "fitted_again"), [(30.0, False), (weighing.FAR, True)])
-def test_several_effects_far_from_what_stands_are_weighed_no_further(
-    found: Search, monkeypatch: pytest.MonkeyPatch, far: float, fitted_again: bool
-) -> None:
-    monkeypatch.setattr(weighing, "FAR", far)
-    true, other = taken(found, *TRUE), taken(found, "tilt", "velocity_restitution")
-    search = replace(found, best=true, tried=[true, other])
-    assert found.gain(other) > weighing.OWN * found.gain(true) and other.loss > true.loss + 2.0 * weighing.CLOSE
-    weighing.weigh_again(search)
-    assert (set(other.names) in [set(one.names) for one in search.tried]) == fitted_again
 
 
 def test_no_effect_is_named_that_the_last_errors_do_not_ask_for(found: Search, monkeypatch: pytest.MonkeyPatch) -> None:

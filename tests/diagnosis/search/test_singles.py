@@ -17,7 +17,7 @@ from diagnosis.search.candidates import candidates
 from diagnosis.search.found import Search
 from diagnosis.search.refit import Explanation, extend, from_states_of, with_memory
 from diagnosis.search.select import COSTLY, THRESHOLD, in_turn, led_by, refit_singles
-from diagnosis.search.weighing import FAR, Judged, evidence, led_by_each_other, reweighed
+from diagnosis.search.weighing import Judged, evidence, led_by_each_other, reweighed
 from tests.diagnosis import buildings
 from tests.diagnosis.made import SPECIMEN, recording
 
@@ -78,13 +78,6 @@ def test_what_explains_more_is_told_though_its_fit_was_stuck(free: Search) -> No
     assert judged[0].loss > judged[1].loss
     led = led_by_each_other(judged, free)
     assert led[0].loss < judged[1].loss - 15.0 and led[0].explanation.names == ("delay",)
-
-
-def test_what_is_too_far_for_a_fit_that_is_stuck_is_led_by_no_other(free: Search) -> None:
-    late, gain = sorted(free.singles, key=lambda e: e.names[0] == "gain")
-    errors = estimate(gain.fitted, free.errors.base, free.errors)
-    judged = [Judged(errors.loss + 2.0 * FAR, stuck(late), errors), Judged(errors.loss, gain, errors)]
-    assert led_by_each_other(judged, free)[0].explanation is judged[0].explanation
 
 
 def test_evidence_is_of_the_best_fit_of_an_effect_whatever_its_first_one_was(free: Search) -> None:
