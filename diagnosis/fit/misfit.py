@@ -122,6 +122,11 @@ class Misfit:
         n = self.measured.count
         return np.asarray(NU * n * np.log1p(np.sum(residuals**2, axis=-1) / (NU * n)))
 
+    @property
+    def of_noise(self) -> float:
+        """Loss of all windows if the misfit is that of noise."""
+        return float(NU * np.log1p(1.0 / NU) * np.sum(self.measured.count))
+
     def prior(self, u: FloatArray) -> float:
         """Of the unknowns and of the errors that windows share."""
         return self.prior_of_unknowns(u) + float(self.level @ self.level)

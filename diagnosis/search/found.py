@@ -117,6 +117,12 @@ class Search:
         return not adequate(self.chosen) or errs(self.errors)
 
     @property
+    def explained(self) -> float:
+        """Share that what stands explains of what the base model leaves beyond noise."""
+        gain = max(self.base.loss - self.chosen.loss, 1e-9)
+        return gain / max(self.base.loss - self.base.fitted.misfit.of_noise, gain)
+
+    @property
     def more(self) -> float:
         """What a further effect, or a departure from constancy, must bring."""
         return MISSING + min(DETAIL * max(self.gain(self.chosen), 0.0), MISSING)

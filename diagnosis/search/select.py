@@ -63,6 +63,9 @@ NEAR_HEAVY = 0.3
 COSTLY = "not alone: another explains everything, the screen gives it much less, and its fits take long"
 THRESHOLD = "not alone: it sets in at a threshold, and another explains everything without it"
 FIRST_POOL = 3
+LITTLE = 0.25
+"""Share of what is missing that two effects must explain for one more to be sought beside them."""
+FUTILE = "what was found explains less than a quarter of what is missing"
 
 
 def first_effect(found: Search, progress: Progress) -> Iterator[Search]:
@@ -291,6 +294,9 @@ def _more(found: Search, progress: Progress) -> None:
     """A third effect, by the same rule, unless a law outside the library explains more."""
     most = found.measured.identification.most_effects
     while found.best is not None and 2 <= len(found.best.candidates) < most and found.affordable("a third effect"):
+        if found.measured.stretches is None and found.explained < LITTLE:
+            found.not_tried.setdefault("a third effect", FUTILE)
+            return
         progress("looking for a further effect", 0.8)
         others = seconds(found, found.best)
         if not adequate(found.best):

@@ -152,6 +152,17 @@ def test_refits_far_from_what_stands_are_given_up(found: Search, monkeypatch: py
     assert within and all(np.isinf(most) for most in within)
 
 
+def test_what_stands_explains_a_share_of_what_is_missing(found: Search) -> None:
+    """All of it, a part, nothing; and where the base model leaves noise alone, whatever more is fitted to it."""
+    true, base = taken(found, *TRUE), found.base
+    (spare,) = (one for one in found.candidates if one.name == "offset")
+    assert replace(found, best=true).explained == pytest.approx(1.0, abs=0.1)
+    half = replace(base, fitted=replace(base.fitted, loss=0.5 * (base.loss + true.loss)))
+    assert replace(found, best=half).explained == pytest.approx(0.5, abs=0.05)
+    assert replace(found, best=None).explained < 0.01
+    assert replace(found, base=true, best=extend(true, spare, spare.null)).explained > select.LITTLE
+
+
 def test_no_effect_is_named_that_the_last_errors_do_not_ask_for(found: Search, monkeypatch: pytest.MonkeyPatch) -> None:
     """However it came in: searches for more are left out here."""
     for more in ("_pairs", "_more", "settle_ties"):

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from diagnosis.progress import silent
 from diagnosis.search import select
 
 
@@ -42,3 +43,22 @@ def test_what_gains_too_little_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
     assert select._next(search(True), fit(200.0), [fit(190.0)]) is None
     monkeypatch.setattr(select, "survives", lambda before, after, more: False)
     assert select._next(search(True), fit(200.0), [fit(100.0)]) is None
+
+
+@pytest.mark.parametrize(("explained", "stretches", "sought"), [(0.2, None, False), (0.3, None, True), (0.2, (), True)])
+def test_no_third_effect_is_sought_beside_two_that_explain_little(
+    monkeypatch: pytest.MonkeyPatch, explained: float, stretches: Any, sought: bool
+) -> None:
+    """But where whole runs are compared, which no single law explains."""
+    asked: list[Any] = []
+    monkeypatch.setattr(select, "seconds", lambda found, best: asked.append(best) or [])
+    monkeypatch.setattr(select, "adequate", lambda best: True)
+    monkeypatch.setattr(select, "extended", lambda *_: [])
+    measured = SimpleNamespace(stretches=stretches, identification=SimpleNamespace(most_effects=3))
+    found: Any = SimpleNamespace(
+        best=SimpleNamespace(candidates=(0, 1)), explained=explained, measured=measured, incomplete=True, tried=[],
+        affordable=lambda *_: True, not_tried={},
+    )  # fmt: skip
+    select._more(found, silent)
+    assert bool(asked) == sought
+    assert found.not_tried == ({} if sought else {"a third effect": select.FUTILE})
