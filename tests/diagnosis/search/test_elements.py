@@ -55,7 +55,7 @@ def test_beside_the_first_of_a_kind_the_second_is_tried() -> None:
 def test_split_in_two_the_element_is_where_it_was_before_the_shapes_move_apart(monkeypatch: pytest.MonkeyPatch) -> None:
     """Half of the yielding each, at a third and at three times the compression."""
     _, explained, second = beside_the_first()
-    monkeypatch.setattr("diagnosis.search.beside.extend", lambda apart, candidate, start, _: (apart, candidate, start))
+    monkeypatch.setattr(beside, "extend", lambda *asked: asked[:3])
     apart, candidate, start = split(explained, second)  # type: ignore[misc]
     values = {x.name: x.value(c) for x, c in zip(apart.fitted.misfit.unknowns, apart.fitted.u, strict=True)}
     new = [x.value(c) for x, c in zip(candidate.unknowns, start, strict=True)]
@@ -74,11 +74,11 @@ def test_where_more_than_noise_is_left_no_score_keeps_the_element_from_being_spl
     scores = [Score(c, 900.0 - k, (c.null,), column) for k, c in enumerate(others)]
     scores = sorted([*scores, Score(second, statistic, (second.null,), column)], key=lambda s: -s.statistic)
 
-    def tried(_: Explanation, candidate: Candidate) -> Explanation:
+    def tried(_: Explanation, candidate: Candidate, __: float) -> Explanation:
         asked.append(candidate.name)
         return explained
 
-    monkeypatch.setattr(beside, "extend", lambda apart, candidate, start, _: apart)
+    monkeypatch.setattr(beside, "extend", lambda apart, *_: apart)
     monkeypatch.setattr(beside, "split", tried)
     monkeypatch.setattr(beside, "again", lambda one: one)
     monkeypatch.setattr(beside, "explains_all", lambda _: False)
