@@ -14,7 +14,7 @@ from diagnosis.fit.growing import fit_from
 from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.setup import base_fit, measure, with_noise_of_the_base
-from diagnosis.fit.solver import Fitted, fit, fit_thoroughly
+from diagnosis.fit.solver import ITERATIONS, Fitted, fit, fit_thoroughly
 from diagnosis.fit.starts import nominal
 from diagnosis.fit.unknowns import fixed_values, of_specimen
 from diagnosis.fit.whitening import sensor_noise_only
@@ -97,15 +97,16 @@ def test_a_fit_that_promises_less_than_is_asked_is_given_up(monkeypatch: pytest.
     run = Predictor.predict
     monkeypatch.setattr(Predictor, "predict", lambda *asked: runs.append(len(asked[1])) or run(*asked))
 
-    def fitted(away: float, most: float = np.inf) -> tuple[float, int]:
+    def fitted(away: float, most: float = np.inf, iterations: int = ITERATIONS) -> tuple[float, int]:
         """Loss and runs of a fit from rates so many times their scatter away."""
         runs.clear()
         states = best.states.copy()
         states[:, 1] += away * best.measured.state_size[1]
-        return fit(best.misfit, best.u + 0.5, states, most=most).loss, sum(runs)
+        return fit(best.misfit, best.u + 0.5, states, iterations, most).loss, sum(runs)
 
-    near, far = fitted(0.2), fitted(8.0)
+    near, far, (started, _) = fitted(0.2), fitted(8.0), fitted(8.0, iterations=0)
     assert fitted(0.2, near[0] + 1.0) == near and fitted(8.0, far[0] + 1.0) == far
+    assert fitted(8.0, -np.inf)[0] < 0.9 * started  # one step is taken in any case
     loss, took = fitted(8.0, near[0])
     assert loss > far[0] > near[0] + 1000.0 and took < 0.7 * far[1]
 

@@ -11,8 +11,9 @@ import pytest
 from diagnosis.data.measured import Measured
 from diagnosis.errors.model import disturbance_about, estimate
 from diagnosis.fit.setup import base_fit, measure
+from diagnosis.fit.solver import fit
 from diagnosis.progress import silent
-from diagnosis.search import exchange, select
+from diagnosis.search import beside, exchange, select
 from diagnosis.search.beside import extended
 from diagnosis.search.budget import Budget
 from diagnosis.search.candidates import candidates
@@ -119,9 +120,35 @@ def test_errors_are_estimated_anew_at_once_where_an_exchange_gains_clearly(
     assert "".join(asked) == expected
 
 
+def test_what_was_stuck_in_a_window_is_not_exchanged_for_what_gains_little(
+    found: Search, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Led by the states of what took its place it is likelier again, and the errors are its own already."""
+    for name, stands_in in (("extended", []), ("drop", None), ("weigh_again", None)):
+        monkeypatch.setattr(exchange, name, lambda *_, stands_in=stands_in: stands_in)
+    for name in ("again", "reshaped", "over_ranges"):
+        monkeypatch.setattr(exchange, name, lambda one: one)
+    true, other = taken(found, *TRUE), taken(found, "tilt", "velocity_restitution")
+    states = true.fitted.states.copy()
+    states[:, 1] += 8.0 * true.measured.state_size[1]
+    standing = replace(true, fitted=fit(true.fitted.misfit, true.fitted.u, states))
+    assert standing.loss > true.loss + 2.0 * MISSING
+    little = replace(other, fitted=replace(other.fitted, loss=standing.loss - 0.5 * MISSING))
+    monkeypatch.setattr(Unfinished, "incomplete", False)
+    search = replace(found, best=standing, tried=[little], exchanged=set(), budget=Budget())
+    exchanged(search, silent)
+    assert search.best is not None and set(search.best.names) == set(TRUE)
+    assert search.best.loss == pytest.approx(true.loss, abs=1.0)
+
+
 def test_an_exchange_that_is_right_is_not_given_up(found: Search, monkeypatch: pytest.MonkeyPatch) -> None:
     """However far off it starts, the wrong effect just taken out: it ends where it does without a bound."""
     within: list[float] = []
+    bounds: list[float] = []
+
+    def bounded_by(*how: Any) -> Explanation:
+        bounds.append(how[4] if len(how) > 4 else np.inf)
+        return extend(*how)
 
     def noted(*how: Any) -> list[Explanation]:
         within.append(how[-1])
@@ -133,8 +160,10 @@ def test_an_exchange_that_is_right_is_not_given_up(found: Search, monkeypatch: p
         return bounded
 
     monkeypatch.setattr(exchange, "extended", noted)
+    monkeypatch.setattr(beside, "extend", bounded_by)
+    monkeypatch.setattr(beside, "again", lambda one: one)  # the few best would be taken further all the same
     exchanged_from(found, taken(found, "tilt", "velocity_restitution"))
-    assert within and np.all(np.isfinite(within))
+    assert within and {bound for bound in bounds if np.isfinite(bound)} == set(within)
 
 
 def test_refits_far_from_what_stands_are_given_up(found: Search, monkeypatch: pytest.MonkeyPatch) -> None:

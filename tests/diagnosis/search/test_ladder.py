@@ -30,6 +30,7 @@ from diagnosis.search.refit import Explanation
 from grids.recordings.base import Recording
 from grids.specimen import Specimen, parse_specimen
 from grids.write_specimen import specimen_text
+from models.errors import InputError
 from models.shaking import Shaking
 from tests.diagnosis.made import TIME_STEP, motion
 from tests.diagnosis.report.example import diagnosis
@@ -127,6 +128,23 @@ def test_a_block_that_is_one_stays_one_whatever_is_tried(monkeypatch: pytest.Mon
     assert base.loss - fit_from(two, [nominal(two), ladder._origin(two, base)]).loss < ladder.PER_STATE * states
     assert ladder.climb(found, tried, decisive=False) is None
     assert all(one.over(ladder._as_found(found))[0] < 0.0 for _, one in tried)
+
+
+def test_another_base_model_is_given_up_where_it_is_far_from_what_was_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    fitted, _ = calibrated_fit("housner", 2)
+    rung = next(r for r in fitted.measured.identification.ladder if ladder._meant_for(r, fitted.measured.recordings))
+    base = ladder._plain(Explanation((), fitted))
+    better = replace(base, fitted=replace(base.fitted, loss=0.1 * base.loss))
+    reached: list[Fitted] = []
+
+    def noted(*asked: Any) -> Fitted:
+        reached.append(fit_from(*asked))
+        return reached[-1]
+
+    monkeypatch.setattr(ladder, "fit_from", noted)
+    with pytest.raises(InputError, match=ladder.WORSE):
+        ladder._fitted(rung, PIER, [base], better, fitted.measured.recordings, 0)
+    assert reached and all(one.measured.mask.sum() < 0.6 * fitted.measured.mask.sum() for one in reached)
 
 
 def test_a_rung_goes_on_from_what_the_one_below_has_found() -> None:
