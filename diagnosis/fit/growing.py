@@ -31,7 +31,7 @@ LEAST = 1.03
 """What all windows together grow by at least in a round."""
 ROUNDS = 8
 HOPELESS = 2.0
-"""Times a loss that a fit should reach, from which on it is given up: longer windows add to it, stuck ones less."""
+"""Times a loss that a fit should reach, from which on it is given up: windows freed later at most halve it."""
 DEVIATIONS = 2.0
 """By which what is fitted is changed; what is out of proportion may weigh as much as the change itself."""
 
