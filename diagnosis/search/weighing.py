@@ -26,8 +26,8 @@ NEAR, OWN = 0.3, 0.4
 MOST, MOST_OWN = 6, 4
 TURNS = 2
 CLOSE = 30.0
-"""Gain from the best within which an explanation is fitted from other sizes, and led by others, too: three times what
-rivals have."""
+"""Gain from the best within which an explanation is fitted from other sizes and led by others, and which a refit in the
+place of an effect must promise: three times what rivals have."""
 
 
 def reweighed(explanation: Explanation, errors: Errors) -> Explanation:
