@@ -1,10 +1,12 @@
 """Samples that hold no measurement: spikes, and what a logger held. They are bridged and not compared.
 
-A bridge serves to read off rates and starts; it is no measurement. Channels by level are not looked at.
+A bridge serves to read off rates and starts; it is no measurement. Of channels by level each level is looked at alone,
+and lost under its own name (`grids.recordings.levels`).
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -22,23 +24,33 @@ SHOWN = 3
 
 def with_lost_samples(recording: Recording) -> Recording:
     """The recording with what is lost bridged, in `Recording.lost` and in notes; as it is where nothing is."""
-    channels, lost, notes = dict(recording.channels), dict(recording.lost), []
+    channels, lost = dict(recording.channels), dict(recording.lost)
+    notes: list[str] = []
     for name in recording.responses:
-        if recording.channel(name).unit not in UNITS or channels[name].ndim > 1:
+        if recording.channel(name).unit not in UNITS:
             continue
-        held = stuck(channels[name])
-        whole = _between(channels[name], held)
-        alone = np.setdiff1d(spikes(whole), held)
-        if not held.size and not alone.size:
-            continue
-        channels[name], lost[name] = bridged(whole, alone), np.union1d(held, alone)
+        whole = np.atleast_2d(channels[name]).copy()
+        by_level = channels[name].ndim > 1
+        for k, values in enumerate(whole):
+            held = stuck(values)
+            sound = _between(values, held)
+            alone = np.setdiff1d(spikes(sound), held)
+            if not held.size and not alone.size:
+                continue
+            own = f"{name}_{recording.levels[k]}" if by_level else name
+            whole[k], lost[own] = bridged(sound, alone), np.union1d(held, alone)
+            notes += _notes(recording, own, alone, held)
+        channels[name] = whole if by_level else whole[0]
         channels[name].flags.writeable = False
-        for at, said in ((alone, "stand alone"), (held, "repeat the one before")):
-            if at.size:
-                where = ", ".join(f"{t:.4g} s" for t in recording.time[at[:SHOWN]])
-                more = " ..." if at.size > SHOWN else ""
-                notes.append(f"{at.size} sample(s) of {name} {said} ({where}{more}): they are lost and not compared")
     return replace(recording, channels=channels, lost=lost, notes=(*recording.notes, *notes)) if notes else recording
+
+
+def _notes(recording: Recording, name: str, alone: NDArray[np.intp], held: NDArray[np.intp]) -> Iterator[str]:
+    for at, said in ((alone, "stand alone"), (held, "repeat the one before")):
+        if at.size:
+            where = ", ".join(f"{t:.4g} s" for t in recording.time[at[:SHOWN]])
+            more = " ..." if at.size > SHOWN else ""
+            yield f"{at.size} sample(s) of {name} {said} ({where}{more}): they are lost and not compared"
 
 
 def _between(values: FloatArray, at: NDArray[np.intp]) -> FloatArray:

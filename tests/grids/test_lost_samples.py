@@ -17,6 +17,8 @@ from grids.recordings.lost import with_lost_samples
 from grids.recordings.spikes import spikes
 from grids.recordings.stuck import stuck
 from models.shaking import Shaking
+from tests.diagnosis.buildings import SPECIMEN as BUILDING
+from tests.diagnosis.buildings import made as building
 from tests.diagnosis.made import SPECIMEN, recording
 
 RUN = recording("run", 1)
@@ -106,6 +108,29 @@ def test_wider_gaps_are_left_as_they_are(lost: tuple[int, ...]) -> None:
 def test_a_mean_over_a_lost_sample_is_lost() -> None:
     found = as_means(replace(RUN, lost={"rotation_1": np.array([300, 301, RUN.time.size - 1])}), 4)
     assert found.lost["rotation_1"].tolist() == [75]
+
+
+def test_each_level_of_a_building_loses_samples_of_its_own() -> None:
+    whole = building("small", 1.0, 1)
+    sound = whole.channels["level_displacement_x"][0]
+    rows = np.stack([sound, sound])
+    rows[1, 1000] += 0.5 * np.max(np.abs(sound))
+    found = with_lost_samples(
+        replace(whole, channels={**whole.channels, "level_displacement_x": rows}, levels=("0", "3"))
+    )
+    assert {name: at.tolist() for name, at in found.lost.items()} == {"level_displacement_x_3": [1000]}
+    assert "1 sample(s) of level_displacement_x_3 stand alone (20 s): they are lost" in found.notes[-1]
+    np.testing.assert_array_equal(found.channels["level_displacement_x"][0], sound)
+    np.testing.assert_allclose(found.channels["level_displacement_x"][1, 1000], sound[1000], atol=0.1 * np.std(sound))
+
+
+def test_a_spike_of_a_level_is_not_compared() -> None:
+    whole = building("small", 1.0, 1)
+    rows = whole.channels["level_displacement_x"].copy()
+    rows[0, 1000] += 0.5 * np.max(np.abs(rows))
+    spiked_run = replace(whole, channels={**whole.channels, "level_displacement_x": rows})
+    masks = [measure(BUILDING, [with_lost_samples(one)]).mask for one in (whole, spiked_run)]
+    assert masks[0].sum() - masks[1].sum() == 1
 
 
 def test_samples_that_a_logger_held_are_lost_and_those_at_the_end_of_a_range_are_not() -> None:
