@@ -34,7 +34,7 @@ COMPUTED = Quantity(
     "",
     "1",
     "whether the cell was computed or inferred",
-    "inferred cells lie among computed ones of one outcome: they have a status and hold no other numbers",
+    "inferred cells lie among computed ones of one outcome: they hold status and overturned alone",
     dtype="bool",
 )
 
