@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -322,7 +323,8 @@ class Identification:
 
     def seen(self, observed: Mapping[str, FloatArray]) -> Mapping[str, FloatArray]:
         """The observables of a run, with those that `same` makes of them."""
-        return Observed.joined(observed, {name: observed[of] for name, of in self.same.items()})
+        alike = Observed({name: partial(observed.__getitem__, of) for name, of in self.same.items()})
+        return Observed.joined(observed, alike)
 
     @property
     def free(self) -> tuple[State, ...]:

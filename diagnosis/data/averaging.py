@@ -22,16 +22,24 @@ def stride(time_step: float) -> int:
 
 def averaged(values: FloatArray, strides: NDArray[np.int64]) -> FloatArray:
     """Means (..., W, C, n) of ``strides`` (W,) successive samples (..., W, C, N); 0 beyond the last whole one."""
-    if np.all(strides == 1):
-        return values
-    samples = values.shape[-1]
-    found = np.zeros((*values.shape[:-1], samples // int(strides.min())))
-    for size in np.unique(strides).tolist():
+    sizes = np.unique(strides).tolist()
+    if len(sizes) == 1:
+        return _means(values, sizes[0])
+    found = np.zeros((*values.shape[:-1], values.shape[-1] // sizes[0]))
+    for size in sizes:
         own = np.flatnonzero(strides == size)
-        part = values if own.size == strides.size else values[..., own, :, :]
-        n = samples // size
-        total = part[..., : n * size : size].copy()
-        for k in range(1, size):  # many times as fast as means over a short last axis
-            total += part[..., k : n * size : size]
-        found[..., own, :, :n] = total / size
+        means = _means(values[..., own, :, :], size)
+        found[..., own, :, : means.shape[-1]] = means
     return found
+
+
+def _means(values: FloatArray, size: int) -> FloatArray:
+    """Of ``size`` successive samples (..., N)."""
+    if size == 1:
+        return values
+    last = values.shape[-1] // size * size
+    total = values[..., :last:size].copy()
+    for k in range(1, size):  # many times as fast as means over a short last axis
+        total += values[..., k:last:size]
+    total /= size
+    return total

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -128,11 +128,14 @@ class Measured:
         return {name: known[name] for name in self.channels if name in known}
 
     def sensed(
-        self, ran: Mapping[str, FloatArray], time_step: float, ground: tuple[FloatArray, FloatArray]
+        self, ran: Mapping[str, FloatArray], time_step: float, ground: Callable[[], tuple[FloatArray, FloatArray]]
     ) -> dict[str, FloatArray]:
-        """The compared channels before any instrument, of a run's observables and poses (..., samples)."""
+        """The compared channels before any instrument, of a run's observables and poses (..., samples).
+
+        ``ground`` gives the accelerations of the base, which channels with `places` need.
+        """
         seen, places = self.identification.seen(ran), self.places
-        return {c: places[c].read(seen, time_step, ground) if c in places else seen[c] for c in self.channels}
+        return {c: places[c].read(seen, time_step, ground()) if c in places else seen[c] for c in self.channels}
 
     def around(self, time_step: float, base: FloatArray, start: FloatArray | float = 0.0) -> Surroundings:
         """What instruments need beside the compared channels; ``base`` and ``start``: see `Surroundings`."""

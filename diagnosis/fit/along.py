@@ -49,7 +49,7 @@ class Along:
         found = {name: np.zeros((len(m.windows), m.values.shape[2])) for name in names}
         for r, ran in self.plain.items():
             own = self.windows(r)
-            ground = ground_along(m.shakings[r], m.first[own], m.values.shape[2])
+            ground = partial(ground_along, m.shakings[r], m.first[own], m.values.shape[2])
             sensed = m.sensed(ran, m.recordings[r].time_step, ground)
             for name in names:
                 found[name][own] = sensed[name] if name in sensed else ran[name]
@@ -116,7 +116,7 @@ class Along:
         base = ground_along(ground, first, m.values.shape[2])
         around = m.around(recording.time_step, base[0], start)
         held = Observed({c: partial(_spliced, self.plain[r], ran, c, rows, sample) for c in ran})
-        channels = m.sensed(held, ground.time_step, base)
+        channels = m.sensed(held, ground.time_step, lambda: base)
         found = recorded_in_stages(channels, sets, around, recorded_in_windows)
         return np.stack([found[c] for c in m.channels], axis=1)
 

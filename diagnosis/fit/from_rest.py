@@ -56,7 +56,7 @@ def from_rest(predictor: Predictor, point: Point, recording: int, samples: int) 
         first=first, samples=run, initial={}, options=predictor.options,
     )  # fmt: skip
     along = ground_along(shaking, first, run)
-    true = m.sensed(ran, shaking.time_step, along)
+    true = m.sensed(ran, shaking.time_step, lambda: along)
     around = m.around(taken.time_step, along[0], np.zeros((1, 1)))
     recorded = recorded_in_stages({c: true[c] for c in m.channels}, sets, around)
     return np.stack([np.ravel(recorded[c])[:samples] for c in m.channels])

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -88,8 +88,8 @@ class Predictor:
     ) -> FloatArray:
         """Channels (P, W, C, N) of P points; ``shakings`` replace the measured ones.
 
-        Meaningless but in windows ``only``. Events are as the law has them: where they are known as they were
-        (`AsItWas`), linear about that motion.
+        Meaningless but in windows ``only``, and behind the samples of a window. Events are as the law has them: where
+        they are known as they were (`AsItWas`), linear about that motion.
         """
         m = self.measured
         points = self.declared(points)
@@ -245,16 +245,23 @@ class Predictor:
             np.concatenate([one.instants for one in parts]), shakings, first=first, samples=wanted, initial=initial,
             options=self.options,
         )  # fmt: skip
-        last = np.clip(shakings.ends - first, 0, wanted - 1)
-        seen = Observed({c: partial(held, ran, c, last) for c in ran})
-        along = together_along([one.along(m.first, samples) for one in parts])
-        found = m.sensed(seen, shakings.first.time_step, along)
+        seen: Mapping[str, FloatArray] = ran
+        if any(ahead):  # instruments read beyond what is compared, and beyond the motion's end what it ends with
+            last = np.clip(shakings.ends - first, 0, wanted - 1)
+            seen = Observed({c: partial(held, ran, c, last) for c in ran})
+
+        @cache
+        def along() -> tuple[FloatArray, FloatArray]:
+            return together_along([one.along(m.first, samples) for one in parts])
+
+        true = m.sensed(seen, shakings.first.time_step, along)
         for lanes, sets in self._recorded_alike(points, parts, instruments):
-            true = {c: found[c][lanes] for c in m.channels}
-            around = m.around(time_step, along[0][lanes], time_step * first[lanes, None])
-            recorded = recorded_in_stages(true, sets, around, recorded_in_windows)
+            found = {c: true[c][lanes] for c in m.channels}
+            if any(switched for _, switched in sets):
+                around = m.around(time_step, along()[0][lanes], time_step * first[lanes, None])
+                found = dict(recorded_in_stages(found, sets, around, recorded_in_windows))
             for c, channel in enumerate(m.channels):
-                out[point[lanes], window[lanes], c, :longest] = recorded[channel][..., :longest]
+                out[point[lanes], window[lanes], c, :longest] = found[channel][..., :longest]
 
     def _recorded_alike(
         self, points: Sequence[Point], parts: Sequence[Lanes], instruments: Sequence[Switched]

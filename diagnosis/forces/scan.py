@@ -108,6 +108,9 @@ def _errors(forces: Forces) -> Iterator[FloatArray]:
     """Errors (W, C, N) of the channels: constant, with the signal, its rate, the base motion; in the noise's size."""
     m = forces.fitted.measured
     signal = forces.fitted.misfit.predictor.predict([forces.fitted.point])[0]
+    last = np.array([window.samples - 1 for window in m.windows])  # nothing behind it is a prediction
+    inside = np.minimum(np.arange(signal.shape[2]), last[:, None])
+    signal = np.take_along_axis(signal, inside[:, None, :], axis=2)
     for error in (np.ones_like(signal), signal, np.gradient(signal, axis=2), m.base[:, None, :] + 0.0 * signal):
         size = np.sqrt(np.mean(error**2, axis=(0, 2), where=m.mask))
         yield error / np.maximum(size, 1e-300)[None, :, None] * m.sigma[..., None]
