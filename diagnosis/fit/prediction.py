@@ -246,7 +246,8 @@ class Predictor:
             options=self.options,
         )  # fmt: skip
         seen: Mapping[str, FloatArray] = ran
-        if any(ahead):  # instruments read beyond what is compared, and beyond the motion's end what it ends with
+        # instruments read beyond what is compared, and beyond the motion's end what it ends with; a cut run ends in nan
+        if any(ahead) or len(parts[0].ways[0]) > 1:
             last = np.clip(shakings.ends - first, 0, wanted - 1)
             seen = Observed({c: partial(held, ran, c, last) for c in ran})
 
