@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -48,3 +49,22 @@ def test_an_effect_throughout_is_found_in_all_windows() -> None:
 def test_noise_alone_is_rarely_anything() -> None:
     alarms = sum(missing(about({}, slice(0, 0), seed), seed) is not None for seed in range(12))
     assert alarms <= 3  # .05 of 12 is .6, with probability .997 at most 3
+
+
+def test_what_lies_behind_a_window_has_no_say(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An error of the sensor with the rate is found, with the same evidence whatever follows a window's last sample."""
+    measured = measure(SPECIMEN, [recording("a", 1), recording("b", 2)])
+    plain = Predictor(measured).predict([Point(TRUE, measured.states)])[0]
+    noise = np.random.default_rng(0).normal(size=plain.shape) * measured.sigma[..., None]
+    late = 3.0 * np.gradient(plain, axis=-1)
+    fitted = at_truth(replace(measured, values=np.where(measured.mask, plain + noise + late, 0.0)))
+    found, predict = missing(forces(fitted)), Predictor.predict
+    assert found is not None and not found.kind
+
+    def and_nonsense(self: Predictor, *given: Any, **named: Any) -> np.ndarray:
+        return np.where(self.measured.mask, predict(self, *given, **named), 1.0)
+
+    about = forces(fitted)
+    monkeypatch.setattr(Predictor, "predict", and_nonsense)
+    again = missing(about)
+    assert again is not None and again.statistic == pytest.approx(found.statistic, rel=1e-9)
