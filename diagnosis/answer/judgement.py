@@ -96,14 +96,15 @@ def p_of_missing(
 ) -> float | None:
     """p-value of "something is missing"; None if a search was stopped early.
 
-    Of the strongest effect, else of the strongest suspect, or that of `p_of_doubts`, if less.
+    Of the strongest effect or that of `p_of_doubts`, if less. Without an effect that of the doubts, which say that the
+    model lacks something: a suspect refused, as it rests on one window, says no such thing. Else of that suspect.
     """
     least = p_of_doubts(found, left, flagged, unfit)
     if gains:
         return min([*p_of_effects(found, gains, found.chosen.candidates), *least])
     if found.null is None or not finished:
         return None
-    return min([p_value(found, max((found.gain(e) for e in found.singles), default=0.0)), *least])
+    return min(least) if least else p_value(found, max((found.gain(e) for e in found.singles), default=0.0))
 
 
 def p_of_doubts(found: Search, left: Inadequacy, flagged: Sequence[Constancy], unfit: Sequence[Unfit]) -> list[float]:

@@ -71,6 +71,14 @@ def test_what_is_not_the_same_everywhere_is_as_unlikely_as_its_evidence() -> Non
     assert judgement.p_of_missing(found, [], SMALL, (one,), (), True) == NULL.p_value(17.0) < 0.05
 
 
+def test_a_suspect_that_is_refused_does_not_make_a_faint_doubt_certain() -> None:
+    """It rests on one window, by far beyond chance; what speaks against the model is hardly."""
+    found = search(explanation([100.0, 100.0, 100.0, 40.0], candidate("a")))
+    faint = Constancy("restitution", "amplitude", 17.0)
+    assert judgement.p_of_missing(found, [], SMALL, (), (), True) == LEAST_P
+    assert judgement.p_of_missing(found, [], SMALL, (faint,), (), True) == NULL.p_value(17.0) > LEAST_P
+
+
 def test_what_a_stopped_search_did_not_test_has_no_p_value() -> None:
     single = explanation([90.0] * 4, candidate("a"))
     assert judgement.p_of_missing(search(single), [], SMALL, (), (), finished=False) is None
