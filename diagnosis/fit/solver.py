@@ -89,7 +89,7 @@ def fit_thoroughly(misfit: Misfit, u: FloatArray, states: FloatArray) -> Fitted:
         scattered = scatter(found, seed)
         if scattered is None:
             break
-        found = fit(misfit, found.u, scattered)
+        found = fit(found.misfit, found.u, scattered)
     return found
 
 

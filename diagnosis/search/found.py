@@ -35,14 +35,14 @@ DETAIL = 0.0025
 """Share of the evidence that the details of a named effect's law may leave: 5 % of its amplitude; MISSING at most."""
 GAP = 10.0
 """Rivals: all within this gain of the best."""
+BEHIND = 100.0
+"""Loss behind what explains everything from which an explanation is no rival under other errors either."""
 PER_SHAPE = 2.0
 """What every unknown beyond the first costs a mechanism."""
 ADEQUATE = 1.08
 """Misfit per sample under which an explanation is adequate."""
 ALONE, SETTLED, BADLY = 4.0, 1.3, 3.0
 """When one window may decide: its gain in thresholds, its misfit per sample with the mechanism and without."""
-
-
 STUCK = 1.0
 """Gain by which a fit has left the valley in which it was."""
 
@@ -259,6 +259,16 @@ def adequate(explanation: Explanation) -> bool:
 def explains_all(explanation: Explanation) -> bool:
     """Whether no window is badly off either: a peak that was clipped may be the only one."""
     return adequate(explanation) and bool(np.max(by_window(explanation)) < BADLY)
+
+
+def enough(found: Search) -> float:
+    """Loss from which a single is no rival of those that explain everything; infinite where none does."""
+    return min((adjusted(single) for single in found.singles if explains_all(single)), default=np.inf) + BEHIND
+
+
+def within_reach(explanation: Explanation, leader: Explanation) -> bool:
+    """Whether it may still turn out better than a ``leader`` that explains everything: it is not `BEHIND` that."""
+    return not explains_all(leader) or adjusted(explanation) < adjusted(leader) + BEHIND
 
 
 class Near(NamedTuple):

@@ -11,7 +11,7 @@ from diagnosis.data.measured import Measured
 from diagnosis.fit.memory import counted
 from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.solver import ITERATIONS, Fitted, fit, fit_thoroughly, from_states
-from diagnosis.fit.starts import Origin, searched
+from diagnosis.fit.starts import Origin, nominal, searched
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.spells import in_spell
 from models.base import FloatArray
@@ -92,6 +92,17 @@ def ways(explanation: Explanation) -> list[Explanation]:
     if f.measured.as_it_was is None:
         return [explanation]
     return [explanation, replace(explanation, fitted=replace(f, misfit=f.misfit.undisturbed))]
+
+
+def as_declared(explanation: Explanation) -> Explanation:
+    """The same model at the specimen's own numbers and the measured states, not fitted.
+
+    A fit that lacks something adjusts what it has, numbers to their bounds and states to other motions; that may be
+    further from the truth than where it began.
+    """
+    f = explanation.fitted
+    start = nominal(f.misfit)
+    return replace(explanation, fitted=fit(f.misfit, start.u, start.states, 0))
 
 
 def further(explanation: Explanation, iterations: int = ITERATIONS, most: float = np.inf) -> Explanation:

@@ -7,6 +7,7 @@ there. What counts is in `diagnosis.search.found`.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from math import isfinite
 
 from diagnosis.errors.model import estimate
 from diagnosis.fit.linearisation import linearise_about
@@ -25,7 +26,17 @@ from diagnosis.search.budget import FURTHER, JOINTS, LAST, UNTRIED
 from diagnosis.search.candidates import Candidate, firsts
 from diagnosis.search.details import least
 from diagnosis.search.exchange import drop, exchanged
-from diagnosis.search.found import GAP, MISSING, STUCK, Search, adequate, adjusted, explains_all, survives
+from diagnosis.search.found import (
+    GAP,
+    MISSING,
+    STUCK,
+    Search,
+    adequate,
+    adjusted,
+    enough,
+    survives,
+    within_reach,
+)
 from diagnosis.search.hidden import hidden_beside, hidden_by_errors, take_hidden
 from diagnosis.search.joints import at_other_joints
 from diagnosis.search.left_out import predicts_worse
@@ -35,9 +46,11 @@ from diagnosis.search.refit import (
     QUICK,
     Explanation,
     again,
+    as_declared,
     best_of,
     extend,
     from_other,
+    further,
     over_ranges,
     reshaped,
     with_memory,
@@ -128,6 +141,7 @@ def refit_singles(found: Search, progress: Progress) -> None:
 
     The leader is taken further: over its ranges, to other joints, and against what the budget left untried.
     """
+    begins = _begin(found)
     opened = linearise_about(found.base.fitted)
     found.scores = score(opened, firsts(found.candidates), found.not_tried)
     found.null = null_distribution(opened, found.scores)
@@ -143,7 +157,8 @@ def refit_singles(found: Search, progress: Progress) -> None:
     wanted = in_turn(wanted, [entry for entry in found.scores if entry.candidate in late], found.scores)
     largest = max((entry.statistic for entry in wanted), default=0.0)
     for k, entry in enumerate(wanted):
-        explained = any(explains_all(single) for single in found.singles)
+        most = enough(found)
+        explained = isfinite(most)
         if explained and heavy(entry, found.scores) and entry.statistic < NEAR_HEAVY * largest:
             found.not_tried.setdefault(entry.candidate.name, COSTLY)
             continue
@@ -151,13 +166,15 @@ def refit_singles(found: Search, progress: Progress) -> None:
             left.append(entry)
             continue
         progress(f"refitting {entry.candidate.name}", 0.15 + 0.3 * k / len(wanted))
-        fits = [extend(found.base, entry.candidate, start, QUICK) for start in starts_of(entry, found.scores)]
+        starts = starts_of(entry, found.scores)
+        fits = [extend(begin, entry.candidate, start, QUICK, most) for begin in begins for start in starts]
         if entry.candidate in late and not explained:
             fits += from_measured(found.base, entry.candidate)
         elif entry.candidate in late and not fits:
             found.not_tried.setdefault(entry.candidate.name, THRESHOLD)
         if fits:
-            found.singles.append(by_white_noise(best_of(fits), found.errors))
+            single = best_of(fits)
+            found.singles.append(by_white_noise(single, found.errors) if single.loss < most else single)
     for single in found.singles:  # in another variant
         if found.not_tried.get(single.names[0]) in (COSTLY, THRESHOLD):
             del found.not_tried[single.names[0]]
@@ -181,12 +198,29 @@ def refit_singles(found: Search, progress: Progress) -> None:
     leader = found.singles[0]
     near = NEAR_ADEQUATE if adequate(leader) else NEAR
     for k, single in enumerate(found.singles[1:], start=1):
-        if found.gain(single) > near * found.gain(leader) and found.affordable(single.names[0]):
-            found.singles[k] = from_other(again(single) if k < THOROUGH else single, leader)
+        if found.gain(single) <= near * found.gain(leader) or not found.affordable(single.names[0]):
+            continue
+        single = from_other(single, leader)
+        found.singles[k] = again(single) if k < THOROUGH and within_reach(single, leader) else single
     least = NEAR * found.gain(leader)  # of a law with a memory counts along its own motion may add much
     found.singles = [with_memory(single) if found.gain(single) > least else single for single in found.singles]
     found.singles.sort(key=adjusted)
     found.tried += found.singles
+
+
+def _begin(found: Search) -> list[Explanation]:
+    """Where refits of singles begin: from the base model, and from the specimen as it is declared.
+
+    The base is taken to where it is fitted from there if that is better: then it alone.
+    """
+    if found.measured.stretches is not None or adequate(found.base):
+        return [found.base]
+    declared = as_declared(found.base)
+    restarted = further(declared)
+    if restarted.loss > found.base.loss:
+        return [found.base, declared]
+    found.base = restarted
+    return [restarted]
 
 
 def in_turn(wanted: Sequence[Score], late: Sequence[Score], scores: Sequence[Score]) -> list[Score]:
@@ -303,11 +337,11 @@ def _more(found: Search, progress: Progress) -> None:
             found.outside = outside(found, found.best, others)
             if found.outside is not None:
                 return
-        further = extended(found, found.best, others, found.incomplete)
-        if not further:
+        more = extended(found, found.best, others, found.incomplete)
+        if not more:
             return
-        found.tried += further
-        best = _next(found, found.best, further)
+        found.tried += more
+        best = _next(found, found.best, more)
         if best is None:
             return
         found.best = best

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 from diagnosis.search.beside import starts_of
 from diagnosis.search.budget import ENDED
-from diagnosis.search.found import Search, adjusted
+from diagnosis.search.found import Search, adjusted, enough
 from diagnosis.search.refit import QUICK, again, best_of, extend, over_ranges, without
 from diagnosis.search.screen import Score
 from diagnosis.search.weighing import by_white_noise
@@ -26,9 +26,11 @@ def in_its_place(found: Search, left: Sequence[Score]) -> None:
         name = entry.candidate.name
         if name in leader.names or not found.affordable(name):
             continue
-        fits = [extend(standing, entry.candidate, start, QUICK) for start in starts_of(entry, found.scores)]
+        most = enough(found)
+        fits = [extend(standing, entry.candidate, start, QUICK, most) for start in starts_of(entry, found.scores)]
         if fits:
-            found.singles.append(by_white_noise(best_of(fits), found.errors))
+            single = best_of(fits)
+            found.singles.append(by_white_noise(single, found.errors) if single.loss < most else single)
             if found.not_tried.get(name) == ENDED:
                 del found.not_tried[name]
     found.singles.sort(key=adjusted)

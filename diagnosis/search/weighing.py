@@ -11,14 +11,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-import numpy as np
-
 from diagnosis.errors.model import Errors, refitted
-from diagnosis.fit.solver import Fitted, fit
+from diagnosis.fit.solver import HOPE, Fitted, fit
 from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.search.budget import ENDED
 from diagnosis.search.candidates import Candidate
-from diagnosis.search.found import STUCK, Search, adjusted
+from diagnosis.search.found import STUCK, Search, adjusted, within_reach
 from diagnosis.search.refit import Explanation, best_of, from_states_of, further, resized, ways, without
 
 NEAR, OWN = 0.3, 0.4
@@ -66,24 +64,22 @@ def led_by_each_other(judged: Sequence[Judged], found: Search) -> list[Judged]:
 
     Two models of which one is stuck in windows would else be told apart by that.
     """
-    led, near = list(judged), np.inf
+    led = list(judged)
     for _ in range(TURNS):
-        moved = False
+        moved, least = False, min(one.loss for one in led)
         for k, one in enumerate(led):
             if found.whole.spent:
                 return led
-            if one.loss > near:
-                continue
             others = [other.explanation for i, other in enumerate(led) if i != k]
             explanation = from_states_of(one.explanation, others)
-            if explanation.loss >= one.explanation.loss - STUCK:
+            gain = one.explanation.loss - explanation.loss
+            if gain <= STUCK or one.loss - HOPE * gain > least + CLOSE:
                 continue
             fitted, errors = refitted(explanation.fitted, found.errors.base, one.errors)
             if (loss := one.loss - one.errors.loss + errors.loss) < one.loss:
                 led[k], moved = Judged(loss, replace(explanation, fitted=fitted), errors), True
         if not moved:
             break
-        near = min(one.loss for one in led) + CLOSE
     return led
 
 
@@ -100,7 +96,8 @@ def weigh_again(found: Search) -> None:
     least = NEAR * found.gain(found.best)
     leading: dict[frozenset[Candidate], Explanation] = {}
     for explanation in sorted([found.best, *found.tried], key=adjusted):
-        if len(explanation.candidates) == size and found.gain(explanation) > least:
+        near_enough = found.gain(explanation) > least and within_reach(explanation, found.best)
+        if len(explanation.candidates) == size and near_enough:
             leading.setdefault(frozenset(explanation.candidates), explanation)
     first: dict[frozenset[str], Explanation] = {}  # other orders, or other joints, of the same laws come last
     for explanation in leading.values():

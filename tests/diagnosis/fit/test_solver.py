@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -37,6 +38,30 @@ def test_windows_stuck_far_from_the_measured_states_come_back(seed: int, away: f
     states[:, 1] += away * best.measured.state_size[1]
     assert fit(best.misfit, best.u, states).loss > best.loss + 1000.0
     assert fit_thoroughly(best.misfit, best.u, states).loss < best.loss + 0.5
+
+
+def test_a_restart_begins_at_the_level_of_the_shared_errors_that_was_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A zero that all windows share, ten times the noise; from level 0 a restart may end above what it should mend."""
+    best = base_fit(SPECIMEN, measure(SPECIMEN, [recording("a", 1)]))
+    plain, m = best.misfit, best.measured
+    zero = 10.0 * np.ones((*m.values.shape, 1)) * m.first_errors[:, :, None, None]
+    misfit = replace(plain, whitening=plain.whitening.with_shared(zero))
+    predictor = replace(misfit.predictor, measured=replace(m, values=m.values + zero[..., 0]))
+    misfit = replace(misfit, predictor=predictor)
+    states = best.states.copy()
+    states[:, 1] += 8.0 * m.state_size[1]
+    levels: list[tuple[float, float]] = []
+
+    def watched(misfit: Misfit, *rest: Any) -> Fitted:
+        found = fit(misfit, *rest)
+        if misfit.unknowns:
+            levels.append((misfit.level.item(), found.misfit.level.item()))
+        return found
+
+    monkeypatch.setattr(solver, "fit", watched)
+    fit_thoroughly(misfit, best.u, states)
+    assert len(levels) > 1 and abs(levels[0][1]) > 0.1
+    assert [began for began, _ in levels[1:]] == [ended for _, ended in levels[:-1]]
 
 
 @cache

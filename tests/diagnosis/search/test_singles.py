@@ -6,15 +6,17 @@ from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
+import numpy as np
 import pytest
 
 from diagnosis.errors.model import calibrated, disturbance_about, estimate
 from diagnosis.fit.setup import base_fit, measure
 from diagnosis.fit.solver import Fitted, fit
+from diagnosis.fit.starts import nominal
 from diagnosis.progress import silent
 from diagnosis.search import refit, select
 from diagnosis.search.candidates import candidates
-from diagnosis.search.found import Search
+from diagnosis.search.found import BEHIND, Search, adjusted, enough, explains_all, within_reach
 from diagnosis.search.refit import Explanation, extend, from_states_of, with_memory
 from diagnosis.search.select import COSTLY, THRESHOLD, in_turn, led_by, refit_singles
 from diagnosis.search.weighing import Judged, evidence, led_by_each_other, reweighed
@@ -78,6 +80,62 @@ def test_what_explains_more_is_told_though_its_fit_was_stuck(free: Search) -> No
     assert judged[0].loss > judged[1].loss
     led = led_by_each_other(judged, free)
     assert led[0].loss < judged[1].loss - 15.0 and led[0].explanation.names == ("delay",)
+
+
+def without_restarts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A single's first fits alone, none of what takes the leader further."""
+    for name in ("again", "over_ranges", "reshaped"):
+        monkeypatch.setattr(select, name, lambda one: one)
+    monkeypatch.setattr(select, "led_by", lambda *_: False)
+
+
+def test_what_the_fit_of_the_base_did_astray_does_not_lead_a_single(
+    monkeypatch: pytest.MonkeyPatch, free: Search
+) -> None:
+    """Where it misfits they begin at the specimen's own numbers and the measured states as well."""
+    without_restarts(monkeypatch)
+    (late,) = (e for e in free.singles if e.names == ("delay",))
+    found = replace(free, base=stuck(free.base), candidates=late.candidates, singles=[])
+    assert found.base.loss > free.base.loss + 1000.0
+    refit_singles(found, silent)
+    assert found.base.loss < free.base.loss + 0.5
+    assert found.singles[0].loss == pytest.approx(late.loss, abs=1.0)
+
+
+def test_a_base_that_declared_numbers_do_not_better_stays_and_singles_begin_at_both(
+    monkeypatch: pytest.MonkeyPatch, free: Search
+) -> None:
+    without_restarts(monkeypatch)
+    began: list[Explanation] = []
+
+    def watched(begin: Explanation, *rest: Any) -> Explanation:
+        began.append(begin)
+        return extend(begin, *rest)
+
+    (late,) = (e for e in free.singles if e.names == ("delay",))
+    off = stuck(free.base)
+    monkeypatch.setattr(select, "extend", watched)
+    monkeypatch.setattr(select, "further", lambda declared: replace(declared, fitted=replace(off.fitted, loss=1e9)))
+    found = replace(free, base=off, candidates=late.candidates, singles=[])
+    refit_singles(found, silent)
+    assert found.base is off
+    own, declared = (one.fitted for one in list({id(one): one for one in began}.values()))
+    assert own is off.fitted and np.array_equal(declared.states, off.measured.states)
+    assert np.array_equal(declared.u, nominal(off.fitted.misfit).u)
+    assert found.singles[0].loss == pytest.approx(late.loss, abs=1.0)
+
+
+@pytest.mark.parametrize(("behind", "reached"), [(BEHIND - 1.0, True), (BEHIND + 1.0, False)])
+def test_what_is_far_behind_an_explanation_of_everything_is_no_rival(
+    free: Search, behind: float, reached: bool
+) -> None:
+    (late,) = (e for e in free.singles if e.names == ("delay",))
+    later = replace(late, fitted=replace(late.fitted, loss=late.loss + behind))
+    assert explains_all(late) and within_reach(later, late) == reached
+    off = stuck(late)
+    assert not explains_all(off) and within_reach(later, off)  # which leaves something itself
+    assert enough(replace(free, singles=[later, late])) == pytest.approx(adjusted(late) + BEHIND)
+    assert enough(replace(free, singles=[off])) == np.inf
 
 
 def test_evidence_is_of_the_best_fit_of_an_effect_whatever_its_first_one_was(free: Search) -> None:
