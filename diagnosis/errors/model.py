@@ -129,12 +129,16 @@ def calibrated(specimen: Specimen, measured: Measured, seed: int = 0) -> tuple[F
 def refitted(fitted: Fitted, base: FloatArray, start: Errors | None = None, rounds: int = 2) -> tuple[Fitted, Errors]:
     """A fit and its errors, each estimated under the other in turn, about the events as they were."""
     errors = estimate(fitted, base, start)
-    for turn in range(rounds):
-        fitted, errors = _about_the_events(fitted, errors)
-        fitted = fit_thoroughly(replace(fitted.misfit, whitening=errors.whitening), fitted.u, fitted.states)
-        if turn + 1 < rounds:
-            errors = estimate(fitted, base, errors)
-    return fitted, errors
+    for _ in range(rounds - 1):
+        fitted, errors = fit_under(fitted, errors)
+        errors = estimate(fitted, base, errors)
+    return fit_under(fitted, errors)
+
+
+def fit_under(fitted: Fitted, errors: Errors) -> tuple[Fitted, Errors]:
+    """The fit under these errors, and they, about the events as they were."""
+    fitted, errors = _about_the_events(fitted, errors)
+    return fit_thoroughly(replace(fitted.misfit, whitening=errors.whitening), fitted.u, fitted.states), errors
 
 
 def _about_the_events(fitted: Fitted, errors: Errors) -> tuple[Fitted, Errors]:

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-from diagnosis.errors.model import Errors, refitted
+from diagnosis.errors.model import Errors, estimate, fit_under, refitted
 from diagnosis.fit.solver import HOPE, Fitted, fit
 from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.search.budget import ENDED
@@ -21,7 +21,8 @@ from diagnosis.search.refit import Explanation, best_of, from_states_of, further
 
 NEAR, OWN = 0.3, 0.4
 """Share of the leader's gain from which an explanation is taken along, and from which its own errors are estimated."""
-MOST, MOST_OWN = 6, 4
+MOST, MOST_OWN, ALIKE = 6, 4, 2
+"""Explanations weighed, those of them with errors of their own, and of these that differ in joints or orders only."""
 TURNS = 2
 CLOSE = 30.0
 """Gain from the best within which an explanation is fitted from other sizes and led by others, and which a refit in the
@@ -57,6 +58,20 @@ class Judged(NamedTuple):
     loss: float
     explanation: Explanation
     errors: Errors
+
+    @classmethod
+    def of(cls, explanation: Explanation, before: Errors) -> Judged:
+        """Its errors estimated once more after a fit under the first estimate of them."""
+        first = estimate(explanation.fitted, before.base, before)
+        fitted, errors = fit_under(explanation.fitted, first)
+        errors = estimate(fitted, before.base, errors)
+        price = adjusted(explanation) - explanation.loss
+        return cls(errors.loss + price, replace(explanation, fitted=fitted), errors)
+
+    def fitted_under(self) -> Judged:
+        """The same fitted under its errors."""
+        fitted, errors = fit_under(self.explanation.fitted, self.errors)
+        return Judged(self.loss - self.errors.loss + errors.loss, replace(self.explanation, fitted=fitted), errors)
 
 
 def led_by_each_other(judged: Sequence[Judged], found: Search) -> list[Judged]:
@@ -105,16 +120,7 @@ def weigh_again(found: Search) -> None:
     near = list({id(e): e for e in (*first.values(), *leading.values())}.values())[:MOST]
     if all(set(e.candidates) != set(found.best.candidates) for e in near):
         near.append(found.best)
-    judged: list[Judged] = []
-    for explanation in near:
-        if judged and found.whole.spent:
-            break
-        counts = set(explanation.candidates) == set(found.best.candidates) or found.eligible(explanation)
-        if counts and len(judged) < MOST_OWN and found.gain(explanation) > OWN * found.gain(found.best):
-            fitted, errors = refitted(explanation.fitted, found.errors.base, found.errors)
-            price = adjusted(explanation) - explanation.loss
-            judged.append(Judged(errors.loss + price, replace(explanation, fitted=fitted), errors))
-    _, found.best, found.errors = min(led_by_each_other(judged, found), key=lambda entry: entry.loss)
+    _, found.best, found.errors = min(led_by_each_other(_judged(near, found), found), key=lambda entry: entry.loss)
     found.weighed = found.best
     found.base = reweighed(found.base, found.errors)
     others = [reweighed(e, found.errors) for e in near if e.candidates != found.best.candidates]
@@ -128,6 +134,30 @@ def weigh_again(found: Search) -> None:
         found.best = min([resized(found.best), *filter(found.eligible, found.tried)], key=adjusted)
         found.tried.append(found.best)
     found.singles = sorted((e for e in found.tried if len(e.candidates) == 1), key=adjusted)
+
+
+def _judged(near: Sequence[Explanation], found: Search) -> list[Judged]:
+    """The nearest under errors of their own; only those that come close to the best of them are fitted under these."""
+    judged: list[Judged] = []
+    for explanation in near:
+        if judged and found.whole.spent:
+            break
+        is_best = found.best is not None and set(explanation.candidates) == set(found.best.candidates)
+        alike = sum(one.explanation.names == explanation.names for one in judged)
+        if len(judged) == MOST_OWN or not (is_best or (alike < ALIKE and found.eligible(explanation))):
+            continue
+        if found.best is None or found.gain(explanation) > OWN * found.gain(found.best):
+            judged.append(Judged.of(explanation, found.errors))
+    fitted: set[int] = set()
+    while close := [k for k in range(len(judged)) if k not in fitted and _is_close(judged[k], judged)]:
+        for k in close:
+            judged[k] = judged[k].fitted_under()
+        fitted.update(close)
+    return judged
+
+
+def _is_close(one: Judged, judged: Sequence[Judged]) -> bool:
+    return one.loss < min(other.loss for other in judged) + CLOSE
 
 
 def evidence(found: Search) -> list[float]:

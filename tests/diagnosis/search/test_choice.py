@@ -88,13 +88,16 @@ def made_up(monkeypatch: pytest.MonkeyPatch) -> None:
         for name in ("again", "reshaped", "over_ranges"):
             monkeypatch.setattr(module, name, same)
         monkeypatch.setattr(module, "seconds", lambda *_: [])
+    monkeypatch.setattr(weighing, "estimate", lambda f, *_: SimpleNamespace(loss=f.loss, base=None))
+    monkeypatch.setattr(weighing, "fit_under", lambda f, errors: (f, errors))
     monkeypatch.setattr(weighing, "refitted", lambda f, *_: (f, SimpleNamespace(loss=f.loss, base=None)))
     monkeypatch.setattr(weighing, "reweighed", same)
     monkeypatch.setattr(weighing, "resized", same)
     monkeypatch.setattr(weighing, "from_states_of", same)
     monkeypatch.setattr(exchange, "extended", lambda *_, **__: [])
     monkeypatch.setattr(details, "of_joints", lambda c, _: c.of_joints)
-    monkeypatch.setattr(beside, "explains_all", lambda _: False)
+    for module in (beside, counting):
+        monkeypatch.setattr(module, "explains_all", lambda _: False)
     for module in (select, details, counting):
         monkeypatch.setattr(module, "adequate", lambda _: True)
     monkeypatch.setattr(counting, "errs", lambda _: False)
@@ -114,6 +117,19 @@ def test_a_single_that_rests_on_one_window_does_not_come_back_when_the_errors_ar
     assert found.best.names == ("tilt",)
     weighing.weigh_again(found)
     assert found.best.names == ("tilt",)
+
+
+def test_own_errors_are_those_of_two_of_a_name_and_fits_under_them_go_on_where_they_come_close(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    fits: list[float] = []
+    monkeypatch.setattr(weighing, "fit_under", lambda f, errors: (f, errors) if fits.append(f.loss) is None else None)
+    orders = [fit(Effect("maxwell", order=k), loss=100.0 + k) for k in range(3)]
+    found = search(fit(loss=1000.0), *orders, fit(B, loss=200.0))
+    found.best = orders[0]
+    weighing.weigh_again(found)
+    assert found.best.candidates == orders[0].candidates
+    assert sorted(fits) == [100.0, 100.0, 101.0, 101.0, 200.0]
 
 
 def test_a_detail_of_a_law_does_not_take_the_place_of_a_second_effect(monkeypatch: pytest.MonkeyPatch) -> None:
