@@ -10,7 +10,7 @@ import numpy as np
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.unknowns import clip
 from diagnosis.search.candidates import Candidate
-from diagnosis.search.found import MISSING, Search, adjusted, explains_all
+from diagnosis.search.found import MISSING, Search, adjusted, enough, explains_all, within_reach
 from diagnosis.search.refit import QUICK, Explanation, again, best_of, extend, joined
 from diagnosis.search.screen import Score, score
 from models.base import FloatArray
@@ -89,7 +89,7 @@ def extended(
 ) -> list[Explanation]:
     """Refits with one more mechanism, ``but`` one that was tried, best first: the strongest of a screen beside it.
 
-    Refits that promise no loss of ``most`` are given up on the way.
+    Refits that promise no loss of ``most``, or to come near one that explains everything, are given up on the way.
 
     ``widely``: those that explain much alone too, from where they stand alone, and second elements of a kind, whatever
     their scores. A law that carries part of what another parameter carried so far (the yielding of a spring and its
@@ -97,27 +97,28 @@ def extended(
     """
     if explains_all(explanation) and max((s.statistic for s in scores), default=0.0) < HOPELESS:
         return []
-    fits = []
+    fits: list[Explanation] = []
     worth = one_of_each(worth_a_refit(scores, FEWEST_SECOND + (but is not None), SHARE_OF_SECOND))
     tried = [entry for entry in worth if entry.candidate != but][:SECOND_TRIES]
     for entry in tried:
         if found.affordable(entry.candidate.name):
-            ways = [extend(explanation, entry.candidate, at, QUICK, most) for at in starts_of(entry, scores)]
+            least = min(most, enough(fits))
+            ways = [extend(explanation, entry.candidate, at, QUICK, least) for at in starts_of(entry, scores)]
             if entry.candidate.mechanism.beside:
-                ways.append(split(explanation, entry.candidate, most))
+                ways.append(split(explanation, entry.candidate, least))
             fits.append(best_of(ways))
     for element in _second_elements(scores) if widely else ():
         if element not in (but, *(entry.candidate for entry in tried)) and found.affordable(element.name):
-            fits.append(split(explanation, element, most))
+            fits.append(split(explanation, element, min(most, enough(fits))))
     for single in _strong_alone(found, explanation) if widely else ():
         if not found.affordable(*single.names):
             continue
         try:
-            fits.append(joined(explanation, single, most))
+            fits.append(joined(explanation, single, min(most, enough(fits))))
         except InputError as refusal:  # it does not act together with an effect of the explanation
             found.not_tried.setdefault(single.names[0], str(refusal))
     fits.sort(key=adjusted)
-    return [again(e) if k < THOROUGH else e for k, e in enumerate(fits)]
+    return [again(e) if k < THOROUGH and within_reach(e, fits[0]) else e for k, e in enumerate(fits)]
 
 
 def _second_elements(scores: Sequence[Score]) -> list[Candidate]:

@@ -7,7 +7,7 @@ or when it alone makes that window fit (`settles`).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -261,9 +261,9 @@ def explains_all(explanation: Explanation) -> bool:
     return adequate(explanation) and bool(np.max(by_window(explanation)) < BADLY)
 
 
-def enough(found: Search) -> float:
-    """Loss from which a single is no rival of those that explain everything; infinite where none does."""
-    return min((adjusted(single) for single in found.singles if explains_all(single)), default=np.inf) + BEHIND
+def enough(known: Iterable[Explanation]) -> float:
+    """Loss from which another is no rival of those that are known to explain everything; infinite where none does."""
+    return min((adjusted(one) for one in known if explains_all(one)), default=np.inf) + BEHIND
 
 
 def within_reach(explanation: Explanation, leader: Explanation) -> bool:

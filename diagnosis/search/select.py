@@ -157,7 +157,7 @@ def refit_singles(found: Search, progress: Progress) -> None:
     wanted = in_turn(wanted, [entry for entry in found.scores if entry.candidate in late], found.scores)
     largest = max((entry.statistic for entry in wanted), default=0.0)
     for k, entry in enumerate(wanted):
-        most = enough(found)
+        most = enough(found.singles)
         explained = isfinite(most)
         if explained and heavy(entry, found.scores) and entry.statistic < NEAR_HEAVY * largest:
             found.not_tried.setdefault(entry.candidate.name, COSTLY)

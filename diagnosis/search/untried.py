@@ -26,7 +26,7 @@ def in_its_place(found: Search, left: Sequence[Score]) -> None:
         name = entry.candidate.name
         if name in leader.names or not found.affordable(name):
             continue
-        most = enough(found)
+        most = enough(found.singles)
         fits = [extend(standing, entry.candidate, start, QUICK, most) for start in starts_of(entry, found.scores)]
         if fits:
             single = best_of(fits)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,10 +11,12 @@ from diagnosis.errors.model import calibrated
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.setup import measure
 from diagnosis.search import beside
-from diagnosis.search.candidates import candidates
-from diagnosis.search.found import Search
+from diagnosis.search import found as found_module
+from diagnosis.search.candidates import Candidate, candidates
+from diagnosis.search.found import BEHIND, Search
 from diagnosis.search.refit import QUICK, Explanation, extend
 from diagnosis.search.screen import Score, score
+from models.base import FloatArray
 from tests.diagnosis.made import SPECIMEN, recording
 
 
@@ -33,6 +37,40 @@ def test_a_single_that_clashes_with_what_was_found_is_said_and_passed_over(monke
     monkeypatch.setattr(beside, "_strong_alone", lambda search, one: [bending])
     assert beside.extended(found, corner, [], widely=True) == []
     assert "do not act together" in found.not_tried["wall_flexibility"]
+
+
+def test_once_a_pair_explains_everything_others_need_not_be_fitted_to_their_ends(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Its rivals are; what is far behind is given up on the way and not fitted thoroughly."""
+    effects = {"viscous_damping": {"rate": 0.15}, "base_gain": {"gain": 0.05}}
+    measured = measure(SPECIMEN, [recording(f"run_{seed}", seed, effects) for seed in (1, 2)])
+    fitted, errors = calibrated(SPECIMEN, measured)
+    known = {c.name: c for c in candidates(measured, SPECIMEN)}
+    base = Explanation((), fitted)
+    lossy = extend(base, known["viscous_damping"], known["viscous_damping"].null + 0.5)
+    scores = score(linearise_about(lossy.fitted), [known["base_gain"], known["tilt"]])
+    given: list[float] = []
+    thorough: list[str] = []
+
+    def watched(one: Explanation, candidate: Candidate, start: FloatArray, iterations: int, most: float) -> Explanation:
+        given.append(most)
+        loss = 1000.0 if candidate.name == "base_gain" else 2000.0
+        pair = extend(one, candidate, start, 0)
+        return replace(pair, fitted=replace(pair.fitted, loss=loss))
+
+    def taken_on(one: Explanation) -> Explanation:
+        thorough.append(one.names[-1])
+        return one
+
+    monkeypatch.setattr(beside, "extend", watched)
+    monkeypatch.setattr(beside, "again", taken_on)
+    monkeypatch.setattr(beside, "explains_all", lambda _: False)
+    monkeypatch.setattr(found_module, "explains_all", lambda one: one.names[-1] == "base_gain")
+    beside.extended(Search(base, tuple(known.values()), errors), lossy, scores)
+    assert scores[0].candidate.name == "base_gain"
+    assert given[0] == np.inf and given[-1] == pytest.approx(1000.0 + BEHIND, abs=5.0)
+    assert thorough == ["base_gain"]
 
 
 def test_a_mechanism_of_many_short_steps_is_refitted_where_its_statistic_gives_hope() -> None:

@@ -134,8 +134,8 @@ def test_what_is_far_behind_an_explanation_of_everything_is_no_rival(
     assert explains_all(late) and within_reach(later, late) == reached
     off = stuck(late)
     assert not explains_all(off) and within_reach(later, off)  # which leaves something itself
-    assert enough(replace(free, singles=[later, late])) == pytest.approx(adjusted(late) + BEHIND)
-    assert enough(replace(free, singles=[off])) == np.inf
+    assert enough([later, late]) == pytest.approx(adjusted(late) + BEHIND)
+    assert enough([off]) == np.inf
 
 
 def test_evidence_is_of_the_best_fit_of_an_effect_whatever_its_first_one_was(free: Search) -> None:
