@@ -97,7 +97,7 @@ def p_of_missing(
     """p-value of "something is missing"; None if a search was stopped early.
 
     Of the strongest effect or that of `p_of_doubts`, if less. Without an effect that of the doubts, which say that the
-    model lacks something: a suspect refused, as it rests on one window, says no such thing. Else of that suspect.
+    model lacks something: a suspect that is not named says no such thing. Without doubts that of the strongest suspect.
     """
     least = p_of_doubts(found, left, flagged, unfit)
     if gains:

@@ -74,8 +74,9 @@ def judge(task: Task, found: Search, climbed: Climbed | None) -> Judgement:
     verdict = verdict_of(found, near, any(map(bool, doubts)), not unexplained, task.finished)
     gains = [climbed.gain] if climbed else stages.needed(lambda: evidence(found))
     p_value = p_of_missing(found, gains, errors.inadequacy, constancy.flagged, unfit, task.finished)
-    if task.draws and task.finished and climbed is None:
-        score_p, doubtful = p_value, p_of_doubts(found, errors.inadequacy, constancy.flagged, unfit)
+    doubtful = p_of_doubts(found, errors.inadequacy, constancy.flagged, unfit)
+    if task.draws and task.finished and climbed is None and (gains or not doubtful):
+        score_p = p_value
         p_value = stages.optional(
             "the bootstrap (the p-value is that of the score)",
             lambda: min([bootstrapping.p_value(task.specimen, found, task.draws, task.seed, progress), *doubtful]),

@@ -102,19 +102,19 @@ def extended(
     tried = [entry for entry in worth if entry.candidate != but][:SECOND_TRIES]
     for entry in tried:
         if found.affordable(entry.candidate.name):
-            least = min(most, enough(fits))
-            ways = [extend(explanation, entry.candidate, at, QUICK, least) for at in starts_of(entry, scores)]
+            ways = [extend(explanation, entry.candidate, at, QUICK, most) for at in starts_of(entry, scores)]
             if entry.candidate.mechanism.beside:
-                ways.append(split(explanation, entry.candidate, least))
+                ways.append(split(explanation, entry.candidate, most))
             fits.append(best_of(ways))
+            most = min(most, enough(fits[-1:]))
     for element in _second_elements(scores) if widely else ():
         if element not in (but, *(entry.candidate for entry in tried)) and found.affordable(element.name):
-            fits.append(split(explanation, element, min(most, enough(fits))))
+            fits.append(split(explanation, element, most))
     for single in _strong_alone(found, explanation) if widely else ():
         if not found.affordable(*single.names):
             continue
         try:
-            fits.append(joined(explanation, single, min(most, enough(fits))))
+            fits.append(joined(explanation, single, most))
         except InputError as refusal:  # it does not act together with an effect of the explanation
             found.not_tried.setdefault(single.names[0], str(refusal))
     fits.sort(key=adjusted)

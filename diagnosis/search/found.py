@@ -36,7 +36,7 @@ DETAIL = 0.0025
 GAP = 10.0
 """Rivals: all within this gain of the best."""
 BEHIND = 100.0
-"""Loss behind what explains everything from which an explanation is no rival under other errors either."""
+"""Loss behind what explains everything from which an explanation is not taken further: ten times what rivals have."""
 PER_SHAPE = 2.0
 """What every unknown beyond the first costs a mechanism."""
 ADEQUATE = 1.08
@@ -262,13 +262,18 @@ def explains_all(explanation: Explanation) -> bool:
 
 
 def enough(known: Iterable[Explanation]) -> float:
-    """Loss from which another is no rival of those that are known to explain everything; infinite where none does."""
-    return min((adjusted(one) for one in known if explains_all(one)), default=np.inf) + BEHIND
+    """Loss from which another is no rival of those that are known to explain everything; infinite where none does.
+
+    And where whole runs are compared: their fits creep, and what stands tells little of where they end.
+    """
+    in_windows = (one for one in known if one.measured.stretches is None)
+    return min((adjusted(one) for one in in_windows if explains_all(one)), default=np.inf) + BEHIND
 
 
 def within_reach(explanation: Explanation, leader: Explanation) -> bool:
     """Whether it may still turn out better than a ``leader`` that explains everything: it is not `BEHIND` that."""
-    return not explains_all(leader) or adjusted(explanation) < adjusted(leader) + BEHIND
+    loss = adjusted(explanation)
+    return loss < adjusted(leader) + BEHIND or loss < enough([leader])
 
 
 class Near(NamedTuple):

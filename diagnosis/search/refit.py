@@ -95,14 +95,15 @@ def ways(explanation: Explanation) -> list[Explanation]:
 
 
 def as_declared(explanation: Explanation) -> Explanation:
-    """The same model at the specimen's own numbers and the measured states, not fitted.
+    """The same model at the specimen's own numbers and the measured states, not fitted; a range at its middle.
 
     A fit that lacks something adjusts what it has, numbers to their bounds and states to other motions; that may be
     further from the truth than where it began.
     """
-    f = explanation.fitted
-    start = nominal(f.misfit)
-    return replace(explanation, fitted=fit(f.misfit, start.u, start.states, 0))
+    misfit = explanation.fitted.misfit
+    misfit = misfit.at_level(np.zeros_like(misfit.level))
+    start = nominal(misfit)
+    return replace(explanation, fitted=fit(misfit, start.u, start.states, 0))
 
 
 def further(explanation: Explanation, iterations: int = ITERATIONS, most: float = np.inf) -> Explanation:
@@ -142,8 +143,11 @@ def again(explanation: Explanation) -> Explanation:
     return replace(explanation, fitted=fit_thoroughly(f.misfit, f.u, f.states))
 
 
-def from_other(explanation: Explanation, other: Explanation) -> Explanation:
-    """The same model refitted from another one's base parameters and states (a cross restart)."""
+def from_other(explanation: Explanation, other: Explanation, most: float = np.inf) -> Explanation:
+    """The same model refitted from another one's base parameters and states (a cross restart).
+
+    Given up where that promises no loss of ``most``.
+    """
     mine, theirs = explanation.fitted, other.fitted.values
     u = np.array(
         [
@@ -151,7 +155,7 @@ def from_other(explanation: Explanation, other: Explanation) -> Explanation:
             for x, c in zip(mine.misfit.unknowns, mine.u, strict=True)
         ]
     )
-    tried = Explanation(explanation.candidates, fit(mine.misfit, u, other.fitted.states))
+    tried = Explanation(explanation.candidates, fit(mine.misfit, u, other.fitted.states, most=most))
     return min((explanation, tried), key=lambda e: e.loss)
 
 

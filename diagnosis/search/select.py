@@ -7,9 +7,10 @@ there. What counts is in `diagnosis.search.found`.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from math import isfinite
 
-from diagnosis.errors.model import estimate
+from diagnosis.errors.model import estimate, refitted
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.progress import Progress
 from diagnosis.search.beside import (
@@ -53,6 +54,7 @@ from diagnosis.search.refit import (
     further,
     over_ranges,
     reshaped,
+    ways,
     with_memory,
 )
 from diagnosis.search.screen import Score, score
@@ -141,7 +143,7 @@ def refit_singles(found: Search, progress: Progress) -> None:
 
     The leader is taken further: over its ranges, to other joints, and against what the budget left untried.
     """
-    begins = _begin(found)
+    begins = starting_points(found)
     opened = linearise_about(found.base.fitted)
     found.scores = score(opened, firsts(found.candidates), found.not_tried)
     found.null = null_distribution(opened, found.scores)
@@ -156,10 +158,11 @@ def refit_singles(found: Search, progress: Progress) -> None:
     left = []
     wanted = in_turn(wanted, [entry for entry in found.scores if entry.candidate in late], found.scores)
     largest = max((entry.statistic for entry in wanted), default=0.0)
+    most = enough(found.singles)
     for k, entry in enumerate(wanted):
-        most = enough(found.singles)
         explained = isfinite(most)
-        if explained and heavy(entry, found.scores) and entry.statistic < NEAR_HEAVY * largest:
+        is_heavy = heavy(entry, found.scores)
+        if explained and is_heavy and entry.statistic < NEAR_HEAVY * largest:
             found.not_tried.setdefault(entry.candidate.name, COSTLY)
             continue
         if not found.affordable(entry.candidate.name):
@@ -167,7 +170,8 @@ def refit_singles(found: Search, progress: Progress) -> None:
             continue
         progress(f"refitting {entry.candidate.name}", 0.15 + 0.3 * k / len(wanted))
         starts = starts_of(entry, found.scores)
-        fits = [extend(begin, entry.candidate, start, QUICK, most) for begin in begins for start in starts]
+        own = begins[:1] if is_heavy else begins
+        fits = [extend(begin, entry.candidate, start, QUICK, most) for begin in own for start in starts]
         if entry.candidate in late and not explained:
             fits += from_measured(found.base, entry.candidate)
         elif entry.candidate in late and not fits:
@@ -175,6 +179,7 @@ def refit_singles(found: Search, progress: Progress) -> None:
         if fits:
             single = best_of(fits)
             found.singles.append(by_white_noise(single, found.errors) if single.loss < most else single)
+            most = min(most, enough(found.singles[-1:]))
     for single in found.singles:  # in another variant
         if found.not_tried.get(single.names[0]) in (COSTLY, THRESHOLD):
             del found.not_tried[single.names[0]]
@@ -200,27 +205,31 @@ def refit_singles(found: Search, progress: Progress) -> None:
     for k, single in enumerate(found.singles[1:], start=1):
         if found.gain(single) <= near * found.gain(leader) or not found.affordable(single.names[0]):
             continue
-        single = from_other(single, leader)
+        single = from_other(single, leader, enough([leader]))
         found.singles[k] = again(single) if k < THOROUGH and within_reach(single, leader) else single
     least = NEAR * found.gain(leader)  # of a law with a memory counts along its own motion may add much
-    found.singles = [with_memory(single) if found.gain(single) > least else single for single in found.singles]
+    found.singles = [
+        with_memory(single) if found.gain(single) > least and within_reach(single, leader) else single
+        for single in found.singles
+    ]
     found.singles.sort(key=adjusted)
     found.tried += found.singles
 
 
-def _begin(found: Search) -> list[Explanation]:
-    """Where refits of singles begin: from the base model, and from the specimen as it is declared.
+def starting_points(found: Search) -> list[Explanation]:
+    """Where refits of singles begin: at the base model, and at the specimen as it is declared where the base misfits.
 
-    The base is taken to where it is fitted from there if that is better: then it alone.
+    If the base fits better from there it is taken there, with errors of its own, and is the only one.
     """
-    if found.measured.stretches is not None or adequate(found.base):
+    if found.measured.stretches is not None or adequate(found.base) or found.spent:
         return [found.base]
     declared = as_declared(found.base)
-    restarted = further(declared)
-    if restarted.loss > found.base.loss:
+    restarted = best_of([further(way) for way in ways(declared)])
+    if restarted.loss >= found.base.loss - STUCK:
         return [found.base, declared]
-    found.base = restarted
-    return [restarted]
+    fitted, found.errors = refitted(restarted.fitted, found.errors.base, found.errors)
+    found.base = replace(found.base, fitted=fitted)
+    return [found.base]
 
 
 def in_turn(wanted: Sequence[Score], late: Sequence[Score], scores: Sequence[Score]) -> list[Score]:
@@ -349,14 +358,14 @@ def _more(found: Search, progress: Progress) -> None:
         exchanged(found, progress)
 
 
-def _next(found: Search, before: Explanation, further: Sequence[Explanation]) -> Explanation | None:
+def _next(found: Search, before: Explanation, more: Sequence[Explanation]) -> Explanation | None:
     """The likeliest with one more effect, if it counts.
 
     Where no model explains everything, what they all get wrong is part of what is weighed: then one that predicts
     recordings worse that are left out in turn is passed over.
     """
     incomplete = found.incomplete
-    for one in sorted(further, key=adjusted):
+    for one in sorted(more, key=adjusted):
         needed, gain = least(found, before, one.candidates[-1]), adjusted(before) - adjusted(one)
         if gain < found.more:
             return None

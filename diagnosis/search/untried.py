@@ -22,15 +22,16 @@ def in_its_place(found: Search, left: Sequence[Score]) -> None:
         return
     leader = found.singles[0]
     standing = without(leader, leader.candidates[0], 0)
+    most = enough(found.singles)
     for entry in left:
         name = entry.candidate.name
         if name in leader.names or not found.affordable(name):
             continue
-        most = enough(found.singles)
         fits = [extend(standing, entry.candidate, start, QUICK, most) for start in starts_of(entry, found.scores)]
         if fits:
             single = best_of(fits)
             found.singles.append(by_white_noise(single, found.errors) if single.loss < most else single)
+            most = min(most, enough(found.singles[-1:]))
             if found.not_tried.get(name) == ENDED:
                 del found.not_tried[name]
     found.singles.sort(key=adjusted)

@@ -12,7 +12,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from diagnosis.errors.model import Errors, estimate, fit_under, refitted
-from diagnosis.fit.solver import HOPE, Fitted, fit
+from diagnosis.fit.solver import Fitted, fit
 from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.search.budget import ENDED
 from diagnosis.search.candidates import Candidate
@@ -24,9 +24,11 @@ NEAR, OWN = 0.3, 0.4
 MOST, MOST_OWN, ALIKE = 6, 4, 2
 """Explanations weighed, those of them with errors of their own, and of these that differ in joints or orders only."""
 TURNS = 2
+AHEAD = 3.0
+"""Times what the states of others gain an explanation under its errors that it is trusted to gain under new ones."""
 CLOSE = 30.0
-"""Gain from the best within which an explanation is fitted from other sizes and led by others, and which a refit in the
-place of an effect must promise: three times what rivals have."""
+"""Gain from the best within which an explanation is fitted under errors of its own and from other sizes, and led by
+others, and which a refit in the place of an effect must promise: three times what rivals have."""
 
 
 def reweighed(explanation: Explanation, errors: Errors) -> Explanation:
@@ -53,7 +55,7 @@ def by_white_noise(explanation: Explanation, errors: Errors) -> Explanation:
 
 
 class Judged(NamedTuple):
-    """An explanation under errors of its own; ``loss``: of these, with its price."""
+    """An explanation and errors of its own; ``loss``: of these, with its price."""
 
     loss: float
     explanation: Explanation
@@ -88,7 +90,7 @@ def led_by_each_other(judged: Sequence[Judged], found: Search) -> list[Judged]:
             others = [other.explanation for i, other in enumerate(led) if i != k]
             explanation = from_states_of(one.explanation, others)
             gain = one.explanation.loss - explanation.loss
-            if gain <= STUCK or one.loss - HOPE * gain > least + CLOSE:
+            if gain <= STUCK or one.loss - AHEAD * gain > least + CLOSE:
                 continue
             fitted, errors = refitted(explanation.fitted, found.errors.base, one.errors)
             if (loss := one.loss - one.errors.loss + errors.loss) < one.loss:
@@ -120,7 +122,8 @@ def weigh_again(found: Search) -> None:
     near = list({id(e): e for e in (*first.values(), *leading.values())}.values())[:MOST]
     if all(set(e.candidates) != set(found.best.candidates) for e in near):
         near.append(found.best)
-    _, found.best, found.errors = min(led_by_each_other(_judged(near, found), found), key=lambda entry: entry.loss)
+    judged = led_by_each_other(_judged(near, found.best, found), found)
+    _, found.best, found.errors = min(judged, key=lambda one: one.loss)
     found.weighed = found.best
     found.base = reweighed(found.base, found.errors)
     others = [reweighed(e, found.errors) for e in near if e.candidates != found.best.candidates]
@@ -136,17 +139,17 @@ def weigh_again(found: Search) -> None:
     found.singles = sorted((e for e in found.tried if len(e.candidates) == 1), key=adjusted)
 
 
-def _judged(near: Sequence[Explanation], found: Search) -> list[Judged]:
+def _judged(near: Sequence[Explanation], best: Explanation, found: Search) -> list[Judged]:
     """The nearest under errors of their own; only those that come close to the best of them are fitted under these."""
     judged: list[Judged] = []
     for explanation in near:
         if judged and found.whole.spent:
             break
-        is_best = found.best is not None and set(explanation.candidates) == set(found.best.candidates)
-        alike = sum(one.explanation.names == explanation.names for one in judged)
+        is_best = set(explanation.candidates) == set(best.candidates)
+        alike = sum(set(one.explanation.names) == set(explanation.names) for one in judged)
         if len(judged) == MOST_OWN or not (is_best or (alike < ALIKE and found.eligible(explanation))):
             continue
-        if found.best is None or found.gain(explanation) > OWN * found.gain(found.best):
+        if found.gain(explanation) > OWN * found.gain(best):
             judged.append(Judged.of(explanation, found.errors))
     fitted: set[int] = set()
     while close := [k for k in range(len(judged)) if k not in fitted and _is_close(judged[k], judged)]:

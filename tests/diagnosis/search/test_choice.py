@@ -124,12 +124,28 @@ def test_own_errors_are_those_of_two_of_a_name_and_fits_under_them_go_on_where_t
 ) -> None:
     fits: list[float] = []
     monkeypatch.setattr(weighing, "fit_under", lambda f, errors: (f, errors) if fits.append(f.loss) is None else None)
-    orders = [fit(Effect("maxwell", order=k), loss=100.0 + k) for k in range(3)]
-    found = search(fit(loss=1000.0), *orders, fit(B, loss=200.0))
-    found.best = orders[0]
+    pairs = [fit(Effect("maxwell", order=k), TILT, loss=100.0 + k) for k in range(2)]
+    pairs.append(fit(TILT, Effect("maxwell", order=2), loss=102.0))
+    found = search(fit(loss=1000.0), *pairs, fit(B, TILT, loss=200.0))
+    found.best = pairs[0]
     weighing.weigh_again(found)
-    assert found.best.candidates == orders[0].candidates
+    assert found.best.candidates == pairs[0].candidates
     assert sorted(fits) == [100.0, 100.0, 101.0, 101.0, 200.0]
+
+
+@pytest.mark.parametrize(("stretches", "kept"), [(None, [TILT]), (object(), [TILT, B])])
+def test_far_behind_an_explanation_of_everything_nothing_is_weighed_but_where_whole_runs_are_compared(
+    monkeypatch: pytest.MonkeyPatch, stretches: object, kept: list[Effect]
+) -> None:
+    """Of these fits creep, and what stands tells little of where they end."""
+    monkeypatch.setattr(counting, "explains_all", lambda _: True)
+    known = [fit(one, loss=loss) for one, loss in ((TILT, 100.0), (B, 100.0 + counting.BEHIND + 1.0))]
+    for one in known:
+        one.measured.stretches = stretches
+    found = search(fit(loss=1000.0), *known)
+    found.best = known[0]
+    weighing.weigh_again(found)
+    assert [one.candidates[0] for one in found.tried] == kept
 
 
 def test_a_detail_of_a_law_does_not_take_the_place_of_a_second_effect(monkeypatch: pytest.MonkeyPatch) -> None:

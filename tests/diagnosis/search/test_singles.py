@@ -9,17 +9,18 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from diagnosis.errors.model import calibrated, disturbance_about, estimate
+from diagnosis.errors.model import Errors, calibrated, disturbance_about, estimate
 from diagnosis.fit.setup import base_fit, measure
 from diagnosis.fit.solver import Fitted, fit
 from diagnosis.fit.starts import nominal
 from diagnosis.progress import silent
 from diagnosis.search import refit, select
-from diagnosis.search.candidates import candidates
+from diagnosis.search.candidates import Candidate, candidates
 from diagnosis.search.found import BEHIND, Search, adjusted, enough, explains_all, within_reach
 from diagnosis.search.refit import Explanation, extend, from_states_of, with_memory
 from diagnosis.search.select import COSTLY, THRESHOLD, in_turn, led_by, refit_singles
 from diagnosis.search.weighing import Judged, evidence, led_by_each_other, reweighed
+from models.base import FloatArray
 from tests.diagnosis import buildings
 from tests.diagnosis.made import SPECIMEN, recording
 
@@ -80,6 +81,8 @@ def test_what_explains_more_is_told_though_its_fit_was_stuck(free: Search) -> No
     assert judged[0].loss > judged[1].loss
     led = led_by_each_other(judged, free)
     assert led[0].loss < judged[1].loss - 15.0 and led[0].explanation.names == ("delay",)
+    hopeless = judged[0]._replace(loss=judged[0].loss + 1e6)
+    assert led_by_each_other([hopeless, judged[1]], free)[0] is hopeless
 
 
 def without_restarts(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -92,14 +95,45 @@ def without_restarts(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_what_the_fit_of_the_base_did_astray_does_not_lead_a_single(
     monkeypatch: pytest.MonkeyPatch, free: Search
 ) -> None:
-    """Where it misfits they begin at the specimen's own numbers and the measured states as well."""
+    """Where it misfits it is fitted from the specimen's own numbers and the measured states too, its errors anew."""
     without_restarts(monkeypatch)
     (late,) = (e for e in free.singles if e.names == ("delay",))
     found = replace(free, base=stuck(free.base), candidates=late.candidates, singles=[])
     assert found.base.loss > free.base.loss + 1000.0
     refit_singles(found, silent)
-    assert found.base.loss < free.base.loss + 0.5
-    assert found.singles[0].loss == pytest.approx(late.loss, abs=1.0)
+    assert reweighed(found.base, free.errors).loss < free.base.loss + 0.5
+    assert found.errors is not free.errors and found.base.fitted.misfit.whitening is found.errors.whitening
+    assert found.gain(found.singles[0]) == pytest.approx(free.gain(late), rel=0.1)
+
+
+def test_what_is_far_behind_a_single_that_explains_everything_is_not_fitted_to_its_end(
+    monkeypatch: pytest.MonkeyPatch, free: Search
+) -> None:
+    """Nor as if the sensors' errors were white."""
+    late, gain = sorted(free.singles, key=lambda e: e.names[0] == "gain")
+    given: list[float] = []
+    white: list[str] = []
+
+    def watched(
+        begin: Explanation, candidate: Candidate, start: FloatArray, iterations: int, most: float
+    ) -> Explanation:
+        given.append(most)
+        known = late if candidate.name == "delay" else gain
+        return replace(known, fitted=replace(known.fitted, loss=100.0 if known is late else 900.0))
+
+    def by_white(one: Explanation, _: Errors) -> Explanation:
+        white.append(one.names[0])
+        return one
+
+    without_restarts(monkeypatch)
+    monkeypatch.setattr(select, "extend", watched)
+    monkeypatch.setattr(select, "by_white_noise", by_white)
+    monkeypatch.setattr(select, "from_other", lambda one, *_: one)
+    monkeypatch.setattr(select, "with_memory", lambda one: one)
+    base = replace(free.base, fitted=replace(free.base.fitted, loss=1000.0))
+    refit_singles(replace(free, base=base, singles=[]), silent)
+    assert given[0] == np.inf and given[-1] == pytest.approx(100.0 + BEHIND)
+    assert white == ["delay"]
 
 
 def test_a_base_that_declared_numbers_do_not_better_stays_and_singles_begin_at_both(
