@@ -124,6 +124,19 @@ def test_an_answer_that_needs_more_than_its_range_is_not_in_the_library(monkeypa
     assert found.effects[0].name == "restitution" and "beyond the range of the library" in found.statement
 
 
+@pytest.mark.parametrize(("doubts", "said"), [([0.003], 0.003), ([], 0.4)])
+def test_draws_of_a_suspect_tell_nothing_of_a_doubt(
+    monkeypatch: pytest.MonkeyPatch, doubts: list[float], said: float
+) -> None:
+    """Nothing is named, and they are of the strongest suspect; what speaks against the model has its own p-value."""
+    once = searched()
+    verdict = import_module("diagnosis.answer.verdict")
+    monkeypatch.setattr(verdict, "p_of_doubts", lambda *_: doubts)
+    monkeypatch.setattr(import_module("diagnosis.answer.judgement"), "p_of_doubts", lambda *_: doubts)
+    monkeypatch.setattr(verdict.bootstrapping, "p_value", lambda *_: LEAST_P if doubts else 0.4)
+    assert replace(once, task=replace(once.task, draws=20)).judged_again().p_value == said
+
+
 @pytest.mark.parametrize("stage", ["intervals", "bootstrap", "before and after"])
 def test_ctrl_c_after_the_search_leaves_the_answer(stage: str) -> None:
     pressed = []

@@ -163,7 +163,8 @@ def test_an_exchange_that_is_right_is_not_given_up(found: Search, monkeypatch: p
     monkeypatch.setattr(beside, "extend", bounded_by)
     monkeypatch.setattr(beside, "again", lambda one: one)  # the few best would be taken further all the same
     exchanged_from(found, taken(found, "tilt", "velocity_restitution"))
-    assert within and {bound for bound in bounds if np.isfinite(bound)} == set(within)
+    finite = {bound for bound in bounds if np.isfinite(bound)}  # lower ones where another explains everything
+    assert within and set(within) <= finite and max(finite) == max(within)
 
 
 def test_refits_far_from_what_stands_are_given_up(found: Search, monkeypatch: pytest.MonkeyPatch) -> None:
