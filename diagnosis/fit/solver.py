@@ -83,13 +83,18 @@ class Fitted:
 
 
 def fit_thoroughly(misfit: Misfit, u: FloatArray, states: FloatArray) -> Fitted:
-    """The minimum; windows that are stuck there start again from scattered states."""
+    """The minimum; windows that are stuck there start again from scattered states.
+
+    The level of the errors that windows share may have gone astray with them: it starts again as well, or, where the
+    fit then ends above, from where it was.
+    """
     found = fit(misfit, u, states)
     for seed in range(SCATTERINGS):
         scattered = scatter(found, seed)
         if scattered is None:
             break
-        found = fit(found.misfit, found.u, scattered)
+        restarted = fit(misfit, found.u, scattered)
+        found = restarted if restarted.loss < found.loss else fit(found.misfit, found.u, scattered)
     return found
 
 

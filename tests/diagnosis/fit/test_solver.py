@@ -40,8 +40,9 @@ def test_windows_stuck_far_from_the_measured_states_come_back(seed: int, away: f
     assert fit_thoroughly(best.misfit, best.u, states).loss < best.loss + 0.5
 
 
-def test_a_restart_begins_at_the_level_of_the_shared_errors_that_was_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A zero that all windows share, ten times the noise; from level 0 a restart may end above what it should mend."""
+@pytest.mark.parametrize("above", [0.0, 1e6])
+def test_a_restart_ends_no_higher_than_what_it_mends(monkeypatch: pytest.MonkeyPatch, above: float) -> None:
+    """A zero that all windows share, ten times the noise: it starts anew, or, if that ends ``above``, where it was."""
     best = base_fit(SPECIMEN, measure(SPECIMEN, [recording("a", 1)]))
     plain, m = best.misfit, best.measured
     zero = 10.0 * np.ones((*m.values.shape, 1)) * m.first_errors[:, :, None, None]
@@ -50,18 +51,24 @@ def test_a_restart_begins_at_the_level_of_the_shared_errors_that_was_found(monke
     misfit = replace(misfit, predictor=predictor)
     states = best.states.copy()
     states[:, 1] += 8.0 * m.state_size[1]
-    levels: list[tuple[float, float]] = []
+    began: list[float] = []
+    losses: list[float] = []
 
     def watched(misfit: Misfit, *rest: Any) -> Fitted:
         found = fit(misfit, *rest)
-        if misfit.unknowns:
-            levels.append((misfit.level.item(), found.misfit.level.item()))
+        if not misfit.unknowns:  # windows alone
+            return found
+        if began and misfit.level == 0.0:
+            found = replace(found, loss=found.loss + above)
+        began.append(misfit.level.item())
+        losses.append(found.loss)
         return found
 
     monkeypatch.setattr(solver, "fit", watched)
-    fit_thoroughly(misfit, best.u, states)
-    assert len(levels) > 1 and abs(levels[0][1]) > 0.1
-    assert [began for began, _ in levels[1:]] == [ended for _, ended in levels[:-1]]
+    found = fit_thoroughly(misfit, best.u, states)
+    assert len(began) > 1 and began[1] == 0.0
+    assert found.loss == min(losses) < losses[0]
+    assert any(level != 0.0 for level in began) == (above > 0.0)
 
 
 @cache
