@@ -35,6 +35,7 @@ from diagnosis.search.found import (
     adequate,
     adjusted,
     enough,
+    explains_all,
     survives,
     within_reach,
 )
@@ -62,7 +63,7 @@ from diagnosis.search.thresholds import from_measured, misfits, setting_in
 from diagnosis.search.ties import settle_ties
 from diagnosis.search.untried import in_its_place
 from diagnosis.search.variants import with_other_numbers
-from diagnosis.search.weighing import by_white_noise, weigh_again
+from diagnosis.search.weighing import add_single, weigh_again
 from diagnosis.search.white_screen import against_white_noise
 from grids.instruments import INSTRUMENTS
 
@@ -158,9 +159,9 @@ def refit_singles(found: Search, progress: Progress) -> None:
     left = []
     wanted = in_turn(wanted, [entry for entry in found.scores if entry.candidate in late], found.scores)
     largest = max((entry.statistic for entry in wanted), default=0.0)
-    most = enough(found.singles)
+    most, creeps = enough(found.singles), found.measured.stretches is not None
     for k, entry in enumerate(wanted):
-        explained = isfinite(most)
+        explained = isfinite(most) or (creeps and any(explains_all(single) for single in found.singles))
         is_heavy = heavy(entry, found.scores)
         if explained and is_heavy and entry.statistic < NEAR_HEAVY * largest:
             found.not_tried.setdefault(entry.candidate.name, COSTLY)
@@ -177,9 +178,7 @@ def refit_singles(found: Search, progress: Progress) -> None:
         elif entry.candidate in late and not fits:
             found.not_tried.setdefault(entry.candidate.name, THRESHOLD)
         if fits:
-            single = best_of(fits)
-            found.singles.append(by_white_noise(single, found.errors) if single.loss < most else single)
-            most = min(most, enough(found.singles[-1:]))
+            most = add_single(found, fits, most)
     for single in found.singles:  # in another variant
         if found.not_tried.get(single.names[0]) in (COSTLY, THRESHOLD):
             del found.not_tried[single.names[0]]

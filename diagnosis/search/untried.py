@@ -11,9 +11,9 @@ from collections.abc import Sequence
 from diagnosis.search.beside import starts_of
 from diagnosis.search.budget import ENDED
 from diagnosis.search.found import Search, adjusted, enough
-from diagnosis.search.refit import QUICK, again, best_of, extend, over_ranges, without
+from diagnosis.search.refit import QUICK, again, extend, over_ranges, without
 from diagnosis.search.screen import Score
-from diagnosis.search.weighing import by_white_noise
+from diagnosis.search.weighing import add_single
 
 
 def in_its_place(found: Search, left: Sequence[Score]) -> None:
@@ -29,9 +29,7 @@ def in_its_place(found: Search, left: Sequence[Score]) -> None:
             continue
         fits = [extend(standing, entry.candidate, start, QUICK, most) for start in starts_of(entry, found.scores)]
         if fits:
-            single = best_of(fits)
-            found.singles.append(by_white_noise(single, found.errors) if single.loss < most else single)
-            most = min(most, enough(found.singles[-1:]))
+            most = add_single(found, fits, most)
             if found.not_tried.get(name) == ENDED:
                 del found.not_tried[name]
     found.singles.sort(key=adjusted)

@@ -16,7 +16,7 @@ from diagnosis.fit.solver import Fitted, fit
 from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.search.budget import ENDED
 from diagnosis.search.candidates import Candidate
-from diagnosis.search.found import STUCK, Search, adjusted, within_reach
+from diagnosis.search.found import STUCK, Search, adjusted, enough, within_reach
 from diagnosis.search.refit import Explanation, best_of, from_states_of, further, resized, ways, without
 
 NEAR, OWN = 0.3, 0.4
@@ -52,6 +52,18 @@ def by_white_noise(explanation: Explanation, errors: Errors) -> Explanation:
     f, led = explanation.fitted, as_white_noise(explanation.fitted, errors)
     back = replace(explanation, fitted=fit(f.misfit, led.u, led.states))
     return min(explanation, back, key=lambda e: e.loss)
+
+
+def add_single(found: Search, fits: Sequence[Explanation], most: float) -> float:
+    """Add the best of some fits to the singles, `by_white_noise` too where its loss is less than ``most``.
+
+    The loss that the next must promise.
+    """
+    single = best_of(fits)
+    if single.loss < most:
+        single = by_white_noise(single, found.errors)
+    found.singles.append(single)
+    return min(most, enough([single]))
 
 
 class Judged(NamedTuple):

@@ -27,7 +27,7 @@ FINE = 8
 LOSS = 1.5
 """s-1, of a dashpot that acts on one side only."""
 LEAN = 0.02
-"""Tangent of the angle; beside the dashpot .015 is at the threshold, 17.6 of 18."""
+"""rad; beside the dashpot .015 is at the threshold."""
 
 
 def recording(seed: int) -> Recording:

@@ -9,12 +9,13 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
+from diagnosis.data.measured import Measured
 from diagnosis.errors.model import Errors, calibrated, disturbance_about, estimate
 from diagnosis.fit.setup import base_fit, measure
 from diagnosis.fit.solver import Fitted, fit
 from diagnosis.fit.starts import nominal
 from diagnosis.progress import silent
-from diagnosis.search import refit, select
+from diagnosis.search import refit, select, weighing
 from diagnosis.search.candidates import Candidate, candidates
 from diagnosis.search.found import BEHIND, Search, adjusted, enough, explains_all, within_reach
 from diagnosis.search.refit import Explanation, extend, from_states_of, with_memory
@@ -127,7 +128,7 @@ def test_what_is_far_behind_a_single_that_explains_everything_is_not_fitted_to_i
 
     without_restarts(monkeypatch)
     monkeypatch.setattr(select, "extend", watched)
-    monkeypatch.setattr(select, "by_white_noise", by_white)
+    monkeypatch.setattr(weighing, "by_white_noise", by_white)
     monkeypatch.setattr(select, "from_other", lambda one, *_: one)
     monkeypatch.setattr(select, "with_memory", lambda one: one)
     base = replace(free.base, fitted=replace(free.base.fitted, loss=1000.0))
@@ -228,6 +229,23 @@ def test_costly_fits_are_left_out_where_another_explains_all(
     assert ("coulomb_damping" in [single.names[0] for single in found.singles]) == refitted
     assert bool(at_measured) == began
     assert found.not_tried == ({} if refitted else {"coulomb_damping": COSTLY})
+
+
+def test_costly_fits_are_left_out_where_whole_runs_are_compared_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing is given up on its way there, but what another explains everything without is not begun."""
+    effect = {"viscous_damping": {"rate": 0.15}}
+    measured = measure(SPECIMEN, [recording(f"run_{seed}", seed, effect) for seed in (1, 2)])
+    fitted, errors = calibrated(SPECIMEN, measured)
+    known = ("viscous_damping", "coulomb_damping")
+    some = tuple(one for one in candidates(measured, SPECIMEN) if one.name in known)
+    without_restarts(monkeypatch)
+    monkeypatch.setattr(select, "heavy", lambda entry, _: entry.candidate.name == "coulomb_damping")
+    monkeypatch.setattr(select, "NEAR_HEAVY", 2.0)
+    monkeypatch.setattr(select, "explains_all", lambda _: True)
+    monkeypatch.setattr(Measured, "stretches", property(lambda _: (), lambda *_: None), raising=False)
+    found = Search(Explanation((), fitted), some, errors)
+    refit_singles(found, silent)
+    assert found.not_tried == {"coulomb_damping": COSTLY}
 
 
 def test_what_sets_in_at_a_threshold_is_said_not_to_be_tried_where_another_explains_all(
