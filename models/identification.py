@@ -201,16 +201,26 @@ class Separation:
 
 
 @dataclass(frozen=True)
-class Scatter:
-    """Events that do not repeat exactly: the ``rate`` after one is random about the law's.
+class Closing:
+    """A joint whose events do not repeat exactly: the ``port`` of a couple there, at which its coordinate changes sign.
 
-    The event is a change of sign of ``coordinate``; both are states that are observables too. ``events``: what they
-    are called, in the plural.
+    ``rate``: of that coordinate, from the rates of the states by name; linear in them.
+    """
+
+    port: Port
+    rate: Callable[[Mapping[str, FloatArray]], FloatArray]
+
+
+@dataclass(frozen=True)
+class Scatter:
+    """Events that do not repeat exactly: the rate after one is random about the law's, by the same share at each joint.
+
+    By an impulse at the joint's port: what it moves besides is moved with it. ``events``: what they are called, in the
+    plural.
     """
 
     events: str
-    coordinate: str
-    rate: str
+    joints: tuple[Closing, ...]
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,8 @@ def followed(fitted: Fitted) -> Fitted:
     if m.lengths is None or all(n >= window.samples for n, window in zip(last, m.windows, strict=True)):
         return fitted
     steps = np.array([m.recordings[window.recording].time_step for window in m.windows])
-    keep = np.flatnonzero(last * steps >= m.lengths.shortest)
+    whole = last >= np.array([window.samples for window in m.windows])
+    keep = np.flatnonzero(whole | (last * steps >= m.lengths.shortest))
     if not keep.size:
         return fitted
     windows = [replace(m.windows[w], samples=min(m.windows[w].samples, int(last[w]))) for w in keep]

@@ -8,6 +8,7 @@ change: its height is known too, so that a run can have its events as they were 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +16,9 @@ from numpy.typing import NDArray
 
 from diagnosis.fit.along import Along
 from diagnosis.fit.prediction import Point, Predictor
+from diagnosis.fit.unknowns import without_instruments
 from models.base import FloatArray
+from models.identification import Closing
 
 CHANGE = 0.01
 FEWEST_LEFT = 3
@@ -64,38 +67,19 @@ def kicks(predictor: Predictor, point: Point) -> Kicks:
     columns: list[tuple[int, FloatArray]] = []
     sampled: list[NDArray[np.intp]] = []
     heights: list[FloatArray] = []
-    samples = m.values.shape[2]
     along = Along(predictor, point)
-    for r, plain in along.plain.items():
-        own = along.windows(r)
-        sign = np.sign(plain[declared.coordinate])
-        row, sample = np.nonzero(sign[:, 1:] * sign[:, :-1] < 0.0)
-        window, after = own[row], sample + 1
-        inside = after + FEWEST_LEFT < m.mask[window].any(axis=1).sum(axis=1)
-        window, after = window[inside], after[inside]
-        if not window.size:
-            continue
-        start = along.at(window, after)
-        shares = np.repeat([1.0 + CHANGE, 1.0 - CHANGE, 1.0], window.size)
-        every, since = np.tile(window, 3), np.tile(after, 3)
-        changed = {name: np.concatenate([x, x, x]) for name, x in start.items()}
-        changed[declared.rate] = changed[declared.rate] * shares
-        ran = along.run(r, m.first[every] + since, samples, changed)
-        more, less, same = along.recorded(every, since, ran).reshape(3, window.size, *m.values.shape[1:])
-        slope = (more - less) / (2.0 * CHANGE)
-        straight = 0.5 * np.abs(more + less - 2.0 * same) <= m.units[window, :, None]
-        bent = np.any(~straight & m.mask[window], axis=1)
-        np.minimum.at(followed, window, np.where(bent.any(axis=1), bent.argmax(axis=1), samples))
-        columns += list(zip(window.tolist(), slope, strict=True))
-        at = m.first[window] + after - 1 + BEFORE
-        pulse = np.zeros(m.shakings[r].horizontal.size)
-        pulse[at] = PULSE
-        pushed, free = (
-            along.run(r, m.first[window] + after, FEWEST_LEFT, start, push)[declared.rate][:, FEWEST_LEFT - 1]
-            for push in (pulse, None)
-        )
-        sampled.append(at)
-        heights.append(np.divide(PULSE * free, pushed - free, out=np.zeros(at.size), where=pushed != free))
+    for r in along.plain:
+        for joint in declared.joints:
+            window, after = _events(along, r, joint)
+            if not window.size:
+                continue
+            start = along.at(window, after)
+            changes = _changes(along, joint, start)
+            slope, ends = _left(along, r, window, after, start, changes)
+            np.minimum.at(followed, window, ends)
+            columns += list(zip(window.tolist(), slope, strict=True))
+            sampled.append(m.first[window] + after - 1 + BEFORE)
+            heights.append(_heights(along, r, window, after, start, changes))
     count = np.bincount([w for w, _ in columns], minlength=len(m.windows))
     found_all = np.zeros((*m.values.shape, int(count.max(initial=0))))
     filled = np.zeros(len(m.windows), np.intp)
@@ -108,3 +92,63 @@ def kicks(predictor: Predictor, point: Point) -> Kicks:
     return Kicks(
         found_all, window, place, np.concatenate([nowhere, *sampled]), np.concatenate([[], *heights]), followed
     )
+
+
+def _events(along: Along, r: int, joint: Closing) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Windows of recording ``r`` and their first samples after the events of a joint, with enough samples left."""
+    m = along.predictor.measured
+    sign = np.sign(joint.port.coordinate(along.plain[r]))
+    row, sample = np.nonzero(sign[:, 1:] * sign[:, :-1] < 0.0)
+    window, after = along.windows(r)[row], sample + 1
+    inside = after + FEWEST_LEFT < m.mask[window].any(axis=1).sum(axis=1)
+    return window[inside], after[inside]
+
+
+def _changes(along: Along, joint: Closing, start: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+    """By state, the change (n,) of its rate by the impulse at the joint that changes the joint's own rate by itself."""
+    m = along.predictor.measured
+    wall = m.model.build(without_instruments(along.point.values), along.predictor.options)
+    jumps = {name: np.asarray(jump, np.float64) for name, jump in joint.port.jumps(wall, start).items()}
+    own, by_impulse = np.broadcast_arrays(joint.rate(start), joint.rate(jumps))
+    impulse = np.divide(own, by_impulse, out=np.zeros(own.shape), where=by_impulse != 0.0)
+    return {name: impulse * jump for name, jump in jumps.items() if name in m.free}
+
+
+def _left(
+    along: Along, r: int, window: NDArray[np.intp], after: NDArray[np.intp], start: Mapping[str, FloatArray],
+    changes: Mapping[str, FloatArray],
+) -> tuple[FloatArray, NDArray[np.intp]]:  # fmt: skip
+    """What a relative change of the rate leaves (n, C, N), and the sample (n,) up to which it is in proportion."""
+    m = along.predictor.measured
+    samples = m.values.shape[2]
+    every, since = np.tile(window, 3), np.tile(after, 3)
+    shares = np.repeat([CHANGE, -CHANGE, 0.0], window.size)
+    changed = {name: np.concatenate([x, x, x]) for name, x in start.items()}
+    for name, change in changes.items():
+        changed[name] = changed[name] + shares * np.tile(change, 3)
+    ran = along.run(r, m.first[every] + since, samples, changed)
+    more, less, same = along.recorded(every, since, ran).reshape(3, window.size, *m.values.shape[1:])
+    straight = 0.5 * np.abs(more + less - 2.0 * same) <= m.units[window, :, None]
+    bent = np.any(~straight & m.mask[window], axis=1)
+    ends = np.where(bent.any(axis=1), bent.argmax(axis=1), samples)
+    return (more - less) / (2.0 * CHANGE), ends
+
+
+def _heights(
+    along: Along, r: int, window: NDArray[np.intp], after: NDArray[np.intp], start: Mapping[str, FloatArray],
+    changes: Mapping[str, FloatArray],
+) -> FloatArray:  # fmt: skip
+    """Height (n,) of the pulse of one sample that makes a relative change of one; 0 where several rates change.
+
+    Those change with the base motion in other proportions.
+    """
+    if len(changes) != 1:
+        return np.zeros(window.size)
+    (rate,) = changes
+    first = along.predictor.measured.first[window]
+    pulse = np.zeros(along.predictor.measured.shakings[r].horizontal.size)
+    pulse[first + after - 1 + BEFORE] = PULSE
+    pushed, free = (
+        along.run(r, first + after, FEWEST_LEFT, start, push)[rate][:, FEWEST_LEFT - 1] for push in (pulse, None)
+    )
+    return np.divide(PULSE * free, pushed - free, out=np.zeros(window.size), where=pushed != free)

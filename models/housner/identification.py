@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from models.housner.ladder import LADDER
 from models.identification import (
+    Closing,
     Count,
     Force,
     Identification,
@@ -35,7 +36,7 @@ IDENTIFICATION = Identification(
     forces=FORCES,
     dependences=DEPENDENCES,
     separation=Separation("impact", lambda m: m.coordinate, "between_impacts"),
-    scatter=Scatter("impacts", "rotation_1", "rotation_rate_1"),
+    scatter=Scatter("impacts", (Closing(BASE, lambda rates: rates["rotation_rate_1"]),)),
     phases={"impact": "at impacts", "between_impacts": "between impacts", **PHASES},
     same={"rotation_2": "rotation_1"},
     ladder=LADDER,

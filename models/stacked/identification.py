@@ -5,7 +5,7 @@ Windows last about as long as neighbouring trajectories stay together: an impact
 
 from __future__ import annotations
 
-from models.identification import Force, Identification, Lead, State, WindowLengths
+from models.identification import Closing, Force, Identification, Lead, Scatter, State, WindowLengths
 from models.stacked.ladder import LADDER
 from models.stacked.ports import BASE, BLOCK, TOP
 from models.unknown_forces import DEPENDENCES, PHASES, couples, over_largest_base, over_largest_rate, over_reach
@@ -32,6 +32,13 @@ IDENTIFICATION = Identification(
     chaotic=True,
     forces=FORCES,
     dependences=DEPENDENCES,
+    scatter=Scatter(
+        "impacts",
+        (
+            Closing(BASE, lambda rates: rates["rotation_rate_1"]),
+            Closing(TOP, lambda rates: rates["rotation_rate_2"] - rates["rotation_rate_1"]),
+        ),
+    ),
     phases=PHASES,
     ladder=LADDER,
 )

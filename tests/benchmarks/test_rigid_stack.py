@@ -8,7 +8,13 @@ import numpy as np
 import pytest
 
 from benchmarks.diagnosis import rigid_stack
+from benchmarks.diagnosis.bodies import ROTATIONS
 from benchmarks.diagnosis.open_laws import LAWS
+from diagnosis.errors.kicks import kicks
+from diagnosis.fit.prediction import Point, Predictor
+from diagnosis.fit.setup import measure
+from grids.recordings.base import Recording
+from grids.specimen import Specimen
 from models.shaking import Shaking
 from models.stacked.model import MODEL
 
@@ -19,6 +25,8 @@ STACK = {
 STEP = 0.001
 TIME = STEP * np.arange(2001)
 LAW = LAWS["right_restitution"]
+KICK = 2e-4
+"""Change of the rate after an impact over that before it."""
 
 
 def shaking() -> Shaking:
@@ -72,3 +80,33 @@ def test_a_law_at_impacts_acts_on_one_side_and_scatter_on_both() -> None:
     first = int(np.argmax(np.abs(off[:2] - law[:2]).max(axis=0) > 1e-12))
     assert off[0, first - 2] < 0.0 < off[2, first]  # it has landed on its right corner
     assert differ(law, off) > 0.02 and differ(scattered, off) > 0.02
+
+
+def test_what_a_scattered_impact_leaves_is_what_the_diagnosis_takes_for_it() -> None:
+    """An impact at the base loses more in the program apart: what follows in both bodies is the column of that event.
+
+    Which begins at the first sample after it, up to a sample late.
+    """
+    every, plain, checked = 5, apart({}), 0
+    recording = Recording("run", every * STEP, TIME[::every], {
+        "base_acceleration_x": shaking().horizontal[::every], **dict(zip(ROTATIONS, plain[:2, ::every], strict=True)),
+    })  # fmt: skip
+    measured = measure(Specimen(title="stack", model="stacked", parameters=STACK), [recording])
+    states = np.stack([plain[k, ::every][measured.first] for k in (0, 2, 1, 3)], axis=1)
+    found = kicks(Predictor(measured), Point(dict(STACK), states))
+    for impact in range(12):
+        changed = apart({}, kicks=np.where(np.arange(200) == impact, -KICK, 0.0))
+        after = int(np.argmax(np.any(changed != plain, axis=0))) // every + 1
+        for e in np.flatnonzero(np.abs(found.sample - 1 - after) <= 1):
+            window = measured.windows[found.window[e]]
+            begin = after - window.first
+            if not 0 <= begin < window.samples - 20:
+                continue
+            change = (changed - plain)[:2, ::every] / (changed[2, every * after] / plain[2, every * after] - 1.0)
+            change = change[:, after : window.first + window.samples]
+            column = found.columns[found.window[e], :, begin : window.samples, found.place[e]]
+            for seen, true in zip(column, change, strict=True):
+                assert np.corrcoef(seen, true)[0, 1] > 0.998
+                assert abs(seen @ true / (true @ true) - 1.0) < 0.15
+            checked += 1
+    assert checked >= 6
