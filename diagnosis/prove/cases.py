@@ -76,6 +76,14 @@ class Located(Open):
     end: float
 
 
+class HeldOut(Open):
+    share_of_achievable: float | None
+
+
+class Fit(Open):
+    holdout: HeldOut | None
+
+
 class Answer(Open):
     """Of the diagnosis, as it is kept."""
 
@@ -84,6 +92,7 @@ class Answer(Open):
     rivals: list[Rival]
     located: list[Located]
     base: dict[str, Interval]
+    fit: Fit | None = None
     seconds: float
 
 

@@ -13,12 +13,12 @@ from diagnosis.prove.scores import Scored, Share, score
 
 FIGURES = (
     "false_alarm", "class_first", "rivals_cover", "rivals_mean", "pairs_both", "interval_coverage",
-    "open_recall", "open_false", "seconds_median",
+    "open_recall", "open_precision", "open_false", "share_of_achievable", "seconds_median",
 )  # fmt: skip
 MORE = (
     "mismatch_alarm", "detected", "class_first_strict", "class_first_detected", "class_first_weak",
-    "rivals_cover_detected", "pairs_one", "base_coverage", "open_detected", "seconds_most",
-    "processor_seconds_median", "processor_seconds_most",
+    "rivals_cover_detected", "pairs_one", "base_coverage", "open_detected", "share_of_achievable_open_median",
+    "share_of_achievable_named_median", "seconds_most", "processor_seconds_median", "processor_seconds_most",
 )  # fmt: skip
 
 OF_PLACES = ("instants_right", "overlap_mean")
@@ -75,10 +75,10 @@ def table(figures: Mapping[str, Any], title: str) -> str:
         share = figures["intervals"].get(name)
         if share is None:
             number = figures[name]
-            lines.append(f"  {name:24s} {'-' if number is None else f'{number:8.2f}'}")
+            lines.append(f"  {name:32s} {'-' if number is None else f'{number:8.2f}'}")
         elif share["of"]:
             lines.append(
-                f"  {name:24s} {share['value']:8.3f}  [{share['low95']:.3f}, {share['high95']:.3f}]"
+                f"  {name:32s} {share['value']:8.3f}  [{share['low95']:.3f}, {share['high95']:.3f}]"
                 f"  {share['count']} of {share['of']}"
             )
     return "\n".join(lines)

@@ -14,6 +14,8 @@ Answer = Mapping[str, Any]
 Key = Mapping[str, Any]
 SILENT = ("null", "mismatch")
 """Kinds in which nothing is missing."""
+HALF = 0.5
+"""Of the achievable, from which on the recording held out counts as predicted."""
 
 
 @dataclass(frozen=True)
@@ -131,6 +133,21 @@ def base_covered(case: Scored) -> list[bool]:
     return [v["low95"] <= truth[n] <= v["high95"] for n, v in case.answer["base"].items() if n in truth]
 
 
+def achieved(case: Scored) -> float | None:
+    """Which share of what noise leaves to remove the answer removes from the misfit of the recording held out.
+
+    0 of an answer that failed or says that nothing is missing; None of one that predicts no such recording, or where
+    there is nothing to remove.
+    """
+    if case.verdict == "failed":
+        return 0.0
+    held = (case.answer.get("fit") or {}).get("holdout")
+    if held is None:
+        return None
+    share: float | None = held["share_of_achievable"]
+    return 0.0 if case.verdict == "nothing_missing" else share
+
+
 def score(cases: Sequence[Scored], *, weak_too: bool = False) -> dict[str, Any]:
     """All figures of one set of cases: shares with intervals, means, and times.
 
@@ -144,6 +161,9 @@ def score(cases: Sequence[Scored], *, weak_too: bool = False) -> dict[str, Any]:
     full = [case for case in singles if weak_too or not case.weak]
     seen = [case for case in full if case.detected]
     inside = [*nulls, *singles, *pairs]
+    named = [case for case in [*full, *pairs] if set(case.truth) & {effect["class"] for effect in case.effects}]
+    flagged = [case for case in cases if case.verdict == "not_in_library"]
+    outside, library = ([a for case in chosen if (a := achieved(case)) is not None] for chosen in (opens, named))
 
     def share(chosen: Sequence[Scored], test: Callable[[Scored], bool]) -> dict[str, Any]:
         return asdict(Share.of_flags(test(case) for case in chosen))
@@ -174,6 +194,10 @@ def score(cases: Sequence[Scored], *, weak_too: bool = False) -> dict[str, Any]:
         "open_recall": share(opens, lambda case: case.verdict == "not_in_library"),
         "open_detected": share(opens, lambda case: case.detected),
         "open_false": share(inside, lambda case: case.verdict == "not_in_library"),
+        "open_precision": share(flagged, lambda case: case.kind == "open"),
+        "share_of_achievable": asdict(Share.of_flags(one >= HALF for one in outside)),
+        "share_of_achievable_open_median": _median(outside),
+        "share_of_achievable_named_median": _median(library),
         **_times(cases, "seconds"),
         **_times(cases, "processor_seconds"),
     }
@@ -183,9 +207,14 @@ def _times(cases: Sequence[Scored], name: str) -> dict[str, float]:
     """Median and largest of the answers' time of that ``name``; nan of none."""
     taken = [float(case.answer[name]) for case in cases if name in case.answer]
     return {
-        f"{name}_median": float(np.median(taken)) if taken else float("nan"),
+        f"{name}_median": _median(taken),
         f"{name}_most": max(taken, default=float("nan")),
     }
+
+
+def _median(values: Sequence[float]) -> float:
+    """Nan of none."""
+    return float(np.median(values)) if values else float("nan")
 
 
 def confusion(cases: Sequence[Scored]) -> tuple[list[str], list[str], np.ndarray]:

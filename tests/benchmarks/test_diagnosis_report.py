@@ -20,6 +20,7 @@ def test_groups_carry_their_suffix_and_models() -> None:
     assert figures["half_size_3_percent"]["class_first_half"] == 1.0
     assert figures["by_model"]["housner"]["false_alarm"] == 0.5
     assert figures["nominal_size_half_percent"]["class_first"] is None
+    assert figures["intervals"]["open_precision"]["of"] == 2 and figures["share_of_achievable"] is None
     assert "half size" in report.tables(figures)
     json.dumps(figures, allow_nan=False)
 

@@ -24,10 +24,11 @@ def answer_by_title(folder: Path) -> dict[str, Any]:
     text = (folder / "specimen.toml").read_text()
     name = text.partition("title = ")[2].partition("\n")[0].strip('"')
     effects = [{"name": name, "class": name, "parameters": {}, "evidence": 80.0}] if name else []
+    fit = {"holdout": {"share_of_achievable": 0.9 if name else None}}
     located = [{"recording": "train_1", "start": 2.0, "end": 6.0}, {"recording": "train_1", "start": 5.0, "end": 8.0}]
     return {
         "verdict": "missing" if name else "nothing_missing", "effects": effects, "rivals": [], "constancy": [],
-        "located": located if name else [], "base": {},
+        "located": located if name else [], "base": {}, "fit": fit,
     }  # fmt: skip
 
 
@@ -65,6 +66,8 @@ def test_answers_are_hashed_then_scored_and_kept(folder: Path, tmp_path: Path) -
     out, lines = tmp_path / "out", []
     figures = prove(folder, out, model="housner", jobs=2, say=lines.append, answering=answer_by_title)
     assert figures["cases"] == 3 and figures["class_first"] == 0.5 and figures["false_alarm"] == 0.0
+    written = json.loads((out / "prove.json").read_text())
+    assert written["share_of_achievable_named_median"] == 0.9 and written["intervals"]["open_precision"]["of"] == 0
     assert figures["overlap_mean"] == pytest.approx(4.0 / 8.0)  # 2 to 8 s said, 4 to 10 s true
     hashes = json.loads((out / "sha256.json").read_text())
     answer = out / "answers" / "case_02.json"
@@ -72,10 +75,12 @@ def test_answers_are_hashed_then_scored_and_kept(folder: Path, tmp_path: Path) -
     assert "case_03 single: delay" in (out / "wrong.txt").read_text()
     for name in ("confusion.png", "evidence.png", "located.png"):
         assert (out / name).stat().st_size > 1000
-    written = answer.stat().st_mtime_ns
+    answered = answer.stat().st_mtime_ns
+    (out / "prove.json").unlink()
     again: list[str] = []
     prove(folder, out, model="housner", jobs=2, say=again.append, answering=answer_by_title)
-    assert again[0] == "3 of 3 cases were answered before" and answer.stat().st_mtime_ns == written
+    assert again[0] == "3 of 3 cases were answered before" and answer.stat().st_mtime_ns == answered
+    assert json.loads((out / "prove.json").read_text()) == written  # scored anew
 
 
 @pytest.mark.usefixtures("in_this_process")

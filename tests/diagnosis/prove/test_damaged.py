@@ -69,6 +69,7 @@ def test_a_damaged_key_is_said_first(folder: Path, tmp_path: Path, key: str, sai
     [
         ('{"verdict": "nothing', r"case_01\.json is not valid JSON"),
         ('{"verdict": "missing"}', r"case_01\.json: effects is missing"),
+        (json.dumps({**SAID, "fit": {"holdout": {}}}), r"case_01\.json: \[fit\] .*share_of_achievable is missing"),
     ],
 )
 def test_a_damaged_answer_is_said_first(folder: Path, tmp_path: Path, answer: str, said: str) -> None:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -13,7 +15,7 @@ from diagnosis.prove import report
 from diagnosis.prove.answers import NOTHING, answer, sha256
 from diagnosis.prove.figures import draw_confusion
 from diagnosis.prove.scores import Scored, Share, base_covered, confusion, covered, score
-from tests.diagnosis.prove.answered import CASES, FIRST, estimate, key
+from tests.diagnosis.prove.answered import CASES, FIRST, estimate, key, said
 
 
 def test_every_figure_by_hand() -> None:
@@ -35,8 +37,41 @@ def test_every_figure_by_hand() -> None:
     assert counts["open_recall"] == (1, 2)
     assert counts["open_detected"] == (2, 2)
     assert counts["open_false"] == (1, 9 + 1)
+    assert counts["open_precision"] == (1, 2)
+    assert counts["share_of_achievable"] == (0, 0)  # none of these predicts a recording
     assert found["seconds_median"] == 1.0 and found["seconds_most"] == 9.0
     assert found["processor_seconds_median"] == 0.5 and found["processor_seconds_most"] == 4.5
+
+
+def predicting(case: Scored, share: float | None) -> Scored:
+    """The same with what the answer achieves on the recording held out."""
+    return replace(case, answer={**case.answer, "fit": {"holdout": {"share_of_achievable": share}}})
+
+
+def test_what_laws_outside_and_named_effects_achieve() -> None:
+    law, single = key("open", "x"), key("single", "gain")
+    cases = [
+        predicting(Scored("1", said("not_in_library"), law), 0.9),
+        predicting(Scored("2", said("missing", ["gain"]), law), 0.5),
+        predicting(Scored("3", said("not_in_library"), law), 0.4),
+        predicting(Scored("4", said("nothing_missing"), law), None),  # nothing is removed
+        predicting(Scored("5", said("not_in_library"), law), None),  # there was nothing to remove
+        Scored("6", {"verdict": "failed", "statement": "", **NOTHING}, law),
+        predicting(Scored("7", said("missing", ["gain"]), single), 0.96),
+        predicting(Scored("8", said("missing", ["gain"]), key("pair", "gain", "delay")), 0.8),
+        predicting(Scored("9", said("missing", ["delay"]), single), 0.1),  # not the hidden one
+        predicting(Scored("10", said("missing", ["gain"]), key("single", "gain", weak=True)), 0.1),
+    ]
+    found = report.summary(cases)
+    share = found["intervals"]["share_of_achievable"]
+    assert (share["count"], share["of"], found["share_of_achievable"]) == (2, 5, 0.4)
+    assert [share["low95"], share["high95"]] == pytest.approx([0.0527, 0.8534], abs=1e-4)
+    assert found["share_of_achievable_open_median"] == 0.4
+    assert found["share_of_achievable_named_median"] == pytest.approx(0.88)
+    assert found["open_precision"] == 1.0
+    shown = report.table(found, "x")
+    assert re.search(r"share_of_achievable +0\.400 +\[0\.053, 0\.853\] +2 of 5", shown)
+    assert re.search(r"share_of_achievable_named_median +0\.88", shown) and "open_precision " in shown
 
 
 def test_a_failed_case_is_a_wrong_answer() -> None:
