@@ -112,6 +112,16 @@ def test_commands_are_ones_that_exist(block: Block) -> None:
             on_grid(cube, dict(entry.split("=", 1) for entry in selected), nearest=nearest)
 
 
+def test_targets_of_make_are_ones_that_exist() -> None:
+    """Those that pages, README and the changelog name, and those that are no files."""
+    pages = [ROOT / "README.md", ROOT / "CHANGELOG.md", *(ROOT / "docs").glob("*.md")]
+    named = {name for page in pages for name in re.findall(r"`make ([a-z-]+)`", page.read_text("utf-8"))}
+    rules = (ROOT / "Makefile").read_text("utf-8")
+    targets = set(re.findall(r"^([a-z-]+):", rules, re.M))
+    (phony,) = re.findall(r"^\.PHONY: (.+)$", rules, re.M)
+    assert {"walls-bench", "stacks-bench"} <= named <= targets == set(phony.split())
+
+
 def test_pages_leave_the_contents_to_the_theme(monkeypatch: pytest.MonkeyPatch) -> None:
     """Furo prints an error in place of a table of contents; it has its own beside every page."""
     monkeypatch.syspath_prepend(ROOT / "docs")

@@ -25,15 +25,18 @@ class Bench:
     figures: Callable[[Sequence[Scored]], dict[str, Any]]
     made_by: tuple[str, ...] = ()
     """Files of this folder that its cases depend on beside those of `suite.MAKERS`."""
+    under: str = ""
+    """Of cases of one model: the name under which their figures are written, with the keys of those of one block."""
 
 
 OF_TWO_BODIES = ("two_bodies.py", "bodies.py", "body_size.py")
+OF_STACKS = ("stacks.py", *OF_TWO_BODIES, "rigid_stack.py", "bases.py")
 BENCHES = {
     "diagnosis": Bench(suite.suite, report.grouped),
     "laboratory": Bench(laboratory.suite, report.by_imperfection),
     "beginnings": Bench(beginnings.suite, report.by_beginning),
-    "walls": Bench(walls.designs, report.of_all, ("walls.py", *OF_TWO_BODIES, "fibre_wall.py")),
-    "stacks": Bench(stacks.designs, report.of_all, ("stacks.py", *OF_TWO_BODIES, "rigid_stack.py", "bases.py")),
+    "walls": Bench(walls.designs, report.of_all, ("walls.py", *OF_TWO_BODIES, "fibre_wall.py"), "interface"),
+    "stacks": Bench(stacks.designs, report.of_all, OF_STACKS, "stacked"),
     "bases": Bench(bases.designs, report.by_base, ("bases.py",)),
 }
 
@@ -54,11 +57,13 @@ def bench(
 
     Cases lie in ``folder``/``name``/<seed>-<hash of their makers>/cases, answers in .../<run>; another ``run``
     answers the same cases anew. Every answer is on disk before a key is opened. Returns the figures, written to
-    ``folder``/``name``.json and, with the confusion matrix and a list of wrong answers, beside the answers.
+    ``folder``/``name``.json (those of walls and of stacks under the name of their model) and, with the confusion matrix
+    and a list of wrong answers, beside the answers.
     """
-    designs = BENCHES[name].designs(seed)[:cases]
+    chosen = BENCHES[name]
+    designs = chosen.designs(seed)[:cases]
     here = suite.place(folder, seed, name)
-    if made_by := BENCHES[name].made_by:
+    if made_by := chosen.made_by:
         digest = hashlib.sha256(b"".join(Path(__file__).with_name(one).read_bytes() for one in made_by)).hexdigest()
         here = here.with_name(f"{here.name}-{digest[:8]}")
     runner.run_all(designs, seed, here / "cases", here / run, jobs=jobs, minutes=minutes, say=say, answering=answering)
@@ -66,9 +71,9 @@ def bench(
     if not answered:
         say("no case was answered")
         return {}
-    figures = {**BENCHES[name].figures(answered), "seed": seed, "run": run, "asked": len(designs)}
-    write_json(folder / f"{name}.json", figures)
-    write_json(here / f"{run}.json", figures)
+    figures = {**chosen.figures(answered), "seed": seed, "run": run, "asked": len(designs)}
+    for path in (folder / f"{name}.json", here / f"{run}.json"):
+        write_json(path, {chosen.under: figures} if chosen.under else figures)
     draw_confusion(answered, here / f"{run}_confusion.png")
     wrong = wrong_answers(answered)
     (here / f"{run}_wrong.txt").write_text(wrong + "\n", encoding="utf-8")

@@ -5,17 +5,19 @@ from __future__ import annotations
 import json
 import pickle
 from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from benchmarks.diagnosis import weak_form
+from benchmarks.diagnosis import runner, weak_form
 from benchmarks.diagnosis.bench import bench
 from benchmarks.diagnosis.nameless import nameless
 from benchmarks.diagnosis.power import power
 from benchmarks.diagnosis.suite import place, suite
 from diagnosis.prove.answers import Answering, diagnosed
+from tests.diagnosis.prove.answered import CASES
 
 SEED = 29
 """Its suite begins with a null and a single effect, both at 1 % noise."""
@@ -99,6 +101,26 @@ def test_benches_of_laboratories_from_making_to_figures(name: str, key: str, cas
     assert figures["cases"] == figures["asked"] == cases and figures["failed"] == []
     written = json.loads((folder / f"{name}.json").read_text())
     assert written[key] == figures[key] and sum(part["cases"] for part in written[key].values()) >= 1
+
+
+@pytest.mark.parametrize(
+    ("name", "under"), [("walls", "interface"), ("stacks", "stacked"), ("laboratory", ""), ("bases", "")]
+)
+def test_figures_of_walls_and_stacks_are_written_under_their_model(
+    name: str, under: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cases = [replace(case, key={**case.key, "group": "stack as block"}) for case in CASES]
+    monkeypatch.setattr(runner, "run_all", lambda *given, **words: None)
+    monkeypatch.setattr(runner, "answered", lambda *given: [(None, case) for case in cases])
+    figures = bench(
+        name, tmp_path, seed=SEED, cases=3, minutes=0.0, jobs=1, run="a", say=lambda text: None,
+        answering=weak_form.answer,
+    )  # fmt: skip
+    assert figures["class_first"] == 0.5 and figures["asked"] == 3
+    whole = json.loads((tmp_path / f"{name}.json").read_text())
+    assert whole == ({under: figures} if under else figures)
+    (beside,) = (tmp_path / name).glob("*/a.json")
+    assert json.loads(beside.read_text()) == whole
 
 
 def test_a_single_effect_from_making_to_where_it_acts(folder: Path) -> None:
