@@ -1,4 +1,4 @@
-"""Where a cube comes from: versions, commit, host and times, and how they become attributes.
+"""Where a cube or an answer comes from: versions, commit, host and times, and how they become attributes.
 
 Times and hosts are written here only, so that data variables and coordinates of two runs of one
 plan can be compared bit for bit.
@@ -99,6 +99,11 @@ def commit() -> str:
         return git("rev-parse", "HEAD") + ("+changes" if changed else "")
     except (OSError, subprocess.SubprocessError):
         return ""
+
+
+def program() -> dict[str, str]:
+    """What an answer says of the program that gave it: commit, when it was made, and versions."""
+    return {"commit": commit(), "made": now(), **versions()}
 
 
 def machine() -> dict[str, str]:

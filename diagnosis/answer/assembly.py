@@ -33,6 +33,7 @@ from diagnosis.search.ladder import Climbed
 from diagnosis.search.refit import Explanation, gain_by_window
 from grids.specimen import Specimen
 from models.base import FloatArray
+from study.provenance import program
 
 
 def assemble(task: Task, found: Search, climbed: Climbed | None) -> Diagnosis:
@@ -199,4 +200,5 @@ def _provenance(specimen: Specimen, found: Search, constancy: Judged, seed: int)
         "largest_constancy": tested[0].statistic if tested else 0.0,
         "largest_constancy_of": f"{tested[0].kind} / {tested[0].depends_on}" if tested else "",
         "seed": seed,
+        **program(),
     }

@@ -24,7 +24,7 @@ from diagnosis.outcomes.wrong import wrong_predictions
 from diagnosis.progress import Progress
 from grids.specimen import Specimen, with_values
 from models.base import FloatArray
-from study.provenance import commit, now, versions
+from study.provenance import program
 
 SAMPLES = 256
 BASE, EXTENDED = "base model", "extended model"
@@ -72,9 +72,7 @@ def assemble(found: Search, flags: FloatArray, rng: np.random.Generator, progres
             "model": found.specimen.model,
             "outcomes": outcomes.name,
             "runs": outcomes.size,
-            "commit": commit(),
-            "made": now(),
-            **versions(),
+            **program(),
         },
     )
     return replace(answer, statement=statement(answer, found))

@@ -15,12 +15,15 @@ from diagnosis.answer.assembly import screened
 from diagnosis.answer.heldout import Shown
 from diagnosis.answer.result import Beyond, Unfit
 from diagnosis.fit.setup import measure
+from diagnosis.report import diagnosis_json
 from diagnosis.search.candidates import candidates
 from diagnosis.search.found import MISSING, Search
 from diagnosis.search.null import LEAST_P
 from models.errors import InputError
+from study.provenance import commit, now, versions
 from tests.diagnosis.answer.searched import among, searched
 from tests.diagnosis.made import SPECIMEN, TRUE, recording
+from tests.diagnosis.report.schema import AnswerFile
 
 LOSSY = 0.93
 """Share of Housner's restitution that hidden impacts keep."""
@@ -54,6 +57,14 @@ def test_restitution_is_named_and_recovered() -> None:
     assert "restitution" in found.statement
 
 
+def test_the_file_says_which_program_gave_the_answer_and_when() -> None:
+    begun = now()
+    read = AnswerFile.model_validate_json(diagnosis_json(searched(LOSSY).judged_again())).provenance
+    assert begun <= read.made <= now()
+    assert (read.commit or "") == commit() and read.rocking_study == versions()["rocking-study"]
+    assert read.recordings == ["train_1", "train_2"] and set(read.gain_by_recording) == {"train_1", "train_2"}
+
+
 def test_a_stopped_search_gives_what_it_has() -> None:
     def stop(text: str, share: float) -> None:
         if text.startswith("looking for a second effect"):
@@ -65,6 +76,7 @@ def test_a_stopped_search_gives_what_it_has() -> None:
     assert not found.finished
     assert found.effects and found.effects[0].name == "restitution"
     assert "stopped" in found.statement
+    assert not AnswerFile.model_validate_json(diagnosis_json(found)).provenance.finished
 
 
 def test_an_answer_that_recordings_held_out_contradict_is_not_in_the_library(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,6 +12,7 @@ from diagnosis.search.candidates import Candidate, candidates
 from diagnosis.search.found import Near, Search
 from diagnosis.search.refit import Explanation, extend
 from tests.diagnosis.made import SPECIMEN, recording
+from tests.diagnosis.report.schema import NextExperimentPart
 
 FIRST, SECOND = "viscous_damping", "coulomb_damping"
 
@@ -39,6 +40,7 @@ def test_expected_evidence_is_of_the_size_that_such_recordings_had() -> None:
     offered = next_experiment(found, [near])
     assert offered is not None and offered["separates"] == [FIRST, SECOND] and near.gap > 2.0
     assert offered["recording"]["base_motion"] in ("train_1", "train_2")
+    assert NextExperimentPart.model_validate(offered)
     assert 0.3 * near.gap < offered["recording"]["expected_evidence"] < 3.0 * near.gap
 
 

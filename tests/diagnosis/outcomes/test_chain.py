@@ -22,6 +22,7 @@ from grids.specimen import Specimen, read_specimen
 from models.base import Mechanism
 from models.errors import InputError
 from models.model import Model
+from study.provenance import program
 
 BLOCK = Specimen(
     "block", "housner", {"height": 1.0, "aspect_ratio": 0.25, "mass": 100.0}, {"aspect_ratio": 0.01, "height": 0.01}
@@ -100,6 +101,7 @@ def test_the_answer_predicts_further_runs_from_its_folder(with_inset: OutcomeDia
     answer = json.loads((tmp_path / JSON).read_text())
     assert answer["verdict"] == with_inset.verdict
     assert answer["effects"][0]["parameters"]
+    assert program().keys() <= answer["provenance"].keys()
     assert set(answer["scores"]) == {"base model", "extended model", "PGA", "PGV"}
     page = (tmp_path / PAGE).read_text()
     assert "<svg" in page and "http" not in page.replace("http://www.w3.org", "")

@@ -16,6 +16,7 @@ from grids.recordings import Recording
 from grids.specimen import Specimen
 from models.mechanisms.table_force import MECHANISM
 from models.tables import KNOTS, SIDES, row
+from study.provenance import versions
 
 WIDTH, HEIGHT, MASS = 0.25, 1.1, 120.0
 INSET = 0.12
@@ -59,6 +60,24 @@ FORCE = {
     },
 }
 
+PROVENANCE = {
+    "specimen": "Sandstone block B2",
+    "model": "housner",
+    "model_version": "3",
+    "recordings": ["train_1", "train_2"],
+    "windows": 21,
+    "channels": [CHANNEL],
+    "noise": {CHANNEL: {"sigma": [SIGMA], "unit": "rad"}},
+    "misfit_per_sample": 1.02,
+    "gain_by_recording": {"train_1": 880.0, "train_2": 600.0},
+    "constancy_threshold": 15.0,
+    "largest_constancy": 6.3,
+    "largest_constancy_of": "rotation / side",
+    "seed": 0,
+    "commit": "0123abc",
+    "made": "2026-11-28T12:00:00Z",
+    **versions(),
+}
 VISITED = Visited(
     "pivot_inset", "rotation 1", np.linspace(-0.05, 0.05, 80), "rad", "force over inertia",
     0.4 * np.sign(np.linspace(-0.05, 0.05, 80)), "rad s-2",
@@ -241,5 +260,5 @@ def diagnosis(verdict: Verdict = "missing") -> Diagnosis:
         prediction_horizon={r.name: (0.35, 1.9) for r in recordings()},
         missing_force=FORCE if verdict == "not_in_library" else None,
         visited=(VISITED,) if missing else (),
-        provenance={"model": "housner", "commit": "0123abc", "seconds": 31.2, "versions": {"rocking-study": "0.1.0"}},
+        provenance=PROVENANCE,
     )

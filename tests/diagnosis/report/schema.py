@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -232,6 +232,62 @@ class OtherModelPart(Part):
     vertical: bool
 
 
+class FurtherRecordingPart(Part):
+    base_motion: str
+    scale: float
+    expected_evidence: float
+
+
+class FurtherSensorPart(Part):
+    channel: str
+    noise: str
+    expected_evidence: float
+
+
+class NextExperimentPart(Part):
+    separates: list[str]
+    recording: FurtherRecordingPart | None
+    sensor: FurtherSensorPart | None
+    static_test: str | None
+
+
+class NoisePart(Part):
+    sigma: list[float]
+    unit: str
+
+
+class ProvenancePart(Part):
+    specimen: str | None
+    model: str
+    model_version: str
+    recordings: list[str]
+    windows: int
+    channels: list[str]
+    noise: dict[str, NoisePart]
+    misfit_per_sample: float
+    gain_by_recording: dict[str, float]
+    constancy_threshold: float
+    largest_constancy: float
+    largest_constancy_of: str | None
+    seed: int
+    commit: str | None
+    made: str = Field(pattern=r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ$")
+    python: str
+    rocking_study: str = Field(alias="rocking-study")
+    numpy: str
+    scipy: str
+    numba: str
+    xarray: str
+    netcdf: str = Field(alias="netCDF4")
+    dask: str
+    distributed: str
+    salib: str = Field(alias="SALib")
+    seen: list[str]
+    finished: bool
+    skipped: list[str]
+    failed: dict[str, str]
+
+
 class AnswerFile(Part):
     verdict: Literal["missing", "nothing_missing", "not_in_library", "cannot_tell_apart"]
     effects: list[EffectPart]
@@ -252,9 +308,9 @@ class AnswerFile(Part):
     reference_peak: float | None
     fit: FitPart
     statement: str = Field(min_length=1)
-    next_experiment: dict[str, Any] | None
+    next_experiment: NextExperimentPart | None
     other_model: OtherModelPart | None
     errors: ErrorsPart | None
     not_tried: list[NotTriedPart]
     channels: dict[str, dict[str, float | None]]
-    provenance: dict[str, Any]
+    provenance: ProvenancePart

@@ -21,7 +21,7 @@ from grids.write_specimen import specimen_text
 from models.shaking import Shaking
 from rocking import read_specimen
 from study.history import simulate_specimen
-from tests.diagnosis.report.example import diagnosis, recordings, specimen
+from tests.diagnosis.report.example import AT, FORCE, REPEAT, diagnosis, recordings, specimen
 from tests.diagnosis.report.schema import AnswerFile
 
 
@@ -39,12 +39,18 @@ def test_json_knows_no_infinity_and_takes_numpy_numbers() -> None:
         "wall_flexibility", "wall_flexibility", {"first_frequency": Estimate(40.0, 12.0, np.inf, "Hz")},
         np.float64(31.0), np.float64(0.002),
     )  # fmt: skip
-    next_experiment = {"amplitude": np.float32(0.5), "records": np.array([1, 2])}
-    found = replace(diagnosis(), effects=(bend,), holdout=None, next_experiment=next_experiment, finished=False)
+    further = {**REPEAT, "recording": {**REPEAT["recording"], "scale": np.float32(0.5)}, "static_test": ""}
+    law = {**FORCE, "terms": [{**FORCE["terms"][0], "at": np.array(AT)}]}
+    found = replace(
+        diagnosis(), effects=(bend,), holdout=None, next_experiment=further, missing_force=law, finished=False
+    )
     text = diagnosis_json(found)
     read = AnswerFile.model_validate_json(text)
     assert read.effects[0].parameters["first_frequency"].high95 is None
-    assert read.fit.holdout is None and read.next_experiment == {"amplitude": 0.5, "records": [1, 2]}
+    assert read.fit.holdout is None
+    assert read.missing_force is not None and read.missing_force.terms[0].at == AT
+    assert read.next_experiment is not None and read.next_experiment.recording is not None
+    assert read.next_experiment.recording.scale == 0.5 and read.next_experiment.static_test is None  # none is known
     assert json.loads(text)["provenance"]["finished"] is False
 
 
