@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+import models
 from diagnosis.answer.drift import FEWEST, Drift, drift_of, value_at
 from diagnosis.answer.heldout import frozen, relative_misfit
 from diagnosis.answer.posterior import posterior
@@ -28,6 +29,7 @@ from grids.recordings.base import Recording
 from grids.specimen import Specimen, with_values
 from models.base import FloatArray
 from models.errors import InputError
+from models.identification import Exposure
 from models.piecewise import simulate
 
 PROFILE_POINTS = (-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0)
@@ -135,16 +137,37 @@ def specimen_at(specimen: Specimen, found: Calibration, exposure: str, level: fl
 
     Raises InputError where no property may change with it, beyond the tests, or where one changes with something else.
     """
+    summed = exposure_of(specimen, exposure, level, len(found.by_recording)).summed
     known = [d for d in found.drifts if any(c.exposure.name == exposure for c in d.curves)]
     if not known:
         raise InputError(
-            f"no calibrated parameter can be told at a {exposure}: give {FEWEST} tests or more, of a specimen whose "
-            "layers are calibrated."
+            f"no calibrated parameter is told by {exposure}: give {FEWEST} tests or more in which that differs, of a "
+            "specimen whose layers have ranges in [calibrate]."
         )
     whole = calibrated_specimen(specimen, found)
     values = {d.parameter: value_at(d, exposure, level) for d in found.drifts if d in known or d.drifts}
-    title = f"{specimen.title}, at a {exposure} of {level:g}"
-    return replace(whole, title=title, parameters={**whole.parameters, **values})
+    when = f"after {level:g} {exposure}" if summed else f"at a {exposure} of {level:g}"
+    return replace(whole, title=f"{specimen.title}, {when}", parameters={**whole.parameters, **values})
+
+
+def exposure_of(specimen: Specimen, name: str, level: float, tests: int) -> Exposure:
+    """The exposure of that name, of any layer; raises InputError where a ``level`` of it can mean nothing.
+
+    That is where the model follows no such exposure, ``tests`` are too few, or the level is no number or negative.
+    """
+    identification = models.get(specimen.model).identification
+    followed = {one.name: one for one in (identification.exposures if identification else ())}
+    if not followed:
+        raise InputError(
+            f"model '{specimen.model}' has no layers that change over a sequence of tests: leave the {name} out."
+        )
+    if name not in followed:
+        raise InputError(f"'{name}' is not followed over a sequence of tests: give {' or '.join(followed)}.")
+    if not 0.0 <= level < np.inf:
+        raise InputError(f"{name} = {level:g}: give a number of zero or more.")
+    if tests < FEWEST:
+        raise InputError(f"{name} = {level:g}: {FEWEST} tests or more tell what a layer was then; given are {tests}.")
+    return followed[name]
 
 
 def drifts_of(by_recording: Mapping[str, Mapping[str, Estimate]], each: Sequence[Fitted]) -> tuple[Drift, ...]:

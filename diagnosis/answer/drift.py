@@ -1,8 +1,8 @@
 """Whether a property stays the same over a sequence of tests, and what it changes with.
 
 Each test gives ln y_i with a standard error s_i, from its 95 % interval. Constancy: Q = sum ((ln y_i - mean)/s_i)^2 is
-chi-squared with k - 1 degrees of freedom. A change with an exposure x (the largest strain so far, the number of cycles
-so far) is
+chi-squared with k - 1 degrees of freedom. A change with an exposure x (the largest strain so far, the number of
+closings so far) is
 
     ln y = a + b (1 - exp(-x/x0)),        x0 from a tenth of the largest x to ten times it,
 
@@ -86,7 +86,7 @@ class Drift:
             return f"{said}; with what it changes, {why}"
         if self.left_p < CHANCE:
             return f"{said}; neither the {' nor the '.join(c.exposure.meaning for c in self.curves)} explains it"
-        names = [c.exposure.meaning for c in self.with_what]
+        names = [f"{c.exposure.meaning}, {c.values.min():.3g} to {c.values.max():.3g}" for c in self.with_what]
         change = self.curves[0].at(self.curves[0].values.max()) / self.curves[0].at(self.curves[0].values.min()) - 1.0
         told = f"it changes by {change:+.0%} with the {names[0]}"
         return f"{said}: {told}" + "".join(f", or with the {name}: these tests cannot tell" for name in names[1:])
@@ -124,7 +124,7 @@ def value_at(found: Drift, name: str, level: float) -> float:
         low, high = float(known.values.min()), float(known.values.max())
         if known.exposure.name == name and not low <= level <= high:
             raise InputError(
-                f"{name} {level:g} lies beyond the tests, {low:.3g} to {high:.3g} for {found.parameter}: give one "
+                f"{name} = {level:g} lies beyond the tests, {low:.3g} to {high:.3g} for {found.parameter}: give one "
                 "between, or test further."
             )
     if not found.drifts:

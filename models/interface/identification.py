@@ -18,7 +18,7 @@ def _of_layer(joint: str) -> tuple[Exposure, Exposure]:
     which = f"the {joint} layer" if joint else "either layer"
     return (
         Exposure("strain", f"largest strain of {which} so far", f"peak_strain{after}", of),
-        Exposure("cycles", f"closings of {which} so far", f"impacts{after}", of, summed=True),
+        Exposure("closings", f"closings of {which} so far", f"impacts{after}", of, summed=True),
     )
 
 

@@ -36,24 +36,32 @@ def calibrate(
         float | None,
         typer.Option(help="With --out: layers as they were when their largest strain so far was this (0.1 for 10 %)."),
     ] = None,
+    at_closings: Annotated[
+        int | None,
+        typer.Option(help="With --out: layers as they were when their joints had closed this many times so far."),
+    ] = None,
     strict: Annotated[bool, typer.Option("--strict", help=STRICT)] = False,
 ) -> None:
     """Fit the specimen's uncertain parameters to recordings; nothing missing is looked for.
 
     Prints estimates, 95 % intervals (by profile likelihood), bounds hit, correlations and the profiles; with
     several recordings, in the order of the tests, also what each of them says alone, and of rubber layers whether
-    they stay the same over the tests or drift with their largest strain or the number of cycles so far.
+    they stay the same over the tests or drift with their largest strain or the number of their closings so far.
     """
-    if at_strain is not None and out is None:
-        raise InputError("--at-strain says which specimen to write: name its file with --out.")
+    at = exposure_asked(at_strain, at_closings)
+    if at is not None and out is None:
+        raise InputError(f"--at-{at[0]} says which specimen to write: name its file with --out.")
     if out is not None:
         if out.suffix.lower() != ".toml":
             raise InputError(f"--out {out}: a specimen is written as TOML; end the name in .toml.")
         keep_inputs([out, samples_beside(out), law_of(out)], [specimen, *recordings])
+    from diagnosis.answer.calibration import exposure_of
     from grids.plausibility import suspicions_of_specimen
     from grids.specimen import read_specimen
 
     wall = read_specimen(specimen)
+    if at is not None:
+        exposure_of(wall, *at, len(recordings))
     warn(suspicions_of_specimen(wall), strict)
     read = read_recordings(recordings, strict=strict)
     warn_of_stages(wall, read, strict)
@@ -80,23 +88,32 @@ def calibrate(
         highlight=False,
     )
     if out is not None:
-        write(wall, found, out, at_strain)
+        write(wall, found, out, at)
 
 
-def write(wall: Specimen, found: Calibration, out: Path, at_strain: float | None) -> None:
-    """The calibrated specimen as a file, and beside it samples of what was found."""
+def exposure_asked(strain: float | None, closings: int | None) -> tuple[str, float] | None:
+    """What the layers had gone through in the specimen to write, and how much of it; None: all tests together."""
+    if strain is not None and closings is not None:
+        raise InputError("--at-strain and --at-closings each say which specimen to write: give one of the two.")
+    if closings is not None:
+        return "closings", float(closings)
+    return None if strain is None else ("strain", strain)
+
+
+def write(wall: Specimen, found: Calibration, out: Path, at: tuple[str, float] | None) -> None:
+    """The calibrated specimen as a file, ``at`` an exposure if given; else beside it samples of what was found."""
     from diagnosis.answer.calibration import calibrated_specimen, specimen_at
     from diagnosis.report.posterior_file import write_posterior
     from grids.write_specimen import law_beside, specimen_text
     from study.store import write_text
 
-    chosen = calibrated_specimen(wall, found) if at_strain is None else specimen_at(wall, found, "strain", at_strain)
+    chosen = calibrated_specimen(wall, found) if at is None else specimen_at(wall, found, *at)
     write_text(out, specimen_text(chosen, law_of(out).name))
     law = law_beside(chosen)
     if law is not None:
         write_text(law_of(out), law)
     typer.echo(f"written: {out}", err=True)
-    if found.posterior and at_strain is None:
+    if found.posterior and at is None:
         path = write_posterior(found.posterior, models.get(wall.model), wall.title, samples_beside(out))
         typer.echo(f"written: {path}", err=True)
     else:  # those of an earlier calibration of the same name

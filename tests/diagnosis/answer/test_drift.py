@@ -11,7 +11,7 @@ from models.errors import InputError
 from models.identification import Exposure
 
 STRAIN = Exposure("strain", "largest strain so far", "peak_strain", ("k",))
-CYCLES = Exposure("cycles", "closings so far", "closings", ("k",), summed=True)
+CLOSINGS = Exposure("closings", "closings so far", "closings", ("k",), summed=True)
 ERROR = 0.02
 
 
@@ -34,10 +34,10 @@ def test_constancy_is_rejected_by_chance_as_often_as_it_should() -> None:
         assert np.mean(p_values < level) == pytest.approx(level, abs=4.0 * np.sqrt(level * (1.0 - level) / 2000))
 
 
-@pytest.mark.parametrize("driver", [STRAIN, CYCLES])
+@pytest.mark.parametrize("driver", [STRAIN, CLOSINGS])
 def test_a_change_is_told_where_weaker_tests_follow_stronger_ones(driver: Exposure) -> None:
-    """Between equal largest strains only cycles go on: five tests of 3 % to 40 % change tell which of them it is."""
-    exposed: dict[Exposure, list[float]] = {STRAIN: [0.1, 0.4, 0.4, 0.4, 0.7], CYCLES: [2.0, 12.0, 30.0, 52.0, 70.0]}
+    """Between equal largest strains only closings go on: five tests of 3 % to 40 % change tell which of them it is."""
+    exposed: dict[Exposure, list[float]] = {STRAIN: [0.1, 0.4, 0.4, 0.4, 0.7], CLOSINGS: [2.0, 12.0, 30.0, 52.0, 70.0]}
     x = np.array(exposed[driver])
     rng = np.random.default_rng(2)
     found = [sequence(1.0 - 0.5 * -np.expm1(-x / (0.6 * x.max())), rng, exposed) for _ in range(60)]
@@ -46,17 +46,17 @@ def test_a_change_is_told_where_weaker_tests_follow_stronger_ones(driver: Exposu
     assert not any(names == [other] for names in named for other in exposed if other is not driver)
 
 
-def test_tests_that_only_grow_cannot_tell_strain_from_cycles() -> None:
-    exposed: dict[Exposure, list[float]] = {STRAIN: [0.1, 0.2, 0.3, 0.4], CYCLES: [10.0, 20.0, 30.0, 40.0]}
+def test_tests_that_only_grow_cannot_tell_strain_from_closings() -> None:
+    exposed: dict[Exposure, list[float]] = {STRAIN: [0.1, 0.2, 0.3, 0.4], CLOSINGS: [10.0, 20.0, 30.0, 40.0]}
     found = sequence(np.exp([-0.1, -0.2, -0.3, -0.4]), None, exposed)
-    assert {c.exposure for c in found.with_what} == {STRAIN, CYCLES}
+    assert {c.exposure for c in found.with_what} == {STRAIN, CLOSINGS}
     assert "these tests cannot tell" in repr(found)
 
 
 def test_the_value_at_a_strain_is_that_of_the_law_and_none_is_given_beyond_the_tests() -> None:
     strain = np.array([0.1, 0.3, 0.3, 0.6, 0.6])
     law = 4e7 * np.exp(-0.5 * -np.expm1(-strain / 0.3))
-    found = sequence(law, np.random.default_rng(4), {STRAIN: strain.tolist(), CYCLES: [0.0, 9.0, 13.0, 31.0, 60.0]})
+    found = sequence(law, np.random.default_rng(4), {STRAIN: strain.tolist(), CLOSINGS: [0.0, 9.0, 13.0, 31.0, 60.0]})
     assert value_at(found, "strain", 0.3) == pytest.approx(4e7 * np.exp(-0.5 * (1.0 - np.exp(-1.0))), rel=3 * ERROR)
     with pytest.raises(InputError, match=r"beyond the tests, 0\.1 to 0\.6"):
         value_at(found, "strain", 0.9)

@@ -82,7 +82,7 @@ def test_a_layer_remembers_its_largest_strain_and_counts_its_closings(found: Cal
     values = {c.exposure.name: c.values for c in drift.curves}
     assert drift.drifts and drift.with_what[0].exposure.name == "strain"
     assert values["strain"][1] == values["strain"][2] > 2.0 * values["strain"][0]
-    assert np.all(np.diff(values["cycles"]) >= 0.0)
+    assert np.all(np.diff(values["closings"]) >= 0.0)
 
 
 def test_the_specimen_at_a_strain_stands_between_the_tests_and_reads_back(found: Calibration) -> None:
