@@ -17,6 +17,7 @@ from diagnosis.errors.adequacy import (
     repeatability,
 )
 from diagnosis.errors.components import WALK
+from diagnosis.errors.corner import LOW, MIDDLE, corner
 from diagnosis.errors.hum import in_the_samples
 from diagnosis.errors.likelihood import whitened
 from diagnosis.errors.model import Errors
@@ -60,13 +61,15 @@ class ChannelErrors:
 
     ``noise``: of what is faster than `SLOW`; ``drift``: of the rest, at the end of the longest recording; ``growing``:
     of noise in proportion to the signal, at its peak; ``colour``: "white", "low" (denser below 10 Hz) or "filtered"
-    (little above 20 Hz and no more below).
+    (little above 20 Hz and no more below). ``corner_hz``: from where on a filter weakens the noise, of the residuals
+    (`diagnosis.errors.corner`); None where it is not filtered or that does not show.
     """
 
     channel: str
     unit: str
     noise: float
     colour: str
+    corner_hz: float | None
     drift: float
     growing: float
     hum: tuple[Line, ...]
@@ -114,26 +117,34 @@ def _channel(errors: Errors, measured: Measured, channel: int, name: str, second
     growing = sum(t for c, t in own if c.kind == "growing")
     lines = [(*in_the_samples(measured, name, c.scale), t) for c, t in own if c.kind == "hum" and t > 0.0]
     hum = tuple(Line(frequency, float(np.sqrt(2.0 * t)) * scale / left) for frequency, left, t in lines)
+    colour, spectrum = _colour(errors, channel), _spectrum(errors, channel, scale)
     return ChannelErrors(
         channel=name,
         unit=measured.unit_of(name),
         noise=float(np.sqrt(fast)) * scale,
-        colour=_colour(errors, channel),
+        colour=colour,
+        corner_hz=_corner(spectrum) if colour == "filtered" else None,
         drift=float(np.sqrt(slow)) * scale,
         growing=float(np.sqrt(growing)) * scale,
         hum=hum,
-        spectrum=_spectrum(errors, channel, scale),
+        spectrum=spectrum,
     )
 
 
 def _colour(errors: Errors, channel: int) -> str:
     low, middle, high = (
-        float(np.mean(density(errors, channel, np.linspace(a, b, 20))))
-        for a, b in ((2.0, 6.0), (6.0, 12.0), (30.0, 45.0))
+        float(np.mean(density(errors, channel, np.linspace(a, b, 20)))) for a, b in (LOW, MIDDLE, (30.0, 45.0))
     )
     if min(low, middle) > 0.0 and high / max(low, middle) < COLOURED:
         return "filtered" if low < middle / COLOURED else "low"
     return "white"
+
+
+def _corner(spectrum: Spectrum) -> float | None:
+    """Below half the rate of the samples that are compared: from there on their spectrum is its own mirror image."""
+    frequency = np.array(spectrum.frequency)
+    kept = frequency < 0.5 / spectrum.lag[1]
+    return corner(frequency[kept], np.array(spectrum.found)[kept])
 
 
 def _spectrum(errors: Errors, channel: int, scale: float) -> Spectrum:

@@ -7,10 +7,12 @@ from diagnosis.errors.summary import CLEARLY, ChannelErrors, ErrorModel
 LOOSE = 0.05
 """Scatter of events from which on the reader is warned."""
 COLOURS = {
-    "white": "white noise",
-    "low": "noise that is stronger at low frequencies",
-    "filtered": "noise without its high frequencies, as a filter leaves it,",
+    "white": "white noise of {}",
+    "low": "noise of {} that is stronger at low frequencies",
+    "filtered": "noise of {} without its high frequencies, as a filter leaves it",
 }
+FILTERED = "noise of {} that a filter weakens above {:.0f} Hz"
+"""Where that shows."""
 
 
 def error_lines(errors: ErrorModel) -> list[str]:
@@ -40,7 +42,9 @@ def error_lines(errors: ErrorModel) -> list[str]:
 
 
 def _channel(channel: ChannelErrors) -> str:
-    parts = [f"{COLOURS[channel.colour]} of {channel.noise:.2g} {channel.unit}"]
+    noise = f"{channel.noise:.2g} {channel.unit}"
+    told = COLOURS[channel.colour] if channel.corner_hz is None else FILTERED
+    parts = [told.format(noise, channel.corner_hz)]
     if channel.drift > CLEARLY * channel.noise:
         parts.append(f"drift of {channel.drift:.2g} {channel.unit}")
     parts += [f"hum at {line.frequency:.1f} Hz of {line.amplitude:.2g} {channel.unit}" for line in channel.hum]

@@ -149,6 +149,7 @@ class ChannelErrorsPart(Part):
     unit: str
     noise: float = Field(ge=0.0)
     colour: Literal["white", "low", "filtered"]
+    corner_hz: float | None
     drift: float = Field(ge=0.0)
     growing: float = Field(ge=0.0)
     hum: list[LinePart]

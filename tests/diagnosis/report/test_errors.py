@@ -20,7 +20,7 @@ FREQUENCY = np.arange(1.0, 50.0)
 SPECTRUM = Spectrum(
     tuple(FREQUENCY), tuple(1e-8 / FREQUENCY), tuple(1.1e-8 / FREQUENCY), (0.0, 0.01, 0.02), (1.0, 0.02, -0.01), 0.05
 )
-CHANNEL = ChannelErrors("rotation_1", "rad", 3e-4, "low", 2e-4, 0.0, (Line(12.3, 1e-4),), SPECTRUM)
+CHANNEL = ChannelErrors("rotation_1", "rad", 3e-4, "low", None, 2e-4, 0.0, (Line(12.3, 1e-4),), SPECTRUM)
 ERRORS = ErrorModel(
     (CHANNEL,),
     Repeatability("impacts", 0.014, 0.01, 0.019, 40.0),
@@ -47,13 +47,19 @@ def test_the_words_say_what_was_found_and_no_more() -> None:
     assert "zero drifts by 0.7% of the peak, or the base tilts" in " ".join(
         error_lines(replace(ERRORS, base_drift=0.007))
     )
+    filtered = replace(ERRORS, channels=(replace(CHANNEL, colour="filtered", corner_hz=30.0),))
+    assert "rotation_1: noise of 0.0003 rad that a filter weakens above 30 Hz, drift" in " ".join(error_lines(filtered))
+    hidden = replace(ERRORS, channels=(replace(CHANNEL, colour="filtered"),))
+    assert "rotation_1: noise of 0.0003 rad without its high frequencies" in " ".join(error_lines(hidden))
     large = replace(ERRORS, inadequacy=Inadequacy((1e-3,), 4.0, 60.0, True))
     assert "4.0 times the variance" in " ".join(error_lines(large))
     assert "not told apart" in " ".join(error_lines(replace(ERRORS, inadequacy=Inadequacy((0.0,), 0.0, 0.0, False))))
 
 
 def test_the_file_holds_them() -> None:
-    found = replace(diagnosis("nothing_missing"), errors=ERRORS, not_tried={"bounce": "it refuses"})
+    filtered = replace(ERRORS, channels=(replace(CHANNEL, colour="filtered", corner_hz=30.0),))
+    found = replace(diagnosis("nothing_missing"), errors=filtered, not_tried={"bounce": "it refuses"})
     read = AnswerFile.model_validate_json(diagnosis_json(found))
     assert read.errors is not None and read.errors.channels[0].hum[0].frequency == 12.3
+    assert read.errors.channels[0].corner_hz == 30.0
     assert read.not_tried[0].why == "it refuses"
