@@ -56,13 +56,18 @@ class Inadequacy:
 
 @dataclass(frozen=True)
 class Repeatability:
-    """Relative standard deviation of events with 95 % interval; ``deviance``: what the likelihood loses without it."""
+    """Relative standard deviation of events with 95 % interval; ``deviance``: what the likelihood loses without it.
+
+    ``at_limit``: the estimate is as large as it may be (`Errors.most_scatter`), so that what events do besides is no
+    scatter.
+    """
 
     events: str
     estimate: float
     low95: float
     high95: float
     deviance: float
+    at_limit: bool
 
     @property
     def clear(self) -> bool:
@@ -126,7 +131,7 @@ def repeatability(errors: Errors, events: str) -> Repeatability | None:
     low = 0.0 if lost < LEVEL else _end(errors, acting, sd, [sd * factor for factor in SMALLER] + [0.0])
     reach = max(sd, LEAST)
     high = _end(errors, acting, sd, [reach * factor for factor in LARGER])
-    return Repeatability(events, sd, low, high, lost)
+    return Repeatability(events, sd, low, high, lost, sd >= errors.most_scatter)
 
 
 def drifting_base(errors: Errors, seconds: float) -> float | None:

@@ -80,8 +80,9 @@ class ChannelErrors:
 class ErrorModel:
     """Everything that was estimated. ``scatter`` None: no events.
 
-    ``base_noise`` (m s-2) by recording; ``base_drift``: of the base accelerometer's zero, over the peak, at the end of
-    the longest recording, 0 if it is not clear, None of a model whose errors know of none.
+    ``base_noise`` (m s-2) by recording (`diagnosis.data.noise`), taken to be white; ``base_drift``: of the base
+    accelerometer's zero, over the peak, at the end of the longest recording, 0 if it is not clear, None of a model
+    whose errors know of none.
     """
 
     channels: tuple[ChannelErrors, ...]

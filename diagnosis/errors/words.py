@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
+from diagnosis.errors.pieces import LARGEST
 from diagnosis.errors.summary import CLEARLY, ChannelErrors, ErrorModel
 
-LOOSE = 0.05
-"""Scatter of events from which on the reader is warned."""
 COLOURS = {
     "white": "white noise of {}",
     "low": "noise of {} that is stronger at low frequencies",
@@ -19,16 +18,22 @@ def error_lines(errors: ErrorModel) -> list[str]:
     """Sentences about the recordings' errors, the most important first."""
     found = []
     scatter = errors.scatter
-    if scatter is not None and scatter.clear:
-        warning = "; that is much: check the base and the edges" if scatter.estimate > LOOSE else ""
+    if scatter is not None and scatter.at_limit:
+        found.append(
+            f"{scatter.events.capitalize()} scatter by {LARGEST['scatter'] ** 0.5:.0%} or more: more than is taken for "
+            "scatter, so it is treated as a law that differs; check the base and the edges."
+        )
+    elif scatter is not None and scatter.clear:
         found.append(
             f"{scatter.events.capitalize()} repeat to {scatter.estimate:.1%} "
-            f"(95 % interval {scatter.low95:.1%} to {scatter.high95:.1%}){warning}."
+            f"(95 % interval {scatter.low95:.1%} to {scatter.high95:.1%})."
         )
     elif scatter is not None:
         found.append(f"No scatter of the {scatter.events} shows: at most {scatter.high95:.1%}.")
     for channel in errors.channels:
         found.append(_channel(channel))
+    if errors.base_drift is not None and max(errors.base_noise) > 0.0:
+        found.append(_base(errors.base_noise))
     if errors.base_drift:
         found.append(f"base_acceleration_x: its zero drifts by {errors.base_drift:.1%} of the peak, or the base tilts.")
     left = errors.inadequacy
@@ -39,6 +44,13 @@ def error_lines(errors: ErrorModel) -> list[str]:
             f"The model leaves a smooth error {left.ratio:.1f} times the variance of the sensors' noise below 15 Hz."
         )
     return found
+
+
+def _base(noise: tuple[float, ...]) -> str:
+    """``noise`` (m s-2) by recording."""
+    low, high = f"{min(noise):.2g}", f"{max(noise):.2g}"
+    level = high if low == high else f"{low} to {high}"
+    return f"base_acceleration_x: noise of {level} m s-2, that of its quietest tenth, taken to be white."
 
 
 def _channel(channel: ChannelErrors) -> str:

@@ -129,6 +129,17 @@ def test_impacts_that_scatter_are_told() -> None:
     assert found.low95 < found.estimate < found.high95
 
 
+@pytest.mark.parametrize(("scatter", "beyond"), [(0.02, False), (0.05, True)])
+def test_impacts_that_scatter_by_more_than_may_be_are_warned_of(scatter: float, beyond: bool) -> None:
+    """The warning and what the search does with such impacts have one limit."""
+    measured = measure(SPECIMEN, [scattered(f"train_{k}", k, scatter, 0.005) for k in (1, 6)])
+    first = base_fit(SPECIMEN, measured)
+    fitted, errors = refitted(first, disturbance_about(first))
+    told = summary(errors, fitted.measured)
+    assert told.scatter is not None and told.scatter.at_limit is beyond is not errors.scatters
+    assert ("scatter by 3% or more" in " ".join(error_lines(told))) is beyond
+
+
 def test_impacts_that_repeat_do_not_scatter() -> None:
     found = repeatability(about("white")[2], "impacts")
     assert found is not None and not found.clear and found.high95 < 0.02

@@ -162,6 +162,7 @@ class ScatterPart(Part):
     low95: float
     high95: float
     deviance: float
+    at_limit: bool
 
 
 class InadequacyPart(Part):

@@ -23,7 +23,7 @@ SPECTRUM = Spectrum(
 CHANNEL = ChannelErrors("rotation_1", "rad", 3e-4, "low", None, 2e-4, 0.0, (Line(12.3, 1e-4),), SPECTRUM)
 ERRORS = ErrorModel(
     (CHANNEL,),
-    Repeatability("impacts", 0.014, 0.01, 0.019, 40.0),
+    Repeatability("impacts", 0.014, 0.01, 0.019, 40.0, False),
     (0.01,),
     0.0,
     Inadequacy((0.0,), 0.0, 0.0, True),
@@ -43,7 +43,12 @@ def test_both_curves_are_drawn(width: float) -> None:
 def test_the_words_say_what_was_found_and_no_more() -> None:
     said = " ".join(error_lines(ERRORS))
     assert "Impacts repeat to 1.4%" in said and "hum at 12.3 Hz" in said and "drift of 0.0002 rad" in said
+    assert "base_acceleration_x: noise of 0.01 m s-2, that of its quietest tenth" in said
     assert "smooth error" not in said and "grows" not in said and "zero" not in said
+    two = " ".join(error_lines(replace(ERRORS, base_noise=(0.02, 0.01))))
+    assert "noise of 0.01 to 0.02 m s-2" in two
+    for none in (replace(ERRORS, base_noise=(0.0,)), replace(ERRORS, base_drift=None)):
+        assert "base_acceleration_x" not in " ".join(error_lines(none))
     assert "zero drifts by 0.7% of the peak, or the base tilts" in " ".join(
         error_lines(replace(ERRORS, base_drift=0.007))
     )
@@ -54,6 +59,13 @@ def test_the_words_say_what_was_found_and_no_more() -> None:
     large = replace(ERRORS, inadequacy=Inadequacy((1e-3,), 4.0, 60.0, True))
     assert "4.0 times the variance" in " ".join(error_lines(large))
     assert "not told apart" in " ".join(error_lines(replace(ERRORS, inadequacy=Inadequacy((0.0,), 0.0, 0.0, False))))
+
+
+def test_impacts_at_the_limit_of_what_is_taken_for_scatter_are_warned_of() -> None:
+    assert ERRORS.scatter is not None
+    scatter = replace(ERRORS.scatter, estimate=0.03, low95=0.027, high95=0.05, at_limit=True)
+    said = " ".join(error_lines(replace(ERRORS, scatter=scatter)))
+    assert "Impacts scatter by 3% or more: more than is taken for scatter" in said and "repeat" not in said
 
 
 def test_the_file_holds_them() -> None:
