@@ -109,6 +109,19 @@ def test_page_says_what_was_found(verdict: Verdict) -> None:
     assert ("What does not stay the same" in words) == bool(found.constancy)
 
 
+@pytest.mark.parametrize(("nearest", "drawn"), [([None, 0.1], True), ([None, None], False), (None, False)])
+def test_the_caption_names_a_dashed_curve_only_where_one_is_drawn(
+    nearest: list[float | None] | None, drawn: bool
+) -> None:
+    """Of walls and two blocks the nearest mechanism has a name and no curve."""
+    found = diagnosis("not_in_library")
+    assert found.missing_force is not None
+    terms = [{**term, "nearest": nearest} for term in found.missing_force["terms"]]
+    words = " ".join(outline(render(replace(found, missing_force={**found.missing_force, "terms": terms}))).text)
+    assert "The law in a table with its 95 % band" in words
+    assert ("dashed what the nearest mechanism, added stiffness," in words) is drawn
+
+
 def test_page_says_that_shaking_again_would_not_tell() -> None:
     found = diagnosis("cannot_tell_apart")
     alone = {
