@@ -21,7 +21,7 @@ def error_lines(errors: ErrorModel) -> list[str]:
     if scatter is not None and scatter.at_limit:
         found.append(
             f"{scatter.events.capitalize()} scatter by {LARGEST['scatter'] ** 0.5:.0%} or more: more than is taken for "
-            "scatter, so it is treated as a law that differs; check the base and the edges."
+            "scatter, so it may be a law of them that differs; check the base and the edges."
         )
     elif scatter is not None and scatter.clear:
         found.append(
