@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from diagnosis import diagnose
 from diagnosis.answer.result import Diagnosis
+from diagnosis.fit.setup import measure
+from models.errors import InputError
+from models.kinematics import Place
 from tests.diagnosis.buildings import BEARINGS, SPECIMEN, made
 
 
@@ -20,6 +25,14 @@ def test_nothing_is_named_where_nothing_is_missing() -> None:
     assert found.verdict == "nothing_missing" and not found.effects
     for name, true in BEARINGS.items():
         assert found.base[name].estimate == pytest.approx(true, rel=0.02)
+
+
+def test_a_channel_at_a_position_is_refused() -> None:
+    run = made("small", 1.0, 1)
+    channels = {**run.channels, "gauge": run.channels["base_acceleration_x"]}
+    placed = replace(run, channels=channels, places={"gauge": Place("displacement", 1, "x", 0.0, 0.0)})
+    with pytest.raises(InputError, match="gauge is on body 1 and model isolated places no rigid body"):
+        measure(SPECIMEN, [placed])
 
 
 @pytest.mark.slow
@@ -46,6 +59,10 @@ def test_hysteresis_is_named_and_predicts_a_larger_run() -> None:
     values = found.effects[0].parameters
     assert values["post_yield_ratio"].estimate == pytest.approx(0.4, abs=0.04)
     assert found.holdout is not None and found.holdout.after < 0.2 * found.holdout.before
+    assert not found.located and not found.visited and not found.channels and not found.constancy
+    assert found.next_experiment is found.missing_force is found.other_model is None
+    assert not any(effect.stages for effect in found.effects)
+    assert found.errors is not None and found.errors.base_drift is found.errors.scatter is None
     (beyond,) = found.extrapolated
     assert beyond.recording == "larger" and beyond.peak > 1.1 * beyond.learned
     assert "larger reaches" in found.statement and "extrapolates" in found.statement
