@@ -2,7 +2,8 @@
 
 [channels.lvdt_left]              # in a specimen, in the TOML beside a CSV; attributes of a variable in netCDF
 quantity = "displacement"         # or velocity, acceleration, rotation, angular_velocity, uplift, compression, force
-body = 1                          # the lower body, or the only one; default
+body = 1                          # the lower body, or the only one; default. Of uplift and compression also base_layer,
+                                  # top_layer: the joint under body 1, under body 2
 position_x = "-200 mm"            # from the middle of the body's underside, turning with it; default 0
 position_z = 0
 direction = "z"                   # x (default), z; across, along: the body's own
@@ -23,6 +24,9 @@ from models.kinematics import DIRECTIONS, REFERENCES, UNITS, Place
 KEYS = ("quantity", "body", "position_x", "position_z", "direction", "relative_to")
 MOST = 2
 """Bodies of a model."""
+LAYERS = {"base_layer": 1, "top_layer": 2}
+"""The body over each layer: what opens or closes is the joint under it."""
+IN_LAYERS = ("uplift", "compression")
 FARTHEST = 50.0
 """m, of a place from the middle of a body's underside: beyond, it is in another unit."""
 POINTLESS = ("rotation", "angular_velocity", "uplift", "compression")
@@ -33,7 +37,7 @@ class PlaceTable(Schema):
     """One channel as a file states it."""
 
     quantity: str
-    body: int | float = 1
+    body: int | float | str = 1
     position_x: float | int | str = 0.0
     position_z: float | int | str = 0.0
     direction: str = ""
@@ -65,8 +69,7 @@ def read_place(name: str, table: Mapping[str, Any]) -> Place:
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
     _among(given.quantity, UNITS, f"{where}: quantity")
-    if given.body not in range(1, MOST + 1):
-        raise InputError(f"{where}: body = {given.body}; it is 1 (the lower, or the only one) or 2 (the upper one).")
+    body = _body(given, where)
     if given.quantity in POINTLESS and (given.direction or given.relative_to):
         raise InputError(f"{where}: {given.quantity} has no direction and no relative_to; leave them out.")
     if given.quantity == "force" and (given.relative_to or _position(given) != (0.0, 0.0)):
@@ -91,7 +94,7 @@ def read_place(name: str, table: Mapping[str, Any]) -> Place:
     for axis, value in (("x", x), ("z", z)):
         if abs(value) > FARTHEST:
             raise InputError(f"{where}: position_{axis} = {value:g} m is on no wall; give its unit, '{value:g} mm'.")
-    return Place(given.quantity, int(given.body), x, z, direction, relative)
+    return Place(given.quantity, body, x, z, direction, relative)
 
 
 def attributes(place: Place) -> dict[str, str | int | float]:
@@ -104,6 +107,18 @@ def attributes(place: Place) -> dict[str, str | int | float]:
     if place.quantity not in POINTLESS:
         found |= {"position_z": place.z, "direction": place.direction, "relative_to": place.relative_to}
     return found
+
+
+def _body(given: PlaceTable, where: str) -> int:
+    if given.quantity in IN_LAYERS and given.body in LAYERS:
+        return LAYERS[str(given.body)]
+    if isinstance(given.body, str) or given.body not in range(1, MOST + 1):
+        said = f"'{given.body}'" if isinstance(given.body, str) else given.body
+        raise InputError(
+            f"{where}: body = {said}; it is 1 (the lower, or the only one) or 2 (the upper one); "
+            f"{' and '.join(IN_LAYERS)} may also be of {' or '.join(LAYERS)}."
+        )
+    return int(given.body)
 
 
 def _position(given: PlaceTable) -> tuple[float | str, float | str]:

@@ -45,6 +45,26 @@ def test_attributes_say_all_of_a_place(place: Place) -> None:
     assert read_place("gauge", attributes(place)) == place
 
 
+@pytest.mark.parametrize("quantity", ["uplift", "compression"])
+@pytest.mark.parametrize(("layer", "body"), [("base_layer", 1), ("top_layer", 2)])
+def test_a_layer_is_the_joint_under_its_body(quantity: str, layer: str, body: int) -> None:
+    named = read_place("gauge", {"quantity": quantity, "body": layer, "position_x": 0.1})
+    assert named == Place(quantity, body, 0.1) and read_place("gauge", attributes(named)) == named
+
+
+@pytest.mark.parametrize("joint", ["base", "top"])
+def test_a_gauge_in_a_layer_reads_how_far_it_is_compressed(joint: str) -> None:
+    text = 'title = "w"\nmodel = "interface"\n[parameters]\nwall_length = 0.72\nwall_height = 1.8\nwall_mass = 161.0\n'
+    text += "top_mass = 5000.0\ntop_length = 0.72\ntop_height = 0.6\nlayer_thickness = 0.01\nbase_stiffness = 5e7\n"
+    text += "top_stiffness = 5e7\nbase_damping = 6e5\ntop_damping = 5e5\n[initial]\nrotation_1 = 0.002\n"
+    ran = simulate(
+        parse_specimen(f'{text}[channels.gauge]\nquantity = "compression"\nbody = "{joint}_layer"\n'), duration=0.3
+    )
+    read, layer = ran["gauge"].values, ran[f"compression_{joint}"].values
+    assert np.ptp(layer) > 1e-7  # m
+    np.testing.assert_allclose(read - read[0], layer - layer[0], atol=1e-12)
+
+
 @pytest.mark.parametrize("name", ["top", "oben_ä"])
 def test_a_specimen_with_channels_is_written_and_read_back(name: str) -> None:
     text = 'title = "b"\nmodel = "housner"\n[parameters]\nwidth = 0.4\nheight = 1.6\nmass = 1000.0\n'
@@ -61,6 +81,8 @@ def test_a_specimen_with_channels_is_written_and_read_back(name: str) -> None:
         ({"quantity": "force", "position_x": "10 mm"}, "whole joint"),
         ({"quantity": "force", "position_x": 0, "position_z": 0, "relative_to": "", "direction": "along"}, "along"),
         ({"body": 3}, "body = 3"),
+        ({"body": "base_layer"}, "body = 'base_layer'; it is 1 (the lower, or the only one) or 2"),
+        ({"quantity": "uplift", "direction": "", "body": "middle"}, "may also be of base_layer or top_layer"),
         ({"direction": "up"}, "direction"),
         ({"relative_to": "absolute"}, "subtract"),
         ({"position_x": "12 kg"}, "position_x"),
