@@ -37,12 +37,13 @@ class Hidden:
 class Apart(Protocol):
     """A program apart: rotations and rates (`HELD`) of two bodies at the shaking's steps, nan once one falls.
 
-    ``coarse``: as precisely as the search for a size needs.
+    ``coarse``: as precisely as the search for a size needs. ``kicks``: scatter of its impacts at the base, the change
+    of theta'_after over theta'_before; None of bodies that have no impacts (`Bodies.impacts`).
     """
 
     def __call__(
         self, values: Values, mechanisms: Values, shaking: Shaking, law: Law | None, numbers: Sequence[float],
-        largest: float, coarse: bool,
+        largest: float, coarse: bool, kicks: FloatArray | None,
     ) -> dict[str, FloatArray]: ...  # fmt: skip
 
 
@@ -52,7 +53,8 @@ class Bodies:
 
     ``refitted``: parameters that a refit moves, with their relative tolerances; ``calibrated``: ranges of those that
     the specimen leaves open. ``window(values)``: s. ``specimen(rng)``: nominal and true values; ``motion(true, rng,
-    low_pass)``: a motion under which it moves well. ``knows``: whether the program apart can take a law.
+    low_pass)``: a motion under which it moves well. ``knows``: whether the program apart can take a law; ``impacts``:
+    whether its bodies have any, which may scatter.
     """
 
     model: Model
@@ -65,6 +67,7 @@ class Bodies:
     apart: Apart
     knows: Callable[[Law], bool]
     calibrated: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    impacts: bool = False
 
     def bounds(self, name: str, true: float) -> tuple[float, float]:
         """Of the logarithm of a refitted parameter over its ``true`` value; three tolerances where it has one."""
@@ -85,11 +88,14 @@ class Truth:
     law: Law | None = None
     numbers: tuple[float, ...] = (0.0,) * 7
     largest: float = 1.0
+    kicks: FloatArray | None = None
 
     def rotations(self, shaking: Shaking, coarse: bool = False) -> dict[str, FloatArray]:
         """Rotations (rad) and their rates at the shaking's steps. Raises Unsuitable where a body falls."""
         if self.apart:
-            found = self.of.apart(self.values, self.mechanisms, shaking, self.law, self.numbers, self.largest, coarse)
+            found = self.of.apart(
+                self.values, self.mechanisms, shaking, self.law, self.numbers, self.largest, coarse, self.kicks
+            )
         else:
             channels = self.of.model.simulate({**self.values, **self.mechanisms}, shaking).channels
             found = {name: channels[name] for name in HELD}

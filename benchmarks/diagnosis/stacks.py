@@ -89,13 +89,22 @@ def _motion(true: Values, rng: np.random.Generator, low_pass: float) -> Motion:
 
 def _apart(
     values: Values, mechanisms: Values, shaking: Shaking, law: Law | None, numbers: Sequence[float], largest: float,
-    coarse: bool,
+    coarse: bool, kicks: FloatArray | None,
 ) -> dict[str, FloatArray]:  # fmt: skip
     """Of `rigid_stack`, which is precise at any step."""
-    found = rigid_stack.run(values, shaking.horizontal, shaking.time_step, mechanisms, law, numbers, largest)
+    found = rigid_stack.run(values, shaking.horizontal, shaking.time_step, mechanisms, law, numbers, largest, kicks)
     return dict(zip(HELD, np.concatenate(found), strict=True))
 
 
 BODIES = Bodies(
-    MODEL, CATALOGUE, TOLERANCE, REFITTED, lambda values: WINDOW, _stack, _motion, _apart, rigid_stack.knows
+    MODEL,
+    CATALOGUE,
+    TOLERANCE,
+    REFITTED,
+    lambda values: WINDOW,
+    _stack,
+    _motion,
+    _apart,
+    rigid_stack.knows,
+    impacts=True,
 )

@@ -33,7 +33,9 @@ BEYOND = np.geomspace(0.01, 100.0, 23)
 """Shares tried of a law outside the catalogue, whose range is one of free-standing blocks."""
 COUNTS: dict[suite.Kind, int] = {"null": 60, "single": 84, "pair": 20, "open": 20}
 ERRORS = (*imperfections.COLOURS, *imperfections.OTHERS)
-"""A laboratory's errors of two bodies: nothing that scatters."""
+"""A laboratory's errors of any two bodies; impacts scatter besides, of those that have any."""
+MOST_IMPACTS = 1000
+"""In a recording."""
 
 
 def designs(of: Bodies, seed: int, design: type[suite.CaseDesign]) -> list[suite.CaseDesign]:
@@ -44,11 +46,12 @@ def designs(of: Bodies, seed: int, design: type[suite.CaseDesign]) -> list[suite
     """
     rng = np.random.default_rng(seed)
     laws = [n for n, law in (UNSEEN if seed == suite.EVALUATION_SEED else LAWS).items() if of.knows(law)]
+    kinds = (*ERRORS, *imperfections.SCATTER) if of.impacts else ERRORS
     groups: list[list[tuple[suite.Kind, tuple[str, ...], str]]] = []
     for kind, count in COUNTS.items():
         pairs = kind == "pair"
         chosen = _pairs(of, count, rng) if pairs else suite.names_of(kind, count, list(of.catalogue), laws, rng)
-        errors = [str(one) for _ in range(count) for one in rng.permutation(ERRORS)]
+        errors = [str(one) for _ in range(count) for one in rng.permutation(kinds)]
         groups.append([(kind, names, errors[k // 2] if k % 2 else "") for k, names in enumerate(chosen)])
     return [
         design(number, kind, chosen, NOISE, 1.0, error)
@@ -76,10 +79,10 @@ def _case(of: Bodies, design: suite.CaseDesign, seed: int, rng: np.random.Genera
     sampling = float(rng.choice(list(LOW_PASS)))
     drawn = [of.motion(true, rng, LOW_PASS[sampling]) for _ in RECORDINGS]
     peak = drawn[0][2]
-    apart = design.number % 2 == 0 or design.kind == "open"
     errors = Imperfections()
     if design.imperfection:
         errors = imperfections.draw(design.imperfection, design.names, sampling, rng)
+    apart = design.number % 2 == 0 or design.kind == "open" or errors.scatter > 0.0
     truth, sensors, effects, kind = Truth(of, true, {}, apart), {}, [], str(design.kind)
     if design.kind == "open":
         law = EVERY_LAW[design.names[0]]
@@ -170,7 +173,8 @@ def _recorded(
 ) -> tuple[dict[str, FloatArray], dict[str, float]]:  # fmt: skip
     """Channels as written to the file, and the standard deviation of the noise in each."""
     fine = shakings.on_fine_grid(shaking)
-    ran, seen = truth.rotations(fine), {**sensors, **errors.sensors}
+    kicks = errors.kicks(MOST_IMPACTS, rng) if errors.scatter else None
+    ran, seen = replace(truth, kicks=kicks).rotations(fine), {**sensors, **errors.sensors}
     if np.max(np.abs(ran["rotation_1"])) > float(truth.of.model.derive(truth.values)["alpha"][0]):
         raise Unsuitable  # with the effect it falls
     base = instruments.base(fine.horizontal, fine.time_step, seen)

@@ -113,9 +113,9 @@ def _motion(true: Mapping[str, float], rng: np.random.Generator, low_pass: float
 
 def _apart(
     values: Values, mechanisms: Values, shaking: Shaking, law: Law | None, numbers: Sequence[float], largest: float,
-    coarse: bool,
+    coarse: bool, kicks: FloatArray | None,
 ) -> dict[str, FloatArray]:  # fmt: skip
-    """Of `fibre_wall`."""
+    """Of `fibre_wall`, on whose layers nothing strikes that could scatter."""
     try:
         found = fibre_wall.run(
             values, shaking.horizontal, shaking.time_step, mechanisms, law, numbers, largest,

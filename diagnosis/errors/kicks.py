@@ -75,7 +75,7 @@ def kicks(predictor: Predictor, point: Point) -> Kicks:
                 continue
             start = along.at(window, after)
             changes = _changes(along, joint, start)
-            slope, ends = _left(along, r, window, after, start, changes)
+            slope, ends = _left(along, r, window, after, start, changes | _since(along, r, joint, start, changes))
             np.minimum.at(followed, window, ends)
             columns += list(zip(window.tolist(), slope, strict=True))
             sampled.append(m.first[window] + after - 1 + BEFORE)
@@ -112,6 +112,18 @@ def _changes(along: Along, joint: Closing, start: Mapping[str, FloatArray]) -> d
     own, by_impulse = np.broadcast_arrays(joint.rate(start), joint.rate(jumps))
     impulse = np.divide(own, by_impulse, out=np.zeros(own.shape), where=by_impulse != 0.0)
     return {name: impulse * jump for name, jump in jumps.items() if name in m.free}
+
+
+def _since(
+    along: Along, r: int, joint: Closing, start: Mapping[str, FloatArray], changes: Mapping[str, FloatArray]
+) -> dict[str, FloatArray]:
+    """By state, its change (n,) by these changes of rates since the event, up to a sample before."""
+    m = along.predictor.measured
+    coordinate, rate = joint.port.coordinate(start), joint.rate(start)
+    since = np.divide(coordinate, rate, out=np.zeros(rate.shape), where=rate != 0.0)
+    since = np.clip(since, 0.0, m.recordings[r].time_step)
+    angles = {state.name: state.channel for state in m.identification.free if state.rate}
+    return {angles[name]: since * change for name, change in changes.items()}
 
 
 def _left(

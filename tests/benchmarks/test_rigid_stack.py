@@ -85,7 +85,7 @@ def test_a_law_at_impacts_acts_on_one_side_and_scatter_on_both() -> None:
 def test_what_a_scattered_impact_leaves_is_what_the_diagnosis_takes_for_it() -> None:
     """An impact at the base loses more in the program apart: what follows in both bodies is the column of that event.
 
-    Which begins at the first sample after it, up to a sample late.
+    The column begins at the first sample after it, up to a sample late: compared are the rates.
     """
     every, plain, checked = 5, apart({}), 0
     recording = Recording("run", every * STEP, TIME[::every], {
@@ -107,6 +107,6 @@ def test_what_a_scattered_impact_leaves_is_what_the_diagnosis_takes_for_it() -> 
             column = found.columns[found.window[e], :, begin : window.samples, found.place[e]]
             for seen, true in zip(column, change, strict=True):
                 assert np.corrcoef(seen, true)[0, 1] > 0.998
-                assert abs(seen @ true / (true @ true) - 1.0) < 0.15
+                assert abs(np.diff(seen) @ np.diff(true) / np.sum(np.diff(true) ** 2) - 1.0) < 0.1
             checked += 1
     assert checked >= 6

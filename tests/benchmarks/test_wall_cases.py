@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 import pytest
 
-from benchmarks.diagnosis import bodies, body_size, stacks, two_bodies, walls
+from benchmarks.diagnosis import bodies, body_size, imperfections, stacks, two_bodies, walls
 from benchmarks.diagnosis.files import write_case
 from benchmarks.diagnosis.scene import Unsuitable
 from grids.instruments import INSTRUMENTS
@@ -39,7 +40,7 @@ def test_errors_are_shared_out_alike_and_pairs_are_of_two_classes(of: ModuleType
     for kind, count in two_bodies.COUNTS.items():
         assert sum(bool(one.imperfection) for one in asked if one.kind == kind) == count // 2
     errors = Counter(one.imperfection for one in asked if one.imperfection)
-    assert set(errors) == set(two_bodies.ERRORS)
+    assert set(errors) == {*two_bodies.ERRORS, *(imperfections.SCATTER if of is stacks else ())}
     for names in (one.names for one in asked if one.kind == "pair"):
         assert len({of.CATALOGUE[name].effect_class for name in names}) == 2
 
@@ -89,3 +90,15 @@ def test_a_case_is_read_as_it_was_made(of: ModuleType, tmp_path: Path) -> None:
     assert set(bodies.ROTATIONS) <= set(recording.channels)
     again = of.make(design, 7).channels["train_1"]["rotation_1"]
     np.testing.assert_array_equal(case.channels["train_1"]["rotation_1"], again)
+
+
+def test_impacts_of_a_stack_scatter_in_a_program_apart() -> None:
+    asked = next(one for one in stacks.designs(7) if one.kind == "null" and one.imperfection == "scatter_2")
+    asked = replace(asked, number=asked.number | 1)
+    made, plain = stacks.make(asked, 7), stacks.make(replace(asked, imperfection=""), 7)
+    assert made.key["imperfections"]["scatter"] == 0.02
+    assert made.key["program_apart"] and not plain.key["program_apart"]
+    for name, channels in made.channels.items():
+        for of, seen in channels.items():
+            change = np.max(np.abs(seen - plain.channels[name][of])) / np.max(np.abs(seen))
+            assert change > 0.1 if of.startswith("rotation") else change < 0.1

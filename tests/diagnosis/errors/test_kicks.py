@@ -26,9 +26,11 @@ def test_kicks_are_differences_of_runs() -> None:
             after = int(sample) + 1
             if after + 4 > n:
                 continue
-            ends = []
+            ends, (angle, rate) = [], plain[:, after]
+            since = min(angle / rate, measured.recordings[0].time_step)
+            assert since > 0.0
             for share in (1.002, 0.998):
-                state = plain[:, after] * np.array([1.0, share])
+                state = np.array([angle + (share - 1.0) * rate * since, share * rate])
                 ends.append(_run(model, point, shaking, measured.first[w] + after, n - after, state)[0])
             slope = (ends[0] - ends[1]) / 0.004
             column = found[w, 0, after:n, k]
