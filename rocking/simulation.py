@@ -56,6 +56,9 @@ def simulate(
     if not abs(scale) <= LARGEST_SCALE:
         raise InputError(f"scale is {scale!r}: give a factor on the motion, at most {LARGEST_SCALE:g}")
     if motion is None:
+        if component is not None or scale != 1.0:
+            acting = "a component" if component is not None else "a scale"
+            raise InputError(f"{acting} without a motion has no effect: name the motion, or leave it out")
         if duration is None:
             raise InputError("no motion and no duration: name a motion, or give the time of free motion in s")
         _check_steps(duration, FREE_TIME_STEP)
@@ -116,8 +119,11 @@ def _shaking(specimen: Specimen, motion: Motion | Recording | str | Path, compon
 def recording_of(motion: str | Path) -> Recording | None:
     """The motion of the base of a recording, found where motions are; None of what is no recording."""
     from grids.motions.locate import locate
+    from grids.motions.made import parse_made
     from grids.recordings import read_recording
 
+    if parse_made(str(motion)) is not None:  # a text of any length, which may be none as the name of a file
+        return None
     path = Path(motion)
     if not path.is_file():
         try:

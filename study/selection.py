@@ -112,6 +112,10 @@ def position(cube: xr.Dataset, name: str, value: Any, nearest: bool = False) -> 
     same = np.flatnonzero(axis.values == wanted)
     if same.size:  # inf too, from which nothing has a distance
         return int(same[0])
+    if nearest and _is_beyond(axis, wanted):
+        raise InputError(
+            f"{name} = {value_shown(axis, wanted)} is far off the grid: {_range(axis)}; give a value of it"
+        )
     index = int(np.argmin(np.abs(axis.values - wanted)))
     if not nearest and abs(axis.values[index] - wanted) > SAME * abs(wanted):
         raise InputError(f"{name} = {value_shown(axis, wanted)} is not on the grid: {_neighbours(axis, wanted)}")
@@ -122,7 +126,7 @@ def _number(axis: xr.DataArray, name: str, value: Any) -> float:
     unit = str(axis.attrs.get("units", "1"))
     if not isinstance(value, int | float | str | np.number) or isinstance(value, bool):
         raise InputError(f"axis '{name}' needs a number in {unit} or a text with its unit, not {value!r}")
-    if isinstance(value, str) and unit != "1" and _is_number(value):
+    if isinstance(value, str) and unit != "1" and is_number(value):
         shown = unit_shown(unit)[1]
         raise InputError(
             f"{name}={value} has no unit: write {name}='{value} {shown}' or another unit of {unit}; "
@@ -131,7 +135,8 @@ def _number(axis: xr.DataArray, name: str, value: Any) -> float:
     return to_si(value if isinstance(value, str) else float(value), unit, name)
 
 
-def _is_number(text: str) -> bool:
+def is_number(text: str) -> bool:
+    """Whether a text is a number alone, without a unit."""
     try:
         float(text)
     except ValueError:
@@ -139,10 +144,20 @@ def _is_number(text: str) -> bool:
     return True
 
 
+def _is_beyond(axis: xr.DataArray, wanted: float) -> bool:
+    """Whether a value lies farther off the end of the grid than the next value of the grid lies within."""
+    values = np.sort(axis.values)
+    steps = np.diff(values) if values.size > 1 else np.array([SAME * abs(wanted)])
+    return bool(values[0] - wanted > steps[0] or wanted - values[-1] > steps[-1])
+
+
+def _range(axis: xr.DataArray) -> str:
+    return f"it goes from {value_shown(axis, axis.values.min())} to {value_shown(axis, axis.values.max())}"
+
+
 def _neighbours(axis: xr.DataArray, wanted: float) -> str:
     below, above = axis.values[axis.values < wanted], axis.values[axis.values > wanted]
     if not below.size or not above.size:
-        low, high = value_shown(axis, axis.values.min()), value_shown(axis, axis.values.max())
-        return f"it goes from {low} to {high}; give a value of it, or ask for the nearest"
+        return f"{_range(axis)}; give a value of it, or ask for the nearest"
     two = f"{value_shown(axis, below.max())} and {value_shown(axis, above.min())}"
     return f"its neighbours are {two}; give one of them, or ask for the nearest"

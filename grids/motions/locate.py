@@ -28,6 +28,8 @@ def reader_of(path: Path) -> Reader:
     for reader in READERS:
         if suffix in reader.suffixes:
             return reader
+    if suffix == ".toml":
+        raise InputError(f"{path.name}: a TOML file holds no samples; name the table that it describes (.csv).")
     known = ", ".join(s for reader in READERS for s in reader.suffixes)
     raise InputError(f"{path.name}: no reader for the ending {suffix or 'that it lacks'!r}; known: {known}.")
 
@@ -38,11 +40,16 @@ def split_source(source: str) -> tuple[str, str | None]:
     return (match[1], match[2]) if match else (source, None)
 
 
-def _folders(near: Path | None) -> list[Path]:
-    """Folders that a relative path is looked for in, in this order."""
+def file_of(source: str) -> Path | None:
+    """The file that a source names; None of a motion that is made."""
+    return None if parse_made(source) is not None else Path(split_source(source)[0])
+
+
+def _folders(near: Path | None, only_own: bool = False) -> list[Path]:
+    """Folders that a relative path is looked for in, in this order; without those of others if ``only_own``."""
     data = data_folder()
-    folders = [] if near is None else [near if near.is_dir() else near.parent]
-    return [*folders, Path.cwd(), SHIPPED, *([data / "motions", data] if data else [])]
+    own = [*([] if near is None else [near if near.is_dir() else near.parent]), Path.cwd()]
+    return own if only_own else [*own, SHIPPED, *([data / "motions", data] if data else [])]
 
 
 def locate(source: str, near: Path | None = None) -> tuple[Path, str | None]:
@@ -60,7 +67,7 @@ def locate(source: str, near: Path | None = None) -> tuple[Path, str | None]:
         return SHIPPED / f"{name}.nc", key
     folders = [folder / wanted.parent for folder in _folders(near)]
     raise InputError(
-        f"motion {source!r} is not beside the plan, in the current folder, among the shipped ones "
+        f"motion {source!r} is not beside the file that names it, in the current folder, among the shipped ones "
         f"or in the data folder (ROCKING_DATA); {_cure(wanted.name, folders)}"
     )
 
@@ -96,8 +103,14 @@ def find(source: str | Mapping[str, Any], near: Path | None = None) -> list[str 
         elif not (path.suffix.lower() in at2.AT2.suffixes and at2.is_vertical(path)):
             found.append(str(path))
     if not found:
-        raise InputError(f"motion {source!r}: nothing matches; {_cure(name, _folders(near))}")
+        where = " beside the file that names it and in the current folder" if _names_nothing(name) else ""
+        raise InputError(f"motion {source!r}: nothing matches{where}; {_cure(name, _folders(near))}")
     return found
+
+
+def _names_nothing(pattern: str) -> bool:
+    """Of "*.csv" and the like the files of the user are meant, not all that is shipped or lies in the data folder."""
+    return _is_pattern(pattern[0])
 
 
 def _matching(name: str, near: Path | None) -> Iterator[Path]:
@@ -106,7 +119,7 @@ def _matching(name: str, near: Path | None) -> Iterator[Path]:
         yield locate(name, near)[0]
         return
     wanted = Path(name).expanduser()
-    bases = [Path(wanted.anchor)] if wanted.is_absolute() else _folders(near)
+    bases = [Path(wanted.anchor)] if wanted.is_absolute() else _folders(near, _names_nothing(name))
     for base in bases:
         relative = wanted.relative_to(wanted.anchor) if wanted.is_absolute() else wanted
         paths = [base / p for p in glob.glob(str(relative), root_dir=base, recursive=True)]

@@ -29,11 +29,11 @@ def simulate(
             parser=number,
         ),
     ] = None,
-    figure: Annotated[Path | None, typer.Option(help="Draw the rotation over time (.png, .pdf).")] = None,
+    figure: Annotated[Path | None, typer.Option(help="Draw the rotation over time (.png, .pdf, .svg).")] = None,
     strict: Annotated[bool, typer.Option("--strict", help=STRICT)] = False,
 ) -> None:
     """Simulate a specimen and write every observable over time, and the events."""
-    from grids.motions.locate import split_source
+    from grids.motions.locate import file_of
     from grids.plausibility import suspicions_of_peak, suspicions_of_specimen
     from grids.recordings import Recording
     from grids.specimen import read_specimen, with_mechanism
@@ -44,7 +44,8 @@ def simulate(
 
     if figure is not None:
         check_suffix(figure)
-    keep_inputs([out], [specimen, *([Path(split_source(motion)[0])] if motion else [])])
+    read = file_of(motion) if motion else None
+    keep_inputs([out], [specimen, *([read] if read else [])])
     wall = read_specimen(specimen)
     if displacement_high_pass is not None:
         wall = with_mechanism(wall, "integrated_displacement", {"high_pass_hz": displacement_high_pass})

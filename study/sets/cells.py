@@ -40,12 +40,18 @@ def event_of(cube: xr.Dataset, output: str = "overturned", threshold: float | No
         if threshold is not None:
             raise InputError(f"overturned is yes or no: leave the threshold {threshold:g} out")
         return Event()
+    unit = unit_of(cube, output)
+    if threshold is None or not np.isfinite(threshold):
+        raise InputError(f"an event of {output} needs the threshold that is exceeded, in {unit}")
+    return Event(output, float(threshold), unit)
+
+
+def unit_of(cube: xr.Dataset, output: str) -> str:
+    """The SI unit of an output that an event may be about. Raises InputError."""
     if output not in cube.data_vars or output == "status":
         known = [str(name) for name in cube.data_vars if name != "status"]
         raise InputError(f"'{output}' is no output of this cube: {closest(output, known)}")
-    if threshold is None or not np.isfinite(threshold):
-        raise InputError(f"an event of {output} needs the threshold that is exceeded, in {cube[output].units}")
-    return Event(output, float(threshold), str(cube[output].attrs.get("units", "1")))
+    return str(cube[output].attrs.get("units", "1"))
 
 
 def chosen_cells(

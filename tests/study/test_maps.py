@@ -173,6 +173,12 @@ def test_a_value_is_one_of_the_grid_or_the_nearest_if_asked_for(cube: xr.Dataset
         cube.rocking.overturning_map(x="aspect_ratio", y="top_mass", pga=1.01 * pga)
     near = cube.rocking.overturning_map(x="aspect_ratio", y="top_mass", pga=1.01 * pga, nearest=True)
     xr.testing.assert_identical(near, by_number)
+    values = np.sort(cube["pga"].values)
+    just_off, far_off = values[-1] + 0.9 * (values[-1] - values[-2]), values[-1] + 1.1 * (values[-1] - values[-2])
+    last = cube.rocking.overturning_map(x="aspect_ratio", y="top_mass", pga=just_off, nearest=True)
+    assert last.attrs["selection"] == f"PGA {values[-1] / 9.80665:.4g} g"
+    with pytest.raises(InputError, match=r"far off the grid: it goes from .* give a value of it"):
+        cube.rocking.overturning_map(x="aspect_ratio", y="top_mass", pga=far_off, nearest=True)
 
 
 def test_axes_by_equal_factors_are_logarithmic_and_in_engineers_units(tmp_path: Path) -> None:

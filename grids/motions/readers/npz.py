@@ -151,7 +151,8 @@ def _read(path: Path, key: str | None, statement: Mapping[str, Any]) -> Record:
         try:
             stated = check(Statement, dict(statement) or parse_toml(read_utf8(beside, "the description")))
         except InputError as error:
-            raise InputError(f"{beside.name}: {error}") from None
+            where = f"what is stated of {path.name}" if statement else beside.name
+            raise InputError(f"{where}: {error}") from None
     else:
         line = _index_line(path, split_key(keys[0])[0])
     if stated is not None:
