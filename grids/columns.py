@@ -18,7 +18,8 @@ A cell that is empty or says ``nan``, ``#N/A``, ``-`` and the like (`MISSING`) i
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Mapping
+import json
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -33,6 +34,10 @@ from models.errors import InputError, nearest
 
 MISSING = frozenset({"", "nan", "#n/a", "n/a", "#na", "na", "null", "none", "-", "--", "---"})
 """What loggers and spreadsheets write, in any case, where nothing was measured."""
+
+
+DELIMITERS = ";\t,"
+"""What parts the cells of tables, beside white space."""
 
 
 class Column(Schema):
@@ -129,6 +134,8 @@ def _rows(path: Path, layout: Layout) -> tuple[list[str], list[tuple[int, list[s
     if not rows:
         after = f" after the {layout.skip} that are skipped" if layout.skip else ""
         raise InputError(f"{path.name}: holds no lines of numbers{after}; was it written to its end?")
+    if other := another_delimiter(rows[-1][1], layout.delimiter, f"{DELIMITERS} ".replace(layout.decimal, "")):
+        raise InputError(f"{path.name}: line {rows[-1][0]} is one cell by the delimiter {layout.delimiter!r}; {other}.")
     if layout.delimiter.isspace() and layout.delimiter != "\t":
         _check_cells(path, rows)
     if not layout.header:
@@ -151,6 +158,12 @@ def _rows(path: Path, layout: Layout) -> tuple[list[str], list[tuple[int, list[s
                 f"{path.name}: line {number} has {len(cells)} cells, the header {len(names)}; {_cure(layout)}."
             )
     return names, rows[1:]
+
+
+def another_delimiter(cells: Sequence[str], stated: str, among: str) -> str:
+    """What to state where a line is one cell by the ``stated`` delimiter and several by another; else nothing."""
+    found = next((mark for mark in among if mark != stated and len(cells) == 1 and mark in cells[0].strip()), None)
+    return "" if found is None else f"state delimiter = {json.dumps(found)}"
 
 
 def _check_cells(path: Path, rows: list[tuple[int, list[str]]]) -> None:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from grids.axes.base import Axis, AxisKind, Request
+from grids.columns import DELIMITERS, another_delimiter
 from grids.files import read_text
 from grids.targets import MOTION
 from grids.units import factor_to_si
@@ -46,7 +47,16 @@ def _read(request: Request) -> Axis:
     if times > 1:
         raise InputError(f"{request.where}: the label '{label}' is given twice; give each case its own.")
     points = {name: _column(request, name, rows, labels) for name in names}
+    _refuse_twice(request, labels, points)
     return Axis(request.own_name(), labels, "1", "case", points)
+
+
+def _refuse_twice(request: Request, labels: NDArray[Any], points: dict[str, NDArray[Any]]) -> None:
+    first: dict[tuple[str, ...], str] = {}
+    for number, label in enumerate(labels):
+        other = first.setdefault(tuple(str(column[number]) for column in points.values()), label)
+        if other != label:
+            raise InputError(f"{request.where}: cases '{other}' and '{label}' have the same values; leave one out.")
 
 
 def _column(request: Request, name: str, rows: list[dict[str, Any]], labels: NDArray[Any]) -> NDArray[Any]:
@@ -65,20 +75,23 @@ def _column(request: Request, name: str, rows: list[dict[str, Any]], labels: NDA
 
 def _from_csv(request: Request, file: str) -> list[dict[str, Any]]:
     text = read_text(request.folder / file, f"{request.where}: the list of cases")
-    lines = [line for line in csv.reader(io.StringIO(text), skipinitialspace=True) if line]
+    reader = csv.reader(io.StringIO(text), skipinitialspace=True)
+    lines = [(reader.line_num, cells) for cells in reader if cells]
     if not lines:
         raise InputError(f"{request.where}: {file} is empty; give a header and one line for each case.")
-    columns = [_heading(request, heading, file) for heading in lines[0]]
+    if another_delimiter(lines[0][1], ",", DELIMITERS):
+        raise InputError(f"{request.where}: the header of {file} is one cell; part its cells by commas.")
+    columns = [_heading(request, heading, file) for heading in lines[0][1]]
     if len({name for name, _ in columns}) < len(columns):
         raise InputError(f"{request.where}: {file} has two columns of one name; leave one out.")
     rows = []
-    for number, line in enumerate(lines[1:], 2):
-        if len(line) != len(columns):
+    for number, cells in lines[1:]:
+        if len(cells) != len(columns):
             raise InputError(
-                f"{request.where}: line {number} of {file} has {len(line)} fields, the header "
+                f"{request.where}: line {number} of {file} has {len(cells)} fields, the header "
                 f"{len(columns)}; correct that line."
             )
-        pairs = zip(columns, line, strict=True)
+        pairs = zip(columns, cells, strict=True)
         rows.append({name: _cell(name, text.strip(), factor) for (name, factor), text in pairs})
     return rows
 

@@ -15,6 +15,8 @@ def _read(request: Request) -> Axis:
     if not isinstance(entries, list) or not 0 < len(entries) <= MOST_POINTS:
         raise InputError(f"{where} = {entries!r}; give a list of at least one value.")
     if request.name == MOTION:
+        if "unit" in request.table:
+            raise InputError(f"{request.where}: motions have no unit; leave unit out.")
         return Axis(MOTION, _words(entries, where), "1", "ground motion")
     target = request.target()
     if target.words:

@@ -3,6 +3,7 @@
 ``outcomes.toml``:
 
     table = "tests.csv"                                 # beside this file or in the data folder; a line a run
+    delimiter = ","                                     # of its cells; this is the default
     run = "test"                                        # column that names a run
     motion = "table_acceleration.npz:test_{test:0>3}"   # a source of motion, columns in braces
     overturned = "rock_1_overturned"                    # column of 0 and 1, yes and no; absent: to be predicted
@@ -29,6 +30,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from grids.columns import DELIMITERS, another_delimiter
 from grids.data_folder import data_folder
 from grids.files import Schema, check, parse_toml, read_text
 from grids.motions import Motion, read_motion
@@ -41,6 +43,7 @@ LAYOUT = re.compile(r"(?:[^{}]?[<>^])?[0-9]{0,2}")
 
 class OutcomeFile(Schema):
     table: str
+    delimiter: str = Field(default=",", min_length=1, max_length=1)
     run: str
     motion: str
     overturned: str | None = None
@@ -79,15 +82,16 @@ def read_outcomes(path: str | Path) -> Outcomes:
     except InputError as error:
         raise InputError(f"{path.name}: {error}") from None
     folder = path.resolve().parent
-    lines = _lines(_beside(folder, file.table))
+    columns, numbered = _lines(_beside(folder, file.table), file.delimiter)
+    lines = list(numbered.values())
     for column in (file.run, file.overturned, file.group):
-        if column is not None and column not in lines[0]:
-            raise InputError(f"{path.name}: {file.table} has no column {column!r}; {nearest(column, lines[0])}")
-    runs = _filled(lines, file.run, file.table)
+        if column is not None and column not in columns:
+            raise InputError(f"{path.name}: {file.table} has no column {column!r}; {nearest(column, columns)}")
+    runs = _filled(numbered, file.run, file.table)
     if twice := [run for run, count in Counter(runs).items() if count > 1]:
         raise InputError(f"{file.table}: run {twice[0]!r} stands there twice in column {file.run!r}; rename one")
     flags = None if file.overturned is None else np.array([_flag(line, file) for line in lines])
-    groups = runs if file.group is None else _filled(lines, file.group, file.table)
+    groups = runs if file.group is None else _filled(numbered, file.group, file.table)
     motions = tuple(_motion(file, line, folder, run) for line, run in zip(lines, runs, strict=True))
     return Outcomes(path.stem, runs, motions, groups, flags, file.overturned or "overturned")
 
@@ -100,20 +104,26 @@ def _beside(folder: Path, table: str) -> Path:
     return folder / table
 
 
-def _lines(path: Path) -> Sequence[Mapping[str, str]]:
+def _lines(path: Path, delimiter: str) -> tuple[Sequence[str], Mapping[int, Mapping[str, str]]]:
+    """The names of the columns, and the rows by the number of their line."""
     text = read_text(path, "table of outcomes")
     try:
-        reader = csv.DictReader(text.splitlines(), restkey="", strict=True)
-        _check_header(path, reader.fieldnames or ())
-        lines = list(reader)
+        reader = csv.DictReader(text.splitlines(), restkey="", strict=True, delimiter=delimiter)
+        columns = reader.fieldnames or ()
+        if other := another_delimiter(columns, delimiter, DELIMITERS):
+            raise InputError(f"{path.name}: its header is one cell by the delimiter {delimiter!r}; {other}")
+        _check_header(path, columns)
+        lines = {}
+        for line in reader:
+            lines[reader.line_num] = line
     except csv.Error as error:
         raise InputError(f"{path.name}: is no table ({error}); save it as CSV with one line of names") from None
     if not lines:
         raise InputError(f"{path.name}: has no line below its header; give a line a run")
-    for number, line in enumerate(lines, 2):
+    for number, line in lines.items():
         if "" in line or None in line.values():
             raise InputError(f"{path.name}: line {number} has not as many cells as the header; complete it")
-    return lines
+    return columns, lines
 
 
 def _check_header(path: Path, columns: Sequence[str]) -> None:
@@ -127,12 +137,12 @@ def _check_header(path: Path, columns: Sequence[str]) -> None:
         raise InputError(f"{path.name}: two columns are called {twice[0]!r}; rename one")
 
 
-def _filled(lines: Sequence[Mapping[str, str]], column: str, table: str) -> tuple[str, ...]:
+def _filled(lines: Mapping[int, Mapping[str, str]], column: str, table: str) -> tuple[str, ...]:
     """The cells of a column, none of them empty."""
-    cells = tuple(line[column].strip() for line in lines)
-    if "" in cells:
-        raise InputError(f"{table}: line {cells.index('') + 2} has an empty cell in column {column!r}; fill it in")
-    return cells
+    cells = {number: line[column].strip() for number, line in lines.items()}
+    if empty := [number for number, cell in cells.items() if not cell]:
+        raise InputError(f"{table}: line {empty[0]} has an empty cell in column {column!r}; fill it in")
+    return tuple(cells.values())
 
 
 def _flag(line: Mapping[str, str], file: OutcomeFile) -> bool:

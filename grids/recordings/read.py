@@ -17,6 +17,9 @@ from models.errors import InputError, nearest
 READERS = (netcdf, csv_toml)
 BASE = "base_"
 """How the channels of the base's motion begin."""
+UNKNOWN = " is no standard channel"
+"""In the note about a channel that is left out, after its name."""
+MEANT = "did you mean"
 
 
 @np.errstate(over="ignore", invalid="ignore")  # what becomes infinite is a sample without a value
@@ -57,7 +60,7 @@ def read_recording(path: str | Path, *, base_only: bool = False) -> Recording:
 
 def _checked(name: str, raw: Raw, base_only: bool) -> Recording:
     if REQUIRED not in raw.channels:
-        found = ", ".join([*raw.channels, *(note.partition(" is no")[0] for note in raw.notes)])
+        found = ", ".join([*raw.channels, *(note.partition(UNKNOWN)[0] for note in raw.notes if UNKNOWN in note)])
         raise InputError(
             f"has no {REQUIRED} (found: {found or 'no channel'}); name or map it so, zeros for free rocking."
         )
@@ -65,10 +68,9 @@ def _checked(name: str, raw: Raw, base_only: bool) -> Recording:
         raw = replace(raw, channels={c: x for c, x in raw.channels.items() if c.startswith(BASE)}, levels=())
     if not base_only and not any(c in raw.places or CHANNELS[c].response for c in raw.channels):
         responses = [channel for channel, declared in CHANNELS.items() if declared.response]
-        raise InputError(
-            f"has no response (channels: {', '.join(raw.channels)}); add one of {', '.join(responses)}, or a channel "
-            "that says its quantity."
-        )
+        misspelt = [note.removesuffix(" It is left out.") for note in raw.notes if UNKNOWN in note and MEANT in note]
+        cure = f"add one of {', '.join(responses)}, or a channel that says its quantity."
+        raise InputError(f"has no response (channels: {', '.join(raw.channels)}); {(*misspelt, cure)[0]}")
     first, last = _measured_span(raw)
     notes = list(raw.notes)
     count = raw.channels[REQUIRED].shape[-1]

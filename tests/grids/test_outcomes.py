@@ -39,6 +39,11 @@ def test_runs_motions_groups_and_outcomes_belong_together(tmp_path: Path) -> Non
     assert found.motions[0].time_step == 0.01
 
 
+def test_cells_may_be_parted_by_another_delimiter(tmp_path: Path) -> None:
+    path = written(tmp_path, TABLE.replace(",", ";"), 'delimiter = ";"\n' + DESCRIPTION)
+    assert read_outcomes(path).runs == ("1", "12", "3")
+
+
 def test_outcomes_may_be_unknown_and_every_run_its_own_group(tmp_path: Path) -> None:
     plain = DESCRIPTION.replace('overturned = "fell"\n', "").replace('group = "motion"\n', "")
     found = read_outcomes(written(tmp_path, description=plain))
@@ -59,6 +64,7 @@ def test_outcomes_may_be_unknown_and_every_run_its_own_group(tmp_path: Path) -> 
         ("{test:0>3}", "001", "no column in braces"),
         ("tests.csv", "test.csv", "does not exist"),
         ("[statement]", "[statements]", "statements"),
+        ('time_step = "0.01 s"', "", "what is stated of shaking.npz: time_step is missing"),
     ],
 )
 def test_a_slip_in_the_description_is_named(tmp_path: Path, old: str, new: str, said: str) -> None:
@@ -78,6 +84,10 @@ def test_a_slip_in_the_description_is_named(tmp_path: Path, old: str, new: str, 
         ('test,motion,fell\n1,"a,0\n', "is no table"),
         ("test,motion,fell\n,a,0\n", "line 2 has an empty cell in column 'test'"),
         ("test,motion,fell\n1,a,0\n12, ,1\n", "line 3 has an empty cell in column 'motion'"),
+        ("test,motion,fell\n\n\n1,a\n", "line 4 has not as many cells"),
+        ("test,motion,fell\n\n1,a,0\n12, ,1\n", "line 4 has an empty cell in column 'motion'"),
+        ("test;motion;fell\n1;a;0\n", 'state delimiter = ";"'),
+        ("test\tmotion\tfell\n1\ta\t0\n", r'state delimiter = "\\t"'),
         ("test,motion,fell,fell\n1,a,0,1\n", "two columns are called 'fell'; rename one"),
         (",test,motion,fell\n0,1,a,0\n", r"column 1 has no name.*index"),
     ],

@@ -285,6 +285,12 @@ def test_bad_descriptions(kind: str, written: Callable[[str, str], Path]) -> Non
     assert all(word in str(error.value) for word in ("test_2", *words)), str(error.value)
 
 
+def test_a_misspelt_response_is_told_with_the_right_name(tmp_path: Path) -> None:
+    data = dataset().rename(rotation_1="Rotation_1")
+    with pytest.raises(InputError, match=r"no response \(channels: base.*'Rotation_1' is no .* mean 'rotation_1'"):
+        read_recording(stored(tmp_path, data))
+
+
 def test_files_that_are_none(tmp_path: Path, written: Callable[[str, str], Path]) -> None:
     path = stored(tmp_path, dataset())
     with pytest.raises(InputError, match=r"does not exist; did you mean 'test_1.nc'"):

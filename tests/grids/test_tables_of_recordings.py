@@ -36,6 +36,26 @@ def test_a_row_with_more_cells_than_the_header_is_refused(rows: list[str], writt
         read_recording(written("test_4.csv", "\n".join(["acc,inc", *rows])))
 
 
+@pytest.mark.parametrize(
+    ("stated", "mark", "cure"), [(",", ";", ";"), (",", "\t", r"\\t"), (";", ",", ","), ("\t", " ", " ")]
+)
+def test_another_delimiter_is_told(stated: str, mark: str, cure: str, written: Callable[[str, str], Path]) -> None:
+    written("test_4.toml", TOML.replace("[columns]", f"delimiter = '{stated}'\n[columns]"))
+    with pytest.raises(InputError, match=f'line 401 is one cell by the delimiter .*; state delimiter = "{cure}"'):
+        read_recording(written("test_4.csv", "\n".join([f"acc{mark}inc", *(mark.join(row) for row in VALUES)])))
+
+
+def test_a_turned_sign_is_no_channel(written: Callable[[str, str], Path]) -> None:
+    written(
+        "test_4.toml",
+        TOML.replace("base_acceleration_x", "rotation_2")
+        .replace("m/s2", "rad")
+        .replace('"rad" }', '"rad", sign = -1 }'),
+    )
+    with pytest.raises(InputError, match=r"no base_acceleration_x \(found: rotation_2, rotation_1\)"):
+        read_recording(written("test_4.csv", "\n".join(["acc,inc", *map(",".join, VALUES)])))
+
+
 def test_a_comma_at_the_end_of_each_row_is_no_cell(written: Callable[[str, str], Path]) -> None:
     written("test_4.toml", TOML)
     table = "\n".join(["acc,inc", *(f"{a},{r}," for a, r in VALUES)])
