@@ -73,6 +73,8 @@ def _sentence(schema: type[Schema], error: dict[str, Any]) -> str:
         return f"{where} is missing; add it."
     if kind == "value_error":
         return f"{where}: {error['ctx']['error']}"
+    if kind == "too_short" and not value:
+        return f"{where} is empty; give at least {error['ctx']['min_length']}."
     rule = error["msg"].replace("Input should be", "it must be")
     return f"{where} = {value!r}: {rule[0].lower()}{rule[1:]}."
 

@@ -211,9 +211,16 @@ def _stages(file: SpecimenFile) -> dict[str, tuple[Stage, ...]]:
         entries = table.get(STAGES, [])
         if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
             raise InputError(f"[mechanisms.{name}] {STAGES} = {entries!r}: write [[mechanisms.{name}.stages]] tables.")
-        if stages := read_stages(name, [check(StageTable, entry) for entry in entries]):
+        if stages := read_stages(name, [_stage(name, number, entry) for number, entry in enumerate(entries, 1)]):
             found[name] = stages
     return found
+
+
+def _stage(name: str, number: int, entry: dict[str, Any]) -> StageTable:
+    try:
+        return check(StageTable, entry)
+    except InputError as error:
+        raise InputError(f"[[mechanisms.{name}.{STAGES}]] {number}: {error}") from None
 
 
 def _law(

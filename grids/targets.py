@@ -72,7 +72,7 @@ class Target:
     def _per_cent(self, number: float) -> str:
         """What a share was perhaps meant to be: 5.44 for 5.44 %."""
         share = number / 100.0
-        meant = self.unit == "1" and self.high <= 1.0 and self.low < share <= self.high
+        meant = self.unit == "1" and self.high <= 1.0 and self.low < share <= self.high and number >= 2.0 * self.high
         return f" ({number:g} % is {share:g})" if meant else ""
 
     def _allowed(self, number: float) -> str:
@@ -176,10 +176,9 @@ class Targets:
                 + "."
             )
         dotted = [f"{m.name}.{p.name}" for m in self.model.mechanisms.values() for p in m.parameters]
-        raise InputError(
-            f"{where} is not a parameter of model '{self.model.name}'; "
-            f"{nearest(name, [*parameters, *self.model.options, *dotted, *self.model.mechanisms])}"
-        )
+        names = [*parameters, *self.model.options, *dotted, *self.model.mechanisms]
+        listed = [*sorted(self.names()), "and parameters of mechanisms as 'mechanism.parameter'"]
+        raise InputError(f"{where} is not a parameter of model '{self.model.name}'; {nearest(name, names, listed)}")
 
     def option(self, name: str, word: object, where: str) -> str:
         """A word of one of the model's options; raises InputError."""

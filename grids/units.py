@@ -101,6 +101,8 @@ def to_si(value: object, si_unit: str, where: str) -> float:
         if match is None:
             raise InputError(f"{where} = '{value}': give a number and its unit, for example '{_sample(si_unit)}'.")
         number, unit = float(match[1]), match[2]
+        if unit.startswith(","):
+            raise InputError(f"{where} = '{value}': write a decimal point, '{value.replace(',', '.', 1).strip()}'.")
         if not unit and si_unit not in _ONE:
             raise InputError(
                 f"{where} = '{value}' has no unit; write '{match[1]} {si_unit}' "

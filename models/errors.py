@@ -13,14 +13,15 @@ class InputError(ValueError):
     """
 
 
-def nearest(word: str, known: Iterable[str]) -> str:
-    """End of a sentence about an unknown name: the closest known one, else all of them.
+def nearest(word: str, known: Iterable[str], listed: Iterable[str] | None = None) -> str:
+    """End of a sentence about an unknown name: the closest known one in any case, else all, or those ``listed``.
 
-    >>> nearest("widht", ["width", "height"])
+    >>> nearest("WIDHT", ["width", "height"])
     "did you mean 'width'?"
     """
     names = sorted(known)
-    close = difflib.get_close_matches(word, names, n=1)
+    lowered = [name.lower() for name in names]
+    close = difflib.get_close_matches(word.lower(), lowered, n=1)
     if close:
-        return f"did you mean '{close[0]}'?"
-    return "known: " + (", ".join(names) if names else "none") + "."
+        return f"did you mean '{names[lowered.index(close[0])]}'?"
+    return "known: " + (", ".join(names if listed is None else listed) or "none") + "."

@@ -23,7 +23,7 @@ FILES = "files_sha256"
 """The entry of an answer that says to which files it is one."""
 OF_THE_MACHINE = (errno.ENOMEM, errno.ENOSPC, errno.EDQUOT, errno.EMFILE, errno.EIO)
 """Errors of memory, disk and files that are open, which another start may not meet."""
-DAMAGED = "write it anew (an answer that is deleted is found again)."
+ANSWER_AGAIN = "delete it, so that the case is answered again."
 NOTHING: dict[str, Any] = {"effects": [], "rivals": [], "constancy": [], "located": [], "base": {}}
 
 Answering = Callable[[Path], dict[str, Any]]
@@ -136,12 +136,12 @@ def write_json(path: Path, content: Mapping[str, Any]) -> None:
     os.replace(partial, path)
 
 
-def read_json(path: Path) -> dict[str, Any]:
-    """The object of a file; InputError where it is damaged."""
+def read_json(path: Path, cure: str = ANSWER_AGAIN) -> dict[str, Any]:
+    """The object of a file; InputError with the cure where it is damaged."""
     try:
         content = json.loads(read_text(path, "file"))
     except (json.JSONDecodeError, RecursionError) as error:
-        raise InputError(f"{path} is not valid JSON ({error}); {DAMAGED}") from None
+        raise InputError(f"{path} is not valid JSON ({error}); {cure}") from None
     if not isinstance(content, dict):
-        raise InputError(f"{path} is no JSON object in braces; {DAMAGED}")
+        raise InputError(f"{path} is no JSON object in braces; {cure}")
     return content

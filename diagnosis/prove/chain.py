@@ -22,6 +22,7 @@ from grids.files import parse_toml, read_text
 from models.errors import InputError
 
 KEY = "answers.json"
+RESTORE = "restore the key from where the cases come from."
 HALVES = ("all", "odd", "even")
 HASHES = "sha256.json"
 
@@ -71,7 +72,7 @@ def prove(
     chosen = cases_in(folder, half, model)
     answers = out / "answers"
     # Only its form is looked at: a slip in the key must not show after hours of answering.
-    check_key(folder / KEY, read_json(folder / KEY), [path.name for path in chosen])
+    check_key(folder / KEY, read_json(folder / KEY, RESTORE), [path.name for path in chosen])
     check_files(chosen)
     waiting = [path for path in chosen if not (answers / f"{path.name}.json").is_file()]
     for path in chosen:
@@ -102,7 +103,7 @@ def prove(
         return {}
     hashes = {path.name: sha256(answers / f"{path.name}.json") for path in chosen}
     write_json(out / HASHES, hashes)
-    keys = read_json(folder / KEY)["cases"]
+    keys = read_json(folder / KEY, RESTORE)["cases"]
     scored = [Scored(name, read_json(answers / f"{name}.json"), keys[name]) for name in hashes]
     numbers = {**report.summary(scored), **report.provenance(scored), "answers_sha256": hashes}
     write_json(out / "prove.json", numbers)

@@ -50,6 +50,9 @@ BAD: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "half of an alternative": ('width = "0.3 m"', "", ("'height'", "width and height", "aspect_ratio")),
     "both alternatives": ("width =", "aspect_ratio = 0.2\nwidth =", ("'aspect_ratio'", "exactly one of")),
     "wrong dimension": ('"0.3 m"', '"0.3 kg"', ("width", "0.3 kg", "'m' is needed")),
+    "a decimal comma": ('"0.3 m"', '"0,3 m"', ("width = '0,3 m'", "decimal point, '0.3 m'")),
+    "a name in capitals": ("pga =", "PGA =", ("PGA is not a parameter", "did you mean 'pga'")),
+    "a name like no other": ("pga =", "qqqq =", ("qqqq", "known: ", "width, and parameters of mechanisms as")),
     "no unit": ('"0.3 m"', '"0.3"', ("width", "0.3 m", "without quotes")),
     "below its bound": ('"0.3 m"', '"-0.3 m"', ("width = -0.3 m", "greater than 0 m")),
     "above its bound": ('"2 mm"', '"0.2 m"', ("cover = 0.2 m", "at most 0.1 m")),
@@ -168,6 +171,16 @@ BAD: dict[str, tuple[str, str, tuple[str, ...]]] = {
         ("record_pga", "taken", "'case'"),
     ),
     "no cases": (PGA, "case = { cases = [] }", ("case", "at least one")),
+    "cases with equal values": (
+        PGA,
+        "case = { cases = [{ label = 'A', pga = 1 }, { label = 'B', pga = '1 m/s2' }] }",
+        ("cases 'A' and 'B' have the same values", "leave one out"),
+    ),
+    "a unit of motions": (
+        PGA,
+        "motion = { values = ['ridgecrest_2019_clc'], unit = 'g' }",
+        ("motions have no unit", "leave unit out"),
+    ),
     "cases that differ": (
         PGA,
         "case = { cases = [{ pga = 1 }, { top_mass = 1 }] }",
@@ -208,7 +221,7 @@ BAD: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "no outputs": (
         'names = ["peak_rotation", "overturned"]',
         "names = []",
-        ("[outputs] names", "at least 1"),
+        ("[outputs] names is empty", "at least 1"),
     ),
     "negative tail": ('"10 s"', '"-1 s"', ("tail = -1 s", "zero or more")),
     "a tail without end": ('"10 s"', "inf", ("tail = inf s", "finite")),
@@ -239,6 +252,21 @@ def test_one_sentence(kind: str, fake_wall: FakeWall, written: Callable[[str, st
 
 def test_the_good_plan_is_good(fake_wall: FakeWall, written: Callable[[str, str], Path]) -> None:
     assert read_plan(written("plan.toml", GOOD)).grid.size == 5
+
+
+@pytest.mark.parametrize(
+    ("table", "said"),
+    [
+        ("label,pga\n\n\nA,1\nB,1,2\n", "line 5 of walls.csv has 3 fields"),
+        ("label;pga\nA;1\n", "header of walls.csv is one cell; part its cells by commas"),
+    ],
+)
+def test_a_slip_in_a_table_of_cases(
+    table: str, said: str, fake_wall: FakeWall, written: Callable[[str, str], Path]
+) -> None:
+    written("walls.csv", table)
+    with pytest.raises(InputError, match=said):
+        read_plan(written("plan.toml", GOOD.replace(PGA, "case = { cases = 'walls.csv' }")))
 
 
 def test_missing_and_unreadable_files(tmp_path: Path) -> None:

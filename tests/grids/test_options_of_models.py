@@ -198,6 +198,14 @@ def test_a_forgotten_per_cent(name: str) -> None:
         plan({**wall, **others}, axes=f"{name} = {{ values = [0.02, 5.44] }}")
 
 
+def test_a_value_just_beyond_its_bound_is_no_per_cent() -> None:
+    restitution = Targets(models.get("housner")).find("restitution", "here")
+    with pytest.raises(InputError, match=r"at most 1\.$"):
+        restitution.number(1.2, "here")
+    with pytest.raises(InputError, match=r"93 % is 0.93"):
+        restitution.number(93.0, "here")
+
+
 @pytest.mark.parametrize("model", models.MODELS)
 def test_every_damping_ratio_and_coefficient_of_restitution_is_a_share(model: str) -> None:
     for parameter in models.get(model).parameters:

@@ -63,7 +63,7 @@ def test_a_specimen_with_stages_reads_back_equal() -> None:
     ("stages", "sentence"),
     [
         ('stages = "late"\n', "write [[mechanisms.restitution.stages]] tables"),
-        ("stages = [{ begins = 2.0 }]\n", "recording"),
+        ("stages = [{ begins = 2.0 }]\n", "[[mechanisms.restitution.stages]] 1: recording is missing"),
         ('stages = [{ recording = "a", begins = 3.0, ends = 2.0 }]\n', "ends (2 s) before it begins (3 s); swap"),
         ('stages = [{ recording = "a", begins = -1.0 }]\n', "give a time in the recording"),
         ('stages = [{ recording = "a", ends = 2.0 }, { recording = "a", begins = 1.0 }]\n', "without overlap"),

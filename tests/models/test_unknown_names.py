@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import models
-from models.errors import InputError
+from models.errors import InputError, nearest
 from models.shaking import Shaking
 from tests.models.interface.walls import SHORT
 from tests.models.stacked.walls import A
@@ -16,6 +16,13 @@ VALUES = {
     "interface_linear": SHORT, "isolated": {"total_mass": 1e4, "bearing_stiffness": 4e4, "rubber_thickness": 0.1},
 }  # fmt: skip
 QUIET = Shaking.silence(0.5, 0.01)
+
+
+def test_the_nearest_name_is_found_in_any_case_and_a_long_list_may_be_shortened() -> None:
+    assert nearest("PGA", ["height", "pga"]) == "did you mean 'pga'?"
+    assert nearest("fel", ["Fell", "test"]) == "did you mean 'Fell'?"
+    assert nearest("nothing", ["b", "a"]) == "known: a, b."
+    assert nearest("nothing", ["b", "a", "c"], ["a"]) == "known: a."
 
 
 @pytest.mark.parametrize("name", VALUES)

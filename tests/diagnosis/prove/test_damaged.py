@@ -41,7 +41,7 @@ def folder(tmp_path: Path) -> Path:
 @pytest.mark.parametrize(
     ("key", "said"),
     [
-        ('{"cases": {', r"answers\.json is not valid JSON .*line 1"),
+        ('{"cases": {', r"answers\.json is not valid JSON .*line 1.*; restore the key"),
         ('{"cases": {"case_01": {"kind": "null", "effects": [], "weak": 1}}}', r"weak = 1"),
         ("[]", r"answers\.json is no JSON object"),
         ('{"case_01": {}}', r"answers\.json: cases is missing"),
@@ -67,7 +67,7 @@ def test_a_damaged_key_is_said_first(folder: Path, tmp_path: Path, key: str, sai
 @pytest.mark.parametrize(
     ("answer", "said"),
     [
-        ('{"verdict": "nothing', r"case_01\.json is not valid JSON"),
+        ('{"verdict": "nothing', r"case_01\.json is not valid JSON .*; delete it"),
         ('{"verdict": "missing"}', r"case_01\.json: effects is missing"),
         (json.dumps({**SAID, "fit": {"holdout": {}}}), r"case_01\.json: \[fit\] .*share_of_achievable is missing"),
     ],
