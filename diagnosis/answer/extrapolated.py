@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diagnosis.answer.heldout import Shown
+from diagnosis.answer.heldout import Shown, channel_misfit
 from diagnosis.answer.result import Extrapolated
 from diagnosis.search.left_out import BEYOND
 
@@ -12,7 +12,7 @@ from diagnosis.search.left_out import BEYOND
 def extrapolated(learned: Shown, held: Shown) -> tuple[Extrapolated, ...]:
     """By the leading channel, also where it only follows from others.
 
-    With the misfit of the final model there: rms error over rms of the recording.
+    With the misfit of the final model there.
     """
     recordings = [*learned.measured.recordings, *held.measured.recordings]
     name = learned.measured.identification.leads[0].channel
@@ -24,11 +24,8 @@ def extrapolated(learned: Shown, held: Shown) -> tuple[Extrapolated, ...]:
         if name not in recording.channels:  # another instrument, whose size tells nothing of that one's
             continue
         peak = float(np.max(np.abs(recording.channels[name])))
-        own = np.flatnonzero(m.recording_of == r)
-        if peak <= BEYOND * largest or not own.size:
+        if peak <= BEYOND * largest or r not in m.recording_of:
             continue
-        inside = m.mask[own, m.lead]
-        error = (held.after - m.values)[own, m.lead][inside]
-        after = float(np.sqrt(np.mean(error**2) / np.mean(m.values[own, m.lead][inside] ** 2)))
+        after = channel_misfit(m, held.after, r, m.lead)
         found.append(Extrapolated(recording.name, name, learned.measured.unit_of(name), peak, largest, after))
     return tuple(found)

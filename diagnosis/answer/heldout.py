@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -110,22 +111,32 @@ def worsens(before: Explanation, after: Explanation, held: Measured, errors: Err
 
 def relative_misfit(measured: Measured, predicted: FloatArray | None) -> float:
     """Rms over windows and channels of the residual over the recording's rms; of the noise for None."""
-    squares, counts = 0.0, 0.0
-    for r, recording in enumerate(measured.recordings):
-        windows = np.flatnonzero(measured.recording_of == r)
-        for c, channel in enumerate(measured.channels):
-            mask = measured.mask[windows, c]
-            rms = float(np.sqrt(np.mean(recording.channels[channel] ** 2)))
-            if not mask.any() or rms == 0.0:
-                continue
-            if predicted is None:
-                square = float(np.sum(mask * measured.sigma[windows, c][:, None] ** 2))
-            else:
-                rest = (predicted - measured.values)[windows, c]
-                square = float(np.sum(np.where(np.isfinite(rest), rest, rms)[mask] ** 2))
-            squares += square / rms**2
-            counts += float(mask.sum())
-    return float(np.sqrt(squares / max(counts, 1.0)))
+    cells = product(range(len(measured.recordings)), range(len(measured.channels)))
+    return _rms([_squares(measured, predicted, r, c) for r, c in cells])
+
+
+def channel_misfit(measured: Measured, predicted: FloatArray, r: int, c: int) -> float:
+    """The same of one channel in one recording."""
+    return _rms([_squares(measured, predicted, r, c)])
+
+
+def _squares(measured: Measured, predicted: FloatArray | None, r: int, c: int) -> tuple[float, float]:
+    """Sum of squares of channel ``c`` in the windows of recording ``r``, over its mean square, and their number."""
+    windows = np.flatnonzero(measured.recording_of == r)
+    mask = measured.mask[windows, c]
+    rms = float(np.sqrt(np.mean(measured.recordings[r].channels[measured.channels[c]] ** 2)))
+    if not mask.any() or rms == 0.0:
+        return 0.0, 0.0
+    if predicted is None:
+        square = float(np.sum(mask * measured.sigma[windows, c][:, None] ** 2))
+    else:
+        rest = (predicted - measured.values)[windows, c]
+        square = float(np.sum(np.where(np.isfinite(rest), rest, rms)[mask] ** 2))
+    return square / rms**2, float(mask.sum())
+
+
+def _rms(parts: Sequence[tuple[float, float]]) -> float:
+    return float(np.sqrt(sum(square for square, _ in parts) / max(sum(count for _, count in parts), 1.0)))
 
 
 def fit_figures(shown: Shown, missing: bool) -> Fit:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from diagnosis.answer.extrapolated import extrapolated
-from diagnosis.answer.heldout import Shown, horizons
+from diagnosis.answer.heldout import Shown, horizons, relative_misfit
 from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.setup import measure
 from grids.recordings.base import Recording
@@ -53,3 +53,12 @@ def test_what_extrapolates_is_told_by_the_rotation_whatever_gauges_are_called(na
     assert (beyond.recording, beyond.channel, beyond.unit) == ("b", "rotation_1", "rad")
     assert beyond.peak == pytest.approx(2.0 * beyond.learned)
     assert not extrapolated(held, learned)
+
+
+def test_an_extrapolated_recording_has_one_misfit() -> None:
+    """Of one channel in one recording: the figure held out and that of the sentence are the same."""
+    learned, held = (shown(gauged(name, "left", size)) for name, size in (("a", 1.0), ("b", 2.0)))
+    off = replace(held, after=1.1 * held.measured.values)
+    assert len(off.measured.channels) == 1
+    (beyond,) = extrapolated(learned, off)
+    assert beyond.after == pytest.approx(relative_misfit(off.measured, off.after))
