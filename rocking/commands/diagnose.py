@@ -42,9 +42,10 @@ def diagnose(
 ) -> None:
     """Say what the model leaves out of recordings, model it, and show the fit improve.
 
-    Writes diagnosis.json, extended.toml, report.html, fit.nc and figures. Ctrl-C ends the search, or the
-    bootstrap or the intervals after it, and writes what was found until then. The exit code is 0 whatever
-    is found, 2 for unusable input.
+    Writes diagnosis.json, report.html, extended.toml, posterior.nc (samples of what was found), fit.nc and figures;
+    law.csv where a law is given in a table; with --outcomes runs.csv in the place of fit.nc. Ctrl-C ends the search, or
+    the bootstrap or the intervals after it, and writes what was found until then. The exit code is 0 whatever is
+    found, 2 for unusable input.
     """
     from grids.plausibility import suspicions_of_specimen
     from grids.specimen import read_specimen

@@ -13,8 +13,13 @@ from rocking.commands.base import NEAREST, SELECT, read_selection
 
 def map_(
     folder: Annotated[Path, typer.Argument(help="A study's folder, results/NAME.")],
-    x: Annotated[str | None, typer.Option(help="Axis across (default: the first).")] = None,
-    y: Annotated[str | None, typer.Option(help="Axis up (default: the next that is not pga).")] = None,
+    x: Annotated[
+        str | None,
+        typer.Option(help="Axis across (default: the first; pga or motion_scale only where no other is left)."),
+    ] = None,
+    y: Annotated[
+        str | None, typer.Option(help="Axis up (default: the next; pga or motion_scale only where no other is left).")
+    ] = None,
     select: Annotated[
         list[str] | None, typer.Option(help=f"{SELECT}, for the other axes (default: their middle values).")
     ] = None,

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 def motions(
     file: Annotated[str | None, typer.Argument(help="Shipped name, file, glob or file.npz:key.")] = None,
     component: Annotated[str | None, typer.Option(help="Horizontal component.")] = None,
-    figure: Annotated[Path | None, typer.Option(help="Draw motion and spectrum (.png, .pdf, .svg).")] = None,
+    figure: Annotated[Path | None, typer.Option(help="Draw motion and spectrum (.png, .pdf, .svg, .jpg).")] = None,
     out: Annotated[Path | None, typer.Option(help="Write the motion as netCDF.")] = None,
 ) -> None:
     """List the shipped motions, or describe, draw and convert one."""

@@ -29,7 +29,7 @@ def simulate(
             parser=number,
         ),
     ] = None,
-    figure: Annotated[Path | None, typer.Option(help="Draw the rotation over time (.png, .pdf, .svg).")] = None,
+    figure: Annotated[Path | None, typer.Option(help="Draw the rotation over time (.png, .pdf, .svg, .jpg).")] = None,
     strict: Annotated[bool, typer.Option("--strict", help=STRICT)] = False,
 ) -> None:
     """Simulate a specimen and write every observable over time, and the events."""

@@ -17,7 +17,7 @@ from study.store import write_whole
 def check_suffix(path: Path) -> None:
     """Raise InputError for an ending that matplotlib cannot write: before the work, not after it."""
     if path.suffix.lstrip(".") not in FigureCanvasBase.get_supported_filetypes():
-        raise InputError(f"cannot draw to '{path.name}': end the name in .png, .pdf or .svg")
+        raise InputError(f"cannot draw to '{path.name}': end the name in .png, .pdf, .svg or .jpg")
 
 
 def save_figure(draw: Callable[[], Axes | tuple[Axes, ...]], path: Path) -> Path:
