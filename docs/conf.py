@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import shutil
 import sys
 from pathlib import Path
+from typing import Any
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
@@ -22,8 +24,17 @@ html_theme = "furo"
 html_title = "rocking-study"
 html_static_path = ["_static"]
 html_css_files = ["tables.css"]
-html_extra_path = ["gallery"] if any((HERE / "gallery").glob("*.html")) else []
 autodoc_typehints = "description"
 suppress_warnings = ["myst.header"]
 
 write_pages(HERE / "generated")
+
+
+def copy_gallery(app: Any, error: Exception | None) -> None:
+    """The reports lie beside the pages as they do in the repository, so that links to them work in both."""
+    if error is None:
+        shutil.copytree(HERE / "gallery", Path(app.outdir) / "gallery", dirs_exist_ok=True)
+
+
+def setup(app: Any) -> None:
+    app.connect("build-finished", copy_gallery)

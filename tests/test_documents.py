@@ -122,6 +122,13 @@ def test_targets_of_make_are_ones_that_exist() -> None:
     assert {"walls-bench", "stacks-bench"} <= named <= targets == set(phony.split())
 
 
+def test_links_to_files_lead_to_files_of_the_repository() -> None:
+    """Those that Sphinx does not follow; the pages are built with the gallery at the same place."""
+    pages = [page.read_text("utf-8") for page in (ROOT / "docs").glob("*.md")]
+    targets = [target for page in pages for target in re.findall(r'<a href="([^"#:]+)"', page)]
+    assert targets and not [target for target in targets if not (ROOT / "docs" / target).is_file()]
+
+
 def test_pages_leave_the_contents_to_the_theme(monkeypatch: pytest.MonkeyPatch) -> None:
     """Furo prints an error in place of a table of contents; it has its own beside every page."""
     monkeypatch.syspath_prepend(ROOT / "docs")
