@@ -112,13 +112,14 @@ def position(cube: xr.Dataset, name: str, value: Any, nearest: bool = False) -> 
     same = np.flatnonzero(axis.values == wanted)
     if same.size:  # inf too, from which nothing has a distance
         return int(same[0])
-    if nearest and _is_beyond(axis, wanted):
-        raise InputError(
-            f"{name} = {value_shown(axis, wanted)} is far off the grid: {_range(axis)}; give a value of it"
-        )
     index = int(np.argmin(np.abs(axis.values - wanted)))
     if not nearest and abs(axis.values[index] - wanted) > SAME * abs(wanted):
         raise InputError(f"{name} = {value_shown(axis, wanted)} is not on the grid: {_neighbours(axis, wanted)}")
+    if nearest and (end := _end_short_of(axis.values, wanted)) is not None:
+        raise InputError(
+            f"{name} = {value_shown(axis, wanted)} is not on the grid, nor near its end at {value_shown(axis, end)}: "
+            "give a value of the grid"
+        )
     return index
 
 
@@ -144,20 +145,19 @@ def is_number(text: str) -> bool:
     return True
 
 
-def _is_beyond(axis: xr.DataArray, wanted: float) -> bool:
-    """Whether a value lies farther off the end of the grid than the next value of the grid lies within."""
-    values = np.sort(axis.values)
-    steps = np.diff(values) if values.size > 1 else np.array([SAME * abs(wanted)])
-    return bool(values[0] - wanted > steps[0] or wanted - values[-1] > steps[-1])
-
-
-def _range(axis: xr.DataArray) -> str:
-    return f"it goes from {value_shown(axis, axis.values.min())} to {value_shown(axis, axis.values.max())}"
+def _end_short_of(values: np.ndarray[tuple[int], np.dtype[np.float64]], wanted: float) -> float | None:
+    """The end of the grid that a value lies farther beyond than the grid's own last step; None where it does not."""
+    ordered = np.sort(values)
+    first, last = np.diff(ordered)[[0, -1]] if values.size > 1 else (SAME * abs(wanted),) * 2
+    if ordered[0] - wanted > first:
+        return float(ordered[0])
+    return float(ordered[-1]) if wanted - ordered[-1] > last else None
 
 
 def _neighbours(axis: xr.DataArray, wanted: float) -> str:
     below, above = axis.values[axis.values < wanted], axis.values[axis.values > wanted]
     if not below.size or not above.size:
-        return f"{_range(axis)}; give a value of it, or ask for the nearest"
+        low, high = value_shown(axis, axis.values.min()), value_shown(axis, axis.values.max())
+        return f"it goes from {low} to {high}; give a value of it, or ask for the nearest"
     two = f"{value_shown(axis, below.max())} and {value_shown(axis, above.min())}"
     return f"its neighbours are {two}; give one of them, or ask for the nearest"
