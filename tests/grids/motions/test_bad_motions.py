@@ -376,25 +376,6 @@ def test_a_glob_that_matches_nothing_says_so():
         find("no_such_*.AT2")
 
 
-def test_a_pattern_that_names_nothing_stands_for_files_of_the_user(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setenv("ROCKING_DATA", str(tmp_path / "data"))
-    (tmp_path / "data").mkdir()
-    (tmp_path / "plan").mkdir()
-    for place in ("data/a.csv", "data/b.csv"):
-        (tmp_path / place).touch()
-    monkeypatch.chdir(tmp_path / "plan")
-    assert len(find("[ab].csv", near=tmp_path / "data")) == len(find("../data/*.csv")) == 2
-    for pattern in ("*.csv", "*.nc"):
-        with pytest.raises(InputError, match="nothing matches beside the file that names it"):
-            find(pattern)
-
-
-def test_a_description_is_no_motion(tmp_path: Path):
-    (tmp_path / "a.toml").touch()
-    with pytest.raises(InputError, match=r"a\.toml: a TOML file holds no samples; name the table .* \(\.csv\)"):
-        read_motion(str(tmp_path / "a.toml"))
-
-
 def test_there_are_enough_kinds():
     assert len(CASES) >= 40
 
