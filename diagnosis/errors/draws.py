@@ -18,13 +18,15 @@ from models.base import FloatArray
 def scattered(errors: Errors, fitted: Fitted, rng: np.random.Generator) -> FloatArray:
     """Channels (W, C, N) that a fit predicts where its events scatter at random.
 
-    As without scatter in windows in which the body falls by it: a recording of one that falls is cut before.
+    By pulses of the base motion, and in proportion where no pulse makes such a change. As without scatter in windows in
+    which the body falls by it: a recording of one that falls is cut before.
     """
     m, predictor = fitted.measured, fitted.misfit.predictor
     changes = errors.scatter * rng.normal(size=errors.kicks.window.size)
     pulses = Events(fitted.u, fitted.states, errors.kicks, changes).pulses(m)
     known = AsItWas(pulses, np.zeros(m.values.shape))
     drawn = replace(predictor, measured=replace(m, as_it_was=known)).predict([fitted.point])[0]
+    drawn = drawn + errors.kicks.changing(np.where(errors.kicks.height == 0.0, changes, 0.0))
     stays = np.isfinite(drawn).all(axis=(1, 2), keepdims=True)
     return np.asarray(np.where(stays, drawn, predictor.predict([fitted.point])[0]))
 

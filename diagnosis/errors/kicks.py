@@ -51,9 +51,13 @@ class Kicks:
 
         ``share`` (W, N) along the windows, read just before an event; ``first`` (W,): the windows' first samples.
         """
-        change = np.zeros(self.columns.shape[::3])
-        change[self.window, self.place] = -share[self.window, self.sample - first[self.window] - BEFORE]
-        return np.asarray(np.einsum("wcnk,wk->wcn", self.columns, change, optimize=True))
+        return self.changing(-share[self.window, self.sample - first[self.window] - BEFORE])
+
+    def changing(self, changes: FloatArray) -> FloatArray:
+        """Change (W, C, N) of the channels by relative ``changes`` (E,) of the rate after each event."""
+        each = np.zeros(self.columns.shape[::3])
+        each[self.window, self.place] = changes
+        return np.asarray(np.einsum("wcnk,wk->wcn", self.columns, each, optimize=True))
 
 
 def kicks(predictor: Predictor, point: Point) -> Kicks:

@@ -23,7 +23,7 @@ from diagnosis.fit.solver import Fitted, fit
 from diagnosis.fit.starts import start_of
 from diagnosis.progress import Progress
 from diagnosis.search.candidates import candidates
-from diagnosis.search.found import Search, adjusted
+from diagnosis.search.found import MISSING, Search, adjusted
 from diagnosis.search.null import LEAST_P
 from diagnosis.search.refit import Explanation, extend
 from diagnosis.search.screen import score
@@ -37,14 +37,20 @@ FARTHEST = 600.0
 """v, beyond which Q underflows."""
 
 
-def p_value(specimen: Specimen, found: Search, draws: int, seed: int, progress: Progress) -> float:
-    """Probability of a gain at least as large as that of the recordings if nothing is missing."""
+def p_value(specimen: Specimen, found: Search, draws: int, seed: int, progress: Progress) -> float | None:
+    """Probability of a gain at least as large as that of the recordings if nothing is missing.
+
+    None where something was found and the short search does not find as much: what begins or ends, or what the errors
+    hide. Its gains are then not those of the answer.
+    """
     start = found if found.at_null is None else found.at_null
     base, errors = start.base.fitted, start.errors
     predictor, m = base.misfit.predictor, base.measured
     rng = np.random.default_rng(seed)
     progress("bootstrap: the recordings", 0.9)
     observed = gain(specimen, base, errors)
+    if found.best is not None and observed < MISSING:
+        return None
     drawn = []
     for turn in range(draws):
         progress(f"bootstrap {turn + 1} of {draws}", 0.9)

@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 
+from diagnosis.errors.draws import scattered
 from diagnosis.errors.kicks import kicks
 from diagnosis.fit.prediction import Point
 from diagnosis.fit.setup import base_fit, measure
+from diagnosis.fit.solver import Fitted
+from grids.specimen import Specimen
+from models.identification import Identification, Scatter
+from tests.diagnosis import stacks
 from tests.diagnosis.made import SPECIMEN, recording
 
 
@@ -48,6 +54,31 @@ def test_where_nothing_is_declared_nothing_scatters() -> None:
     model = type("Quiet", (type(measured.model),), {"identification": silent})()
     predictor = replace(fitted.misfit.predictor, measured=replace(measured, model=model))
     assert kicks(predictor, fitted.point).columns.shape[-1] == 0
+
+
+def test_impacts_of_a_stack_scatter_at_both_joints_and_in_draws_in_proportion() -> None:
+    wall = Specimen(title="block on a wall", model="stacked", parameters=stacks.ON_TOP)
+    fitted = base_fit(wall, measure(wall, [stacks.rocking_on_top(1, both=True)]))
+    found = kicks(fitted.misfit.predictor, fitted.point)
+    joints = fitted.measured.identification.scatter.joints  # type: ignore[union-attr]
+    each = [replace(fitted.measured.identification, scatter=Scatter("impacts", (joint,))) for joint in joints]
+    counts = [_events_of(fitted, one) for one in each]
+    assert min(counts) > 2 and sum(counts) == found.window.size and not np.any(found.height)
+    known = SimpleNamespace(scatter=0.01, kicks=found)
+    drawn = scattered(known, fitted, np.random.default_rng(1))  # type: ignore[arg-type]
+    changes = 0.01 * np.random.default_rng(1).normal(size=found.window.size)
+    expected = np.zeros(drawn.shape)
+    for e, change in enumerate(changes):
+        expected[found.window[e]] += change * found.columns[found.window[e], ..., found.place[e]]
+    change = drawn - fitted.misfit.predictor.predict([fitted.point])[0]
+    assert np.any(expected) and np.allclose(change, expected, rtol=0.0, atol=1e-12)
+
+
+def _events_of(fitted: Fitted, identification: Identification) -> int:
+    measured = fitted.measured
+    model = type("Other", (type(measured.model),), {"identification": identification})()
+    predictor = replace(fitted.misfit.predictor, measured=replace(measured, model=model))
+    return int(kicks(predictor, fitted.point).window.size)
 
 
 def _run(model, point: Point, shaking, first: int, samples: int, state: np.ndarray) -> np.ndarray:

@@ -101,3 +101,11 @@ def test_what_is_missing_is_beyond_every_draw_and_what_is_not_within() -> None:
     with among(("restitution", "viscous_damping", "tilt", "offset")):
         found, missing = (p_value(SPECIMEN, null(factor), 2, 9, lambda text, share: None) for factor in (1.0, 0.95))
     assert missing == 1 / 3 < found
+
+
+@pytest.mark.parametrize("restitution", [1.0, 0.9])
+def test_draws_tell_nothing_of_what_their_search_does_not_find(restitution: float) -> None:
+    """An effect that begins, say: their gains are not those of the answer."""
+    found = null(restitution)
+    said = p_value(SPECIMEN, replace(found, best=found.base), 1, 0, lambda *_: None)
+    assert said is None if restitution == 1.0 else said == 0.5
