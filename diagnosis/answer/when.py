@@ -94,7 +94,10 @@ def held_stages(explanation: Explanation, misfit: Misfit, states: FloatArray) ->
             begins, ends = (0.0, LASTS) if acts else (0.0, 0.0)
             if own:
                 asked = asking(misfit.measured, r, gained, MISSING + _price_of_one(candidate))
-                begins, ends = exact(misfit, candidate.name, states, r, asked)
+                try:
+                    begins, ends = exact(misfit, candidate.name, states, r, asked)
+                except InputError:  # it cannot change within a window: in whole ones
+                    begins, ends = asked
             found.append(HeldStage(candidate.name, recording.name, begins, ends, own))
     return (*found, *_of_law(explanation, misfit, states))
 

@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 import models
+from diagnosis.answer.when import held_stages
 from diagnosis.data.measured import Measured
+from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.prediction import Point, Predictor
-from diagnosis.fit.setup import measure
+from diagnosis.fit.setup import base_fit, measure
+from diagnosis.fit.whitening import sensor_noise_only
+from diagnosis.search.candidates import candidates
+from diagnosis.search.refit import Explanation, extend
+from diagnosis.search.spells import Spell, interval_of
 from grids.stages import Stage
 from models.errors import InputError
 from tests.diagnosis import made, walls
@@ -54,3 +62,26 @@ def test_these_are_all_of_them(model: str, names: set[str]) -> None:
     """The page on the diagnosis lists them."""
     known = models.get(model)
     assert set(known.mechanisms) - set(known.resumes_with or ()) == names
+
+
+@pytest.mark.parametrize("mechanism", ["sliding", "restitution"])
+def test_a_recording_held_out_is_predicted_with_it_in_whole_windows(
+    monkeypatch: pytest.MonkeyPatch, mechanism: str
+) -> None:
+    """Of an effect that acts in one recording only; all windows but the first and the last ask for it."""
+    names = ("train_1", "train_2")
+    learned = measure(made.SPECIMEN, [made.recording(name, k + 1) for k, name in enumerate(names)])
+    fitted = base_fit(made.SPECIMEN, learned)
+    candidate = next(c for c in candidates(fitted.measured, made.SPECIMEN) if c.name == mechanism)
+    candidate = replace(candidate, spell=Spell(1, None, 1, None))
+    explanation = extend(Explanation((), fitted), candidate, candidate.null, 1)
+    held = measure(made.SPECIMEN, [made.recording("test_1", 3)])
+    misfit = explanation.fitted.misfit
+    fixed = {**misfit.fixed, **explanation.fitted.values}
+    predictor = replace(misfit.predictor, measured=held)
+    misfit = Misfit(predictor, sensor_noise_only(predictor), (), fixed)
+    asked = interval_of(held, 1, len(held.windows) - 2)
+    monkeypatch.setattr("diagnosis.answer.when.asking", lambda *_: asked)
+    (stage,) = held_stages(explanation, misfit, held.states)
+    assert stage.found_there and stage.effect == mechanism
+    assert ((stage.begins, stage.ends) == asked) is (mechanism == "sliding")
