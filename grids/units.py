@@ -3,6 +3,7 @@
 A number is already in SI; a string carries its unit: "1.8 m", "4.5 MPa", "5 deg", "2 t".
 `g` is the standard gravity where an acceleration is wanted and the
 gram elsewhere. Units are written as CF does ("m s-2") or with / * ^ ("m/s^2").
+A frequency in Hz is also read from an angular rate ("120 rpm", "12.57 rad/s": 2 Hz); an angular rate needs an angle.
 """
 
 from __future__ import annotations
@@ -17,14 +18,17 @@ from models.errors import InputError
 if TYPE_CHECKING:
     import pint
 
-_NUMBER = re.compile(r"\s*([+-]?(?:inf|nan|(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?))\s*(.*?)\s*")
+_NUMBER = re.compile(
+    r"\s*([+-]?(?:(?:inf(?:inity)?|nan)\b|(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?))\s*(.*?)\s*"
+)
 STANDARD_GRAVITY = 9.80665
 """m s-2 (3rd CGPM, 1901)."""
 SMALLEST, LARGEST = 1e-30, 1e30
 """Sizes (SI) beyond which a number is a mistake, and powers and products of several would leave floating point."""
 _EXPONENT = re.compile(r"(?<=[A-Za-zµμ])\s*(?:\^|\*\*)?\s*\(?([+-]?\d+)\)?")
 _PRODUCT = re.compile(r"(?<=[\w)])\s+(?=[A-Za-zµμ(])")
-_ANGLES = ("radian", "degree", "arcminute", "arcsecond", "turn", "revolution")
+_TON = re.compile(r"\b(?:kilo|k)?tons?(?:_force)?\b|\bforce_tons?\b")
+"""The word of three masses: 907 kg in the US, 1016 kg in Britain, 1000 kg elsewhere."""
 _ONE = ("", "1", "-")
 
 
@@ -57,11 +61,17 @@ def _factor(unit: str, si_unit: str) -> float | None:
     given = _quantity(unit, bool(wanted.check("[acceleration]")))
     if not getattr(given, "_is_multiplicative", False) or given.dimensionality != wanted.dimensionality:
         return None
-    # A radian is dimensionless for pint; a slope written as an angle is a mistake all the same.
-    angle = any(str(name).endswith(_ANGLES) for name, _ in given.unit_items())
-    if (si_unit in _ONE and angle) or (si_unit == "rad" and not angle):
+    # A radian is dimensionless for pint; a slope written as an angle, or a rate of turning without, is a mistake.
+    angles = _angles(given)
+    if (si_unit in _ONE and angles) or (si_unit.startswith("rad") and angles != 1):
         return None
-    return float(given.to(wanted.units).magnitude)
+    turns = math.tau if si_unit == "Hz" and angles == 1 else 1.0
+    return float(given.to(wanted.units).magnitude) / turns
+
+
+def _angles(quantity: Any) -> int:
+    """The power of the angle in a unit: 1 of rad, deg/s and rpm, 0 of Hz."""
+    return int({str(name): power for name, power in quantity.to_root_units().unit_items()}.get("radian", 0))
 
 
 def factor_to_si(unit: str, si_unit: str, where: str) -> float:
@@ -71,6 +81,10 @@ def factor_to_si(unit: str, si_unit: str, where: str) -> float:
     """
     if unit == si_unit:  # that of the project's own files, without starting the unit library
         return 1.0
+    if _TON.search(unit):
+        raise InputError(
+            f"{where}: unit '{unit}' is 907 kg in the US and 1016 kg in Britain; write 't' for 1000 kg, or kg."
+        )
     with_factor = _NUMBER.fullmatch(unit)
     if with_factor is not None and with_factor[2][:1].isalpha():
         return to_si(unit, si_unit, f"{where}: unit")
@@ -80,7 +94,8 @@ def factor_to_si(unit: str, si_unit: str, where: str) -> float:
         raise InputError(f"{where}: unit '{unit}' is not known; write for example '{_example(si_unit)}'.") from None
     if factor is None:
         wanted = "a pure number is needed" if si_unit in _ONE else f"'{si_unit}' is needed"
-        raise InputError(f"{where}: unit '{unit}' where {wanted}; write for example '{_example(si_unit)}'.")
+        turning = " (1 Hz is 360 deg/s)" if si_unit == "rad s-1" else ""
+        raise InputError(f"{where}: unit '{unit}' where {wanted}; write for example '{_example(si_unit)}'{turning}.")
     return factor
 
 
@@ -132,7 +147,7 @@ def _in(si_unit: str) -> str:
 
 
 def _example(si_unit: str) -> str:
-    return {"m s-2": "g", "N m-2": "MPa", "rad": "deg", "1": "%"}.get(si_unit, si_unit)
+    return {"m s-2": "g", "N m-2": "MPa", "rad": "deg", "rad s-1": "deg/s", "1": "%"}.get(si_unit, si_unit)
 
 
 def _sample(si_unit: str) -> str:

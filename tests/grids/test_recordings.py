@@ -117,6 +117,14 @@ def test_units_become_si_and_time_starts_at_zero(tmp_path: Path) -> None:
         found.channels["rotation_1"][0] = 1.0
 
 
+@pytest.mark.parametrize("start", [np.datetime64("2026-03-01T10:00:00", "ns"), np.timedelta64(0, "ns")])
+def test_a_clock_of_dates_as_xarray_writes_it(tmp_path: Path, start: Any) -> None:
+    data = dataset().assign_coords(time=start + (TIME * 1e9).round().astype("timedelta64[ns]"))
+    data["time"].encoding["units"] = "nanoseconds since 2026-03-01" if start.dtype.kind == "M" else "nanoseconds"
+    found = read_recording(stored(tmp_path, data))
+    assert np.allclose(found.time, TIME) and found.time_step == pytest.approx(STEP, rel=1e-12)
+
+
 def test_shaking_with_and_without_the_vertical_channel(tmp_path: Path) -> None:
     found = read_recording(stored(tmp_path, dataset(base_acceleration_z=(0.3 * BASE, "m s-2"))))
     vertical = found.shaking(True).vertical

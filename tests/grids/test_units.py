@@ -28,12 +28,26 @@ from models.errors import InputError
         ("9.81 m/s²", "m s-2", 9.81),
         ("10 kN s m-2", "N s m-2", 1e4),
         ("3 Hz", "s-1", 3.0),
+        ("120 rpm", "Hz", 2.0),
+        ("4 rad/s", "Hz", 4.0 / math.tau),
+        ("720 deg/s", "Hz", 2.0),
+        ("2 1/s", "Hz", 2.0),
+        ("2 kHz", "Hz", 2000.0),
+        ("60 rpm", "rad s-1", math.tau),
+        ("90 deg/s", "rad s-1", math.pi / 2),
+        ("180 deg/s2", "rad s-2", math.pi),
+        ("5 short_ton", "kg", 4535.9237),
+        ("3 tonne", "kg", 3000.0),
+        ("2 kN", "N", 2000.0),
+        ("5 nanoseconds", "s", 5e-9),
+        ("7 nanometer", "m", 7e-9),
         ("2 kN m/rad", "N m", 2000.0),
         ("3 kg m2", "kg m2", 3.0),
         ("250 ms", "s", 0.25),
         ("0.8", "1", 0.8),
         (".5 m", "m", 0.5),
         ("inf", "1", math.inf),
+        ("infinity m", "m", math.inf),
         (1.8, "m", 1.8),
         (2, "kg", 2.0),
     ],
@@ -49,6 +63,14 @@ def test_value_in_si(text: object, unit: str, expected: float) -> None:
         ("1.8", "m", ("width", "no unit", "1.8 m")),
         ("5 deg", "1", ("5 deg", "pure number")),
         ("5 %", "rad", ("5 %", "'rad'", "deg")),
+        ("1 Hz", "rad s-1", ("'Hz'", "'rad s-1'", "deg/s")),
+        ("1 1/s", "rad s-1", ("'1/s'", "'rad s-1'", "deg/s")),
+        ("1 1/s2", "rad s-2", ("'1/s2'", "'rad s-2'")),
+        ("5 ton", "kg", ("'ton'", "907 kg", "'t'")),
+        ("5 tons", "kg", ("'tons'", "907 kg", "'t'")),
+        ("2 ton/m^3", "kg m-3", ("'ton/m^3'", "'t'")),
+        ("5 ton_force", "N", ("'ton_force'", "907 kg")),
+        ("nano", "m", ("nano", "0.5 m")),
         ("wide", "m", ("wide", "0.5 m")),
         ("1 foo", "m", ("foo", "not known")),
         ("1 m/", "m", ("m/", "not known")),
@@ -64,6 +86,12 @@ def test_what_is_no_value(value: object, unit: str, words: tuple[str, ...]) -> N
     with pytest.raises(InputError) as error:
         to_si(value, unit, "width")
     assert all(word in str(error.value) for word in ("width", *words)), str(error.value)
+
+
+def test_a_unit_that_begins_like_a_number() -> None:
+    assert factor_to_si("nanoseconds", "s", "time") == pytest.approx(1e-9, rel=1e-14)
+    with pytest.raises(InputError, match="'infinitesimals' is not known"):
+        factor_to_si("infinitesimals", "m", "x")
 
 
 UNITS = st.sampled_from(
