@@ -8,6 +8,7 @@ what was taken.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Mapping
 from typing import Any
 
@@ -113,7 +114,8 @@ def position(cube: xr.Dataset, name: str, value: Any, nearest: bool = False) -> 
     if same.size:  # inf too, from which nothing has a distance
         return int(same[0])
     index = int(np.argmin(np.abs(axis.values - wanted)))
-    if not nearest and abs(axis.values[index] - wanted) > SAME * abs(wanted):
+    near = nearest or abs(axis.values[index] - wanted) <= SAME * abs(wanted)
+    if math.isinf(wanted) or not near:
         raise InputError(f"{name} = {value_shown(axis, wanted)} is not on the grid: {_neighbours(axis, wanted)}")
     if nearest and (end := _end_short_of(axis.values, wanted)) is not None:
         raise InputError(
@@ -158,6 +160,7 @@ def _neighbours(axis: xr.DataArray, wanted: float) -> str:
     below, above = axis.values[axis.values < wanted], axis.values[axis.values > wanted]
     if not below.size or not above.size:
         low, high = value_shown(axis, axis.values.min()), value_shown(axis, axis.values.max())
-        return f"it goes from {low} to {high}; give a value of it, or ask for the nearest"
+        else_nearest = "" if math.isinf(wanted) else ", or ask for the nearest"
+        return f"it goes from {low} to {high}; give a value of it{else_nearest}"
     two = f"{value_shown(axis, below.max())} and {value_shown(axis, above.min())}"
     return f"its neighbours are {two}; give one of them, or ask for the nearest"

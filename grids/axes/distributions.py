@@ -54,6 +54,8 @@ def read_distribution(request: Request, name: str, entry: object) -> Quantile:
     first, second = _pair(table, kind, target, where, spread=kind == "lognormal")
     if kind == "range":
         return _range(first, second, table["range"], table.get("spacing", "linear"), target, where)
+    if not np.isfinite([first, second]).all():
+        raise InputError(f"{where}: {kind} = {table[kind]}: both numbers must be finite; correct them.")
     if not second > 0.0 or (kind == "lognormal" and not first > 0.0):
         raise InputError(f"{where}: {kind} = {table[kind]}: the spread must be above zero, a median too; correct it.")
     ends = _pair(table, "truncated", target, where) if "truncated" in table else (-np.inf, np.inf)
@@ -72,8 +74,8 @@ def _words(target: Target, entry: object, where: str) -> Quantile:
 def _range(low: float, high: float, given: object, spacing: str, target: Target, where: str) -> Quantile:
     if spacing not in SPACINGS:
         raise InputError(f"{where}: spacing = {spacing!r}; write 'linear' or 'log'.")
-    if not low < high:
-        raise InputError(f"{where} = {given}: low must be below high; swap or separate them.")
+    if not low < high or not np.isfinite([low, high]).all():
+        raise InputError(f"{where} = {given}: low must be below high, both finite; correct them.")
     if spacing == "log" and low <= 0.0:
         raise InputError(f"{where}: a log spacing starts above zero, not at {low:.6g}; raise it or use linear.")
     bounded(np.array([low, high]), target, where)

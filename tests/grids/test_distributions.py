@@ -58,6 +58,12 @@ def test_words_are_equally_likely() -> None:
         ("layer_modulus", {"normal": [1, 1], "truncated": [3, 2]}, "low must be below high"),
         ("layer_modulus", {"normal": [1, 1], "truncated": [300, 400]}, "nothing between"),
         ("layer_modulus", {"range": [1, 2, 3]}, "two numbers"),
+        ("sliding.friction", ["0.1", "inf"], "both finite"),
+        ("sliding.friction", {"range": [0.1, float("inf")], "spacing": "log"}, "both finite"),
+        ("sliding.friction", {"normal": [float("inf"), 1.0]}, "finite"),
+        ("sliding.friction", {"lognormal": [float("inf"), 0.1]}, "finite"),
+        ("sliding.friction", {"normal": [0.5, float("inf")]}, "finite"),
+        ("sliding.friction", {"lognormal": [0.5, float("inf")]}, "finite"),
         ("rubber_law", ["linear"], "two different words"),
         ("rubber_law", ["linear", "hardned"], "did you mean 'hardening'"),
         ("motion", ["a", "b"], "axis of their own"),
@@ -66,6 +72,12 @@ def test_words_are_equally_likely() -> None:
 def test_one_sentence(name: str, entry: object, words: str) -> None:
     with pytest.raises(InputError, match=words):
         read_distribution(REQUEST, name, entry)
+
+
+def test_a_truncation_may_be_open_to_one_side() -> None:
+    exact = truncnorm(-0.5, np.inf, 5e6, 2e6).ppf(SHARE)
+    opened = drawn("layer_modulus", {"normal": [5e6, 2e6], "truncated": [4e6, float("inf")]})
+    np.testing.assert_allclose(opened, exact, rtol=1e-9)
 
 
 def test_what_leaves_the_bounds_says_how_to_cut_it() -> None:

@@ -186,6 +186,10 @@ def test_a_value_is_one_of_the_grid_or_the_nearest_if_asked_for(cube: xr.Dataset
         cube.rocking.overturning_map(x="aspect_ratio", y="top_mass", pga=1.01 * pga)
     near = cube.rocking.overturning_map(x="aspect_ratio", y="top_mass", pga=1.01 * pga, nearest=True)
     xr.testing.assert_identical(near, by_number)
+    for nearest in (False, True):  # infinity is as far from every value
+        for far in (np.inf, "-inf g"):
+            with pytest.raises(InputError, match=r"pga = -?inf g is not on the grid: it goes from"):
+                cube.rocking.overturning_map(x="aspect_ratio", y="top_mass", pga=far, nearest=nearest)
 
 
 def test_axes_by_equal_factors_are_logarithmic_and_in_engineers_units(tmp_path: Path) -> None:
