@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from models.base import FloatArray
+from models.base import FloatArray, Quantity
 from models.errors import InputError
 from models.kinematics import Place
 from models.observed import Observed
@@ -23,6 +23,7 @@ class Placing:
     """
 
     name: str
+    observables: tuple[Quantity, ...]
     bodies: int = 0
     not_placed: tuple[str, ...] = ()
     moves_pivots: tuple[str, ...] = ()
@@ -44,7 +45,9 @@ class Placing:
         return Observed.joined(observables, self.poses(coefficients, samples))
 
     def check_place(self, name: str, place: Place) -> None:
-        """Raises InputError where the model has no body that the channel ``name`` could be on."""
+        """Raises InputError where the model has no body for the channel ``name``, or calls a quantity of its own so."""
+        if any(name == quantity.name for quantity in self.observables):
+            raise InputError(f"channel {name}: model {self.name} computes a quantity of this name: rename the channel.")
         if place.body > self.bodies:
             has = {0: "places no rigid body", 1: "has one body"}.get(self.bodies, f"has {self.bodies} bodies")
             raise InputError(

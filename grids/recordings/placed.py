@@ -22,6 +22,8 @@ from models.errors import InputError, nearest
 from models.kinematics import DIRECTIONS, REFERENCES, UNITS, Place
 
 KEYS = ("quantity", "body", "position_x", "position_z", "direction", "relative_to")
+OF_HISTORIES = ("time", "level", "event", "event_time", "event_kind", "event_body")
+"""What a history written by a simulation holds beside channels."""
 MOST = 2
 """Bodies of a model."""
 LAYERS = {"base_layer": 1, "top_layer": 2}
@@ -52,6 +54,8 @@ def read_places(tables: Mapping[str, Mapping[str, Any]], standard: Iterable[str]
     for name, table in tables.items():
         if name in known:
             raise InputError(f"[channels.{name}]: {name} says by its name what it measures; leave the table out.")
+        if name in OF_HISTORIES:
+            raise InputError(f"[channels.{name}]: histories call something else so; name it for instance lvdt_left.")
         if name.startswith(stems) or not re.fullmatch(r"[A-Za-z]\w*", name):
             raise InputError(
                 f"[channels.{name}]: name it with letters, digits and _, and not like the standard channels "

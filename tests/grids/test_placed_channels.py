@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+import models
 from grids.recordings import read_recording
 from grids.recordings.placed import attributes, read_place
 from grids.specimen import parse_specimen
@@ -97,6 +98,26 @@ def test_what_is_wrong_is_said_with_the_channel_and_a_cure(changed: dict[str, ob
     assert said in str(error.value)
 
 
+BLOCK = 'title = "b"\nmodel = "housner"\n[parameters]\nwidth = 0.5\nheight = 2.0\nmass = 1000.0\n'
+
+
+def test_no_channel_is_named_like_anything_else_in_a_history() -> None:
+    specimen = parse_specimen(f"{BLOCK}[initial]\nrotation_1 = 0.1\n")
+    history = simulate(specimen, duration=0.1)
+    taken = [str(name) for name in history.variables]
+    assert {"time", "event_time", "rotation_1"} < set(taken)
+    for name in (*taken, "event", "level"):
+        with pytest.raises(InputError, match=rf"^\[channels\.{name}\]: "):
+            parse_specimen(f'{BLOCK}[channels.{name}]\nquantity = "displacement"\n')
+
+
+def test_no_channel_is_named_like_a_quantity_of_the_model() -> None:
+    place = Place("compression", 1, 0.1)
+    models.get("housner").check_place("compression_base", place)
+    with pytest.raises(InputError, match=r"channel compression_base: model interface computes .* rename the channel"):
+        models.get("interface").check_place("compression_base", place)
+
+
 @pytest.mark.parametrize(
     ("mechanism", "quantity", "predicted"),
     [
@@ -110,9 +131,8 @@ def test_what_is_wrong_is_said_with_the_channel_and_a_cure(changed: dict[str, ob
 )
 def test_what_a_channel_is_not_predicted_with_is_refused(mechanism: str, quantity: str, predicted: bool) -> None:
     """A base that turns moves what stands on it; pivots that move are not those of the reading."""
-    block = 'title = "b"\nmodel = "housner"\n[parameters]\nwidth = 0.5\nheight = 2.0\nmass = 1000.0\n'
-    block += f'[initial]\nrotation_1 = 0.1\n[mechanisms.{mechanism}\n[channels.sensor]\nquantity = "{quantity}"\n'
-    specimen = parse_specimen(block)
+    block = f"{BLOCK}[initial]\nrotation_1 = 0.1\n[mechanisms.{mechanism}\n"
+    specimen = parse_specimen(f'{block}[channels.sensor]\nquantity = "{quantity}"\n')
     if predicted:
         assert simulate(specimen, duration=0.1)["sensor"].size > 10
         return
