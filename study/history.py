@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -20,7 +21,7 @@ from grids.recordings.netcdf import BAND_LIMITED, BETWEEN, LINEAR
 from grids.recordings.placed import attributes
 from grids.specimen import Specimen
 from grids.stages import Mechanisms, first_sample, stretches
-from models.base import Event, FloatArray, History
+from models.base import STATUS, Event, FloatArray, History
 from models.errors import InputError, nearest
 from models.kinematics import Place, ground_along
 from models.model import Model
@@ -99,7 +100,7 @@ def simulate_specimen(
                 **machine(),
             }
         ),
-        "outputs": as_json(dict(history.outputs)),
+        "outputs": as_json({**history.outputs, "status": STATUS[int(history.outputs["status"])]}),
     }
     if instruments:
         dataset.attrs["instruments"] = as_json(instruments)
@@ -192,6 +193,24 @@ def _events(events: tuple[Event, ...]) -> dict[str, Any]:
         "event_kind": ("event", kinds, {"units": "1", "long_name": "what happened", **flags}),
         "event_body": ("event", bodies, {"units": "1", "long_name": "body or joint, 1 is the lower one"}),
     }
+
+
+UNANSWERED = {
+    "not_converged": "the run did not converge",
+    "outside_model": "the run left the range in which the model holds",
+}
+
+
+def ending(history: xr.Dataset) -> str:
+    """What became of a run, as the word of its `models.base.STATUS`."""
+    return str(json.loads(history.attrs["outputs"])["status"])
+
+
+def suspicions_of_ending(history: xr.Dataset) -> tuple[str, ...]:
+    """A sentence about a run that is no answer."""
+    said = UNANSWERED.get(ending(history))
+    cure = "check the motion's unit and scale and the specimen's values, or use another model."
+    return () if said is None else (f"{said}: its outputs are left out, its channels are no answer; {cure}",)
 
 
 def write_history(history: xr.Dataset, out: str | Path) -> Path:

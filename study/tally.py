@@ -12,8 +12,7 @@ from dask.array import asarray
 
 from models.base import STATUS
 from study.open import open_study
-
-WORDS = {"rest": "at rest", "outside_model": "outside the model"}
+from study.wording import spoken
 
 
 def tally(cube: Path) -> dict[str, int]:
@@ -27,5 +26,4 @@ def tally(cube: Path) -> dict[str, int]:
 
 def tally_line(counts: Mapping[str, int]) -> str:
     """``at rest 12, rocking 40, ...``; what never happened is left out."""
-    parts = [f"{WORDS.get(word, word.replace('_', ' '))} {n}" for word, n in counts.items() if n]
-    return f"cells: {', '.join(parts)}"
+    return f"cells: {', '.join(f'{spoken(word)} {n}' for word, n in counts.items() if n)}"

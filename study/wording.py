@@ -10,6 +10,13 @@ _TEXT = {
     "N m-1": "N m⁻¹", "N s m-1": "N s m⁻¹",
 }  # fmt: skip
 
+_ENDINGS = {"rest": "at rest", "outside_model": "outside the model"}
+
+
+def spoken(status: str) -> str:
+    """A word of `models.base.STATUS` as a sentence has it."""
+    return _ENDINGS.get(status, status.replace("_", " "))
+
 
 def title(name: str) -> str:
     """A parameter's or output's name in words."""

@@ -40,7 +40,8 @@ def simulate(
     from rocking.simulation import recording_of
     from rocking.simulation import simulate as simulate_history
     from study.figures.save import check_suffix
-    from study.history import write_history
+    from study.history import ending, suspicions_of_ending, write_history
+    from study.wording import spoken
 
     if figure is not None:
         check_suffix(figure)
@@ -56,7 +57,8 @@ def simulate(
         warn_of_stages(wall, [shaken], strict, alone=True)
     history = simulate_history(wall, shaken, duration=duration, integrator=integrator, component=component, scale=scale)
     warn(suspicions_of_peak("the motion", float(abs(history["base_acceleration_x"]).max())), strict)
-    typer.echo(f"written: {write_history(history, out)} ({history.sizes['event']} events)")
+    warn(suspicions_of_ending(history), strict)
+    typer.echo(f"written: {write_history(history, out)} ({history.sizes['event']} events, {spoken(ending(history))})")
     if figure is not None:
         from study.figures import plot_history, save_figure
 
