@@ -12,7 +12,7 @@ import study.accessor  # noqa: F401  (registers cube.rocking)
 from grids.netcdf_file import check_name, check_netcdf
 from grids.netcdf_lock import NETCDF_LOCK, bounded_cache
 from models.base import STATUS
-from models.errors import InputError
+from models.errors import InputError, nearest
 from study.labels import flags
 from study.seal import is_intact, is_sealed
 
@@ -21,9 +21,11 @@ CUBE = "cube.nc"
 
 
 def open_study(folder: str | Path, outputs: Collection[str] | None = None, *, lazy: bool = False) -> xr.Dataset:
-    """The cube of a study, in memory: ``folder`` is ``results/<name>`` or the path of a cube file; all of
-    its outputs, or those named. A ``lazy`` one holds dask arrays in the chunks of the file, which stays open until it
-    is closed, and need not fit in memory: ``with open_study(folder, lazy=True) as cube``, select, then ``compute()``.
+    """The cube of a study, in memory: ``folder`` is ``results/<name>`` or the path of a cube file.
+
+    All of its outputs, or those named and the status, which maps need. A ``lazy`` one holds dask arrays in the chunks
+    of the file, which stays open until it is closed, and need not fit in memory:
+    ``with open_study(folder, lazy=True) as cube``, select, then ``compute()``.
 
     Maps and slices hang on it: ``cube.rocking.overturning_map(x="aspect_ratio", y="top_mass")``.
     Raises InputError when there is no cube yet, or when a byte of it has changed since it was written.
@@ -63,7 +65,13 @@ def _chosen(cube: xr.Dataset, path: Path, outputs: Collection[str] | None) -> xr
             f"{path} is no cube of a study (it has no variable 'status'): name results/NAME or its cube.nc"
         )
     today = _of_today(cube)
-    return today if outputs is None else today[list(outputs)]
+    if outputs is None:
+        return today
+    names = [outputs] if isinstance(outputs, str) else [*outputs]
+    for name in names:
+        if name not in today.data_vars:
+            raise InputError(f"{path} has no output '{name}'; {nearest(str(name), map(str, today.data_vars))}")
+    return today[[*dict.fromkeys([*names, "status"])]]
 
 
 def _of_today(cube: xr.Dataset) -> xr.Dataset:

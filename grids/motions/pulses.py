@@ -87,6 +87,16 @@ def _steps(length: float, step: float, what: str) -> int:
     return count
 
 
+def _check_length(length: float, step: float) -> None:
+    from models.lanes.record import MOST_STEPS
+
+    if not length / step <= MOST_STEPS:
+        raise InputError(
+            f"pulse: {length:.4g} s with its lead and rest take {length / step:.3g} steps of {step:.3g} s, more than "
+            f"{MOST_STEPS:.0e}: shorten it, or give a longer time_step"
+        )
+
+
 def make_pulse(table: Mapping[str, Any]) -> Motion:
     """The motion of a pulse: shape, amplitude ("0.3 g"), frequency ("2 Hz") or duration, cycles,
     time_step, lead and rest (s of silence before and after), name. Raises InputError.
@@ -124,6 +134,7 @@ def make_pulse(table: Mapping[str, Any]) -> Motion:
     for word, length in zip(("lead", "rest"), silence, strict=True):
         if not 0.0 <= length < math.inf:
             raise InputError(f"pulse: {word} is {length:g} s: give zero or a positive time")
+    _check_length(duration + sum(silence), step)
     count = _steps(duration, step, "pulse")
     if pulse.time_step is None:  # silence is rounded to the step that the pulse itself asks for
         before, after = (math.ceil(length / step - 1e-9) for length in silence)

@@ -185,6 +185,15 @@ def test_pulse_in_units_and_with_its_own_step():
             ("0.3 s", "divide", "0.25 s"),
         ),
         ({"shape": "sine", "amplitude": 1.0, "duration": 1.0, "lead": -1.0}, ("lead is -1 s", "positive")),
+        *(
+            ({"shape": "sine", "amplitude": 1.0, "frequency": 1.0, **long}, ("steps", "more than 2e+07", "shorten"))
+            for long in (
+                {"rest": "1e12 s"},
+                {"lead": "1e9 s"},
+                {"cycles": 1e12},
+                {"cycles": 1e6, "time_step": "1 ms"},
+            )
+        ),
     ],
 )
 def test_bad_pulses_are_one_sentence(table, facts):
