@@ -29,7 +29,7 @@ class Housner(Model[Block]):
 
     name = "housner"
     title = "one rigid block on a rigid base"
-    version = "3"
+    version = "4"
     parameters = declaration.PARAMETERS
     alternatives = declaration.ALTERNATIVES
     options = declaration.OPTIONS

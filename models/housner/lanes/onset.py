@@ -15,6 +15,8 @@ from models.lanes.compiler import called, inlined
 
 NONE = 2.0
 """A fraction of the step that never comes."""
+ROUNDING = 1e-14
+"""Share of the base's moment on the block at rest that is none: at the acceleration of onset itself the block rests."""
 HALVINGS = 40
 """Of the step, to the onset under a law in a table over the base acceleration, which bends within the step."""
 
@@ -49,15 +51,16 @@ def onset(
     """First fraction >= f of step i at which the block leaves rest, and the side; (NONE, 0) if it stays."""
     a0, g0, p0, q0 = inputs(w, slot, record, i, f)
     a1, g1, p1, q1 = inputs(w, slot, record, i, 1.0)
+    h = given[lane, r.Q_HEIGHT]
     first, which = NONE, 0.0
     for side in (1.0, -1.0):
         m0 = excess(given, w, lane, slot, side, a0, g0, p0, q0, linear)
         m1 = excess(given, w, lane, slot, side, a1, g1, p1, q1, linear)
         at = NONE
-        if m0 > 0.0:
+        if m0 > ROUNDING * abs(a0) * h:
             at = f
-        elif m1 > 0.0:
-            at = f + (1.0 - f) * (-m0) / (m1 - m0)
+        elif m1 > ROUNDING * abs(a1) * h:
+            at = f + (1.0 - f) * max(0.0, -m0) / (m1 - m0)
             if given.shape[1] > r.N_GIVEN:
                 at = halved(given, w, lane, slot, side, record, i, f, linear)
         if at < first:

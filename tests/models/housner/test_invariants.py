@@ -57,6 +57,17 @@ def test_no_rocking_below_the_onset_and_rocking_above(integrator: str, vertical:
     assert found["uplift_duration"][0] == 0.0 == found["friction_demand"][0] == found["peak_rotation"][0]
 
 
+def test_at_the_acceleration_of_onset_itself_every_block_rests() -> None:
+    """|a| > G tan(alpha) is strict, whatever rounding makes of width/height and of a given in g."""
+    ratios, heights = (x.ravel() for x in np.meshgrid(np.linspace(0.05, 1.0, 96), np.linspace(0.3, 3.0, 28)))
+    blocks = {"aspect_ratio": ratios, "height": heights, "mass": 800.0}
+    shaking = Shaking(0.05, np.array([0.0, 0.5, 1.0, 1.0, -1.0, 0.3, 0.0]))
+    for factor, status in ((1.0, 1), (1.0 + 1e-12, 2)):
+        found = MODEL.evaluate(blocks, shaking, factor * 9.80665 * ratios, outputs=["status", "onset_time"], tail=1.0)
+        assert np.all(found["status"] == status)
+        assert np.all(np.isnan(found["onset_time"]) == (status == 1))
+
+
 @SETTINGS
 @given(SEEDS, st.floats(0.05, 0.9))
 def test_energy_between_impacts_and_at_impacts(seed: int, start: float) -> None:
