@@ -19,6 +19,7 @@ from grids.changes import describe
 from grids.grid import Rectangle
 from grids.netcdf_file import check_name
 from grids.plan import Plan, read_plan
+from grids.plausibility import suspicions_of_plan
 from models.errors import InputError
 from study.capacity import check_axes, check_capacity
 from study.computing import compute
@@ -63,7 +64,7 @@ class Progress:
 class Report:
     """What a run did. ``cube`` is the file; ``failed`` counts blocks whose cells are flagged; ``tally`` all cells
     by what became of them; ``repaired`` says what in the folder was damaged and made anew; ``refined`` what was
-    inferred, of a plan with [refine]."""
+    inferred, of a plan with [refine]; ``suspicions`` which values of the plan are unusual (`grids.plausibility`)."""
 
     folder: Path
     cube: Path
@@ -78,6 +79,7 @@ class Report:
     tally: Mapping[str, int]
     repaired: tuple[str, ...] = ()
     refined: Refined | None = None
+    suspicions: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         text = (
@@ -85,7 +87,8 @@ class Report:
             f"({self.computed} computed, {self.reused} reused) in {self.seconds:.1f} s"
         )
         text += f"; {self.failed} blocks failed, see {self.folder / 'failed'}" if self.failed else ""
-        lines = [*self.repaired, text, tally_line(self.tally)]
+        lines = [f"warning: {said}" for said in self.suspicions]
+        lines += [*self.repaired, text, tally_line(self.tally)]
         return "\n".join(lines if self.refined is None else [*lines, str(self.refined)])
 
 
@@ -153,6 +156,7 @@ def run(
         tally=tally(cube),
         repaired=tuple(repaired),
         refined=refined,
+        suspicions=suspicions_of_plan(plan),
     )
 
 

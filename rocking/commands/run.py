@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -53,7 +54,7 @@ def run(
         raise typer.Exit(FAILURES) from None
     finally:
         show.stop()
-    typer.echo(str(report))
+    typer.echo(str(replace(report, suspicions=())))  # they were said before the run
     if report.failed:
         raise typer.Exit(FAILURES)
 

@@ -279,6 +279,8 @@ def test_what_is_unusual_is_a_warning_or_refused_if_strict() -> None:
         refused = rocking(command, "tall.toml", "--strict")
         assert refused.exit_code == 2 and "height = 1500 m" in refused.stderr and "--strict" in refused.stderr
     assert not Path("results").exists()
+    warned = rocking("run", "tall.toml")
+    assert warned.output.count("unusually large") == warned.stderr.count("unusually large") == 1, warned.output
     Path("wall.toml").write_text(SPECIMEN.replace("4 deg", "400 deg"))
     refused = rocking("simulate", "wall.toml", "--duration", 1, "--out", "h.nc", "--strict")
     assert refused.exit_code == 2 and "400 deg" in refused.stderr and not Path("h.nc").exists()

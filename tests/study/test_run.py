@@ -123,6 +123,7 @@ def test_an_extended_axis_reuses_its_blocks(
 def test_a_changed_plan_stops_with_the_list_of_differences(tmp_path: Path, block_size: Size) -> None:
     block_size(100)
     report = run(small_plan(), results=tmp_path)
+    assert report.suspicions == () and "warning" not in str(report)
     files = {path: path.read_bytes() for path in report.folder.rglob("*") if path.is_file()}
     changed = small_plan(mass="900 kg", tail="3 s", pga="linspace = [0.2, 0.8, 7], unit = 'g'")
     with pytest.raises(InputError) as caught:
@@ -247,3 +248,10 @@ def test_a_study_below_every_threshold_is_at_rest(tmp_path: Path, block_size: Si
     cube = open_study(run(plan, results=tmp_path).folder)
     assert np.all(cube["status"] == REST) and np.all(cube["peak_rotation"] == 0.0)
     assert bool(cube.rocking.onset_map(x="aspect_ratio", y="top_mass").isnull().all())
+
+
+def test_what_is_unusual_about_a_plan_stands_in_the_report(tmp_path: Path) -> None:
+    plan = small_plan(mass="8 g", aspect="values = [0.2]", pga="values = [0.1], unit = 'g'")
+    report = run(plan, results=tmp_path, scheduler="synchronous")
+    (said,) = report.suspicions
+    assert "mass = 0.008 kg is unusually small" in said and str(report).startswith(f"warning: {said}\n")
