@@ -119,6 +119,7 @@ class Raw:
     source: Mapping[str, str]
     places: Mapping[str, Place]
     band_limited: bool = True
+    suspicions: tuple[str, ...] = ()
 
 
 def unknown_channel(name: str) -> str:

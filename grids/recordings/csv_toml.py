@@ -12,11 +12,12 @@ quantity = "displacement"                     # ... (see `grids.recordings.place
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import numpy as np
 
-from grids.columns import read_columns, read_layout
+from grids.columns import Layout, read_columns, read_layout
 from grids.recordings.base import CHANNELS, FloatArray, Raw, unknown_channel
 from grids.recordings.levels import BY_LEVEL, numbered, stem
 from grids.recordings.placed import read_places
@@ -65,4 +66,14 @@ def read(path: Path) -> Raw:
     notes = (f"sign turned as stated: {', '.join(signs)}",) if signs else ()
     source = {k: getattr(layout, k) for k in ("title", "source", "licence") if getattr(layout, k)}
     smooth = layout.between_samples != "linear"
-    return Raw(table.time_step, table.start, channels, levels, notes, source, places, smooth)
+    twice = tuple(_named_twice(layout, table.values))
+    return Raw(table.time_step, table.start, channels, levels, notes, source, places, smooth, twice)
+
+
+def _named_twice(layout: Layout, values: Mapping[str, FloatArray]) -> Iterator[str]:
+    """Channels that are one column in two units or signs; in one of both they hold the same samples."""
+    seen: dict[str | int, str] = {}
+    for name, column in layout.columns.items():
+        first = seen.setdefault(column.column, name)
+        if np.ptp(values[name]) and not np.array_equal(values[name], values[first], equal_nan=True):
+            yield f"{name} and {first} are one column, {column.column!r}, in two units or signs: is it named twice?"

@@ -52,7 +52,7 @@ def read_recording(path: str | Path, *, base_only: bool = False) -> Recording:
         return replace(
             recording,
             source={"file": table.name, **recording.source},
-            suspicions=suspicions_of(recording),
+            suspicions=(*recording.suspicions, *suspicions_of(recording)),
         )
     except InputError as error:
         raise InputError(f"recording {table.name}: {str(error).removeprefix(f'{table.name}: ')}") from None
@@ -65,7 +65,9 @@ def _checked(name: str, raw: Raw, base_only: bool) -> Recording:
             f"has no {REQUIRED} (found: {found or 'no channel'}); name or map it so, zeros for free rocking."
         )
     if base_only:
-        raw = replace(raw, channels={c: x for c, x in raw.channels.items() if c.startswith(BASE)}, levels=())
+        raw = replace(
+            raw, channels={c: x for c, x in raw.channels.items() if c.startswith(BASE)}, levels=(), suspicions=()
+        )
     if not base_only and not any(c in raw.places or CHANNELS[c].response for c in raw.channels):
         responses = [channel for channel, declared in CHANNELS.items() if declared.response]
         misspelt = [note.removesuffix(" It is left out.") for note in raw.notes if UNKNOWN in note and MEANT in note]
@@ -86,7 +88,7 @@ def _checked(name: str, raw: Raw, base_only: bool) -> Recording:
         channels[channel] = kept
     time = np.arange(last - first + 1, dtype=np.float64) * raw.time_step
     return Recording(
-        name, raw.time_step, time, channels, raw.levels, tuple(notes), (), raw.source, raw.places,
+        name, raw.time_step, time, channels, raw.levels, tuple(notes), raw.suspicions, raw.source, raw.places,
         band_limited=raw.band_limited,
     )  # fmt: skip
 

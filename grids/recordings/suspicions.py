@@ -31,8 +31,13 @@ UPLIFTED = 0.2
 FEWEST_SAMPLES = 100
 SIGNIFICANT = 5.0
 """Standard errors by which the coefficient of the base acceleration must differ from zero."""
-LARGEST_P2 = 120.0
-"""s-2; p^2 of a block with R = 6 cm. Degrees taken for radians multiply p^2 by 57."""
+SMALLEST_P2, LARGEST_P2 = 0.2, 120.0
+"""s-2; p^2 of blocks with R = 37 m and 6 cm. Degrees taken for radians multiply it by 57, a clock ten times too fast
+by 100."""
+SAMPLES, SEEN = 13, 0.5
+"""Smoothed over whatever the clock says (65 ms at 200 Hz), and the share that the regression must explain then."""
+OFF, STILL = 0.02, 0.1
+"""rad at which no body rests before and after the shaking; the share of it by which it may move there."""
 G_TAKEN_P2, G_TAKEN_ALPHA = 15.0, 0.04
 """g taken for m s-2 multiplies p^2 by 9.8 and divides alpha (rad) by as much."""
 AHEAD = 0.04
@@ -134,32 +139,51 @@ def _of_rotation(name: str, recording: Recording) -> Iterator[str]:
     if peak > np.pi / 2 * 1.1:
         yield f"{name} peaks at {peak:.3g} rad, beyond lying flat: is it in degrees, declared as rad?"
         return
+    yield from _of_zero(name, rotation, recording.time_step)
     upper = name == "rotation_2" and "rotation_1" in recording.channels  # may well rock against what carries it
     if upper or not np.any(base):
         return
     fit = fit_rocking(rotation, base, recording.time_step)
-    if fit is None:
-        return
-    lead = _lead(rotation, base, recording.time_step, fit)
+    lead = 0.0 if fit is None else _lead(rotation, base, recording.time_step, fit)
     if lead > AHEAD:
         yield f"{name} is ahead of {REQUIRED} by about {lead:.2g} s: were the clocks joined wrongly?"
-    elif fit.significance < SIGNIFICANT:
-        return
+    elif fit is None or fit.significance < SIGNIFICANT:
+        other = fit_rocking(rotation, base, recording.time_step, SAMPLES * recording.time_step)
+        if other is not None and other.significance > SIGNIFICANT and other.explained > SEEN:
+            yield from _of_size(name, other)
     elif fit.p2 < 0.0:
         yield (
             f"{name} follows {REQUIRED} with the wrong sign (a base pushed to +x must tip the body to "
             "negative rotation): is one of them turned?"
         )
-    elif fit.p2 > LARGEST_P2:
-        yield (
-            f"{name} answers {REQUIRED} as a block of R = {0.75 * GRAVITY / fit.p2 * 100:.1g} cm would: "
-            "is the rotation in degrees, declared as rad?"
-        )
+    elif not SMALLEST_P2 < fit.p2 < LARGEST_P2:
+        yield from _of_size(name, fit)
     elif fit.p2 > G_TAKEN_P2 and abs(fit.alpha) < G_TAKEN_ALPHA:
         yield (
             f"{name} answers {REQUIRED} as a block of alpha = {abs(fit.alpha):.1g} rad would: "
             "is the acceleration in g, declared as m s-2?"
         )
+
+
+def _of_zero(name: str, rotation: FloatArray, time_step: float) -> Iterator[str]:
+    """A rotation that rests at one value far from zero before the shaking and after it."""
+    size = max(8, round(RESTS / time_step))
+    ends = rotation[:size], rotation[-size:]
+    before, after = (float(np.median(end)) for end in ends)
+    moves = max(*(float(np.ptp(end)) for end in ends), abs(after - before))
+    if rotation.size > 4 * size and min(abs(before), abs(after)) > OFF and moves < STILL * abs(before):
+        yield f"{name} rests at {before:+.2g} rad before the shaking and after it: is the sensor's zero wrong?"
+
+
+def _of_size(name: str, fit: Rocking) -> Iterator[str]:
+    """A body of a size that none has."""
+    size = 0.75 * GRAVITY / fit.p2
+    if fit.p2 >= LARGEST_P2:
+        cure = "is the rotation in degrees, declared as rad, or the clock too fast?"
+        yield f"{name} answers {REQUIRED} as a block of R = {size * 100:.1g} cm would: {cure}"
+    elif 0.0 < fit.p2 <= SMALLEST_P2:
+        cure = "is the rotation in a larger unit than the one declared, or the clock too slow?"
+        yield f"{name} answers {REQUIRED} as a block of R = {size:.2g} m would: {cure}"
 
 
 def _lead(rotation: FloatArray, base: FloatArray, time_step: float, fit: Rocking) -> float:
@@ -173,12 +197,14 @@ def _lead(rotation: FloatArray, base: FloatArray, time_step: float, fit: Rocking
     return best * time_step if best_fit.p2 > 0.0 and fit.independent * np.log(rest) > LEAD_GAIN else 0.0
 
 
-def fit_rocking(rotation: FloatArray, base: FloatArray, time_step: float) -> Rocking | None:
-    """The regression of the module's equation; None where the body hardly rocks."""
+def fit_rocking(
+    rotation: FloatArray, base: FloatArray, time_step: float, smoothing: float = SMOOTHING
+) -> Rocking | None:
+    """The regression of the module's equation, smoothed over so many s; None where the body hardly rocks."""
     from scipy.ndimage import binary_erosion
     from scipy.signal import savgol_filter
 
-    width = max(7, round(SMOOTHING / time_step) | 1)
+    width = max(7, round(smoothing / time_step) | 1)
     if rotation.size < 4 * width:
         return None
     acceleration = savgol_filter(rotation, width, 3, deriv=2, delta=time_step)
