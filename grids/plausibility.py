@@ -18,6 +18,7 @@ from grids.recordings.outcomes import Outcomes
 from grids.specimen import Specimen, state_unit
 from grids.targets import SCALES
 from grids.units import with_unit
+from models.kinematics import Place
 
 GRAVITY = 9.80665
 USUAL: Mapping[str, tuple[float, float]] = {
@@ -36,6 +37,8 @@ USUAL: Mapping[str, tuple[float, float]] = {
 }
 """Usual values (SI) of what a name ends in; zero is always allowed."""
 USUAL_TOLERANCE = 0.2
+FAR = 2.0
+"""Largest sides of a specimen, from the middle of a body's underside, beyond which no arm carries an instrument."""
 SMALL_PGA = 2.0
 """m s-2: a PGA axis of plain numbers up to here reads like one in g."""
 
@@ -98,7 +101,21 @@ def suspicions_of_specimen(specimen: Specimen) -> tuple[str, ...]:
         for name, value in specimen.initial.items()
         if state_unit(model, name, name) == "rad" and abs(value) >= np.pi / 2
     ]
-    return tuple(found)
+    return (*found, *suspicions_of_places(specimen, specimen.places))
+
+
+def suspicions_of_places(specimen: Specimen, places: Mapping[str, Place]) -> tuple[str, ...]:
+    """Sentences about channels that lie far outside the bodies of a specimen."""
+    sides = [value for name, value in specimen.parameters.items() if name.endswith(("width", "length", "height"))]
+    if not sides:
+        return ()
+    largest = max(sides) * max(1.0, specimen.parameters.get("aspect_ratio", 0.0))  # width or length over height
+    return tuple(
+        f"channel {name} lies {np.hypot(place.x, place.z):.3g} m from the middle of its body's underside, and the "
+        f"longest side is {largest:.3g} m: is the unit of its position right ('-200 mm')?"
+        for name, place in places.items()
+        if np.hypot(place.x, place.z) > FAR * largest
+    )
 
 
 def suspicions_of_stages(specimen: Specimen, lengths: Mapping[str, float], alone: bool = False) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ import models
 from models.errors import InputError
 from rocking.commands.base import STRICT, console, warn
 from rocking.commands.outputs import keep_inputs
-from rocking.commands.recordings import read_recordings, stages, warn_of_stages
+from rocking.commands.recordings import read_recordings, stages, warn_of_recordings
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -64,7 +64,7 @@ def calibrate(
         exposure_of(wall, *at, len(recordings))
     warn(suspicions_of_specimen(wall), strict)
     read = read_recordings(recordings, strict=strict)
-    warn_of_stages(wall, read, strict)
+    warn_of_recordings(wall, read, strict)
     with stages("stopped") as progress:
         from diagnosis import calibrate as calibrate_recordings
 

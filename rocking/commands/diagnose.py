@@ -11,7 +11,7 @@ import typer
 from models.errors import InputError
 from rocking.commands.base import STRICT, warn
 from rocking.commands.outputs import in_answer, keep_inputs
-from rocking.commands.recordings import read_recordings, stages, warn_of_stages
+from rocking.commands.recordings import read_recordings, stages, warn_of_recordings
 
 if TYPE_CHECKING:
     from grids.specimen import Specimen
@@ -67,7 +67,7 @@ def diagnose(
     if not recordings:
         raise InputError("no recording is named: give one or more, or --outcomes TABLE")
     read = read_recordings(recordings, holdout or [], strict=strict)
-    warn_of_stages(wall, read, strict)
+    warn_of_recordings(wall, read, strict)
     train, test = read[: len(recordings)], read[len(recordings) :]
     make_folder(out)
     with stages("stopped; nothing was written") as progress:

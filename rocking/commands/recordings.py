@@ -58,12 +58,13 @@ def say(recording: Recording) -> None:
         typer.echo(f"suspicion: {recording.name}: {suspicion}", err=True)
 
 
-def warn_of_stages(specimen: Specimen, recordings: Sequence[Recording], strict: bool, alone: bool = False) -> None:
-    """Warn of stages of mechanisms that would be passed over, because they fit none of the recordings."""
-    from grids.plausibility import suspicions_of_stages
+def warn_of_recordings(specimen: Specimen, recordings: Sequence[Recording], strict: bool, alone: bool = False) -> None:
+    """Warn of what does not go together: stages that fit none of the recordings, channels far from the bodies."""
+    from grids.plausibility import suspicions_of_places, suspicions_of_stages
 
     lengths = {recording.name: float(recording.time[-1]) for recording in recordings}
     warn(suspicions_of_stages(specimen, lengths, alone), strict)
+    warn(suspicions_of_places(specimen, {k: v for one in recordings for k, v in one.places.items()}), strict)
 
 
 @contextmanager

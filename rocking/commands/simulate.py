@@ -9,7 +9,7 @@ import typer
 
 from rocking.commands.base import STRICT, number, warn
 from rocking.commands.outputs import keep_inputs
-from rocking.commands.recordings import say, warn_of_stages
+from rocking.commands.recordings import say, warn_of_recordings
 
 
 def simulate(
@@ -54,7 +54,7 @@ def simulate(
     shaken: Recording | str | None = None if motion is None else recording_of(motion) or motion
     if isinstance(shaken, Recording):
         say(shaken)
-        warn_of_stages(wall, [shaken], strict, alone=True)
+        warn_of_recordings(wall, [shaken], strict, alone=True)
     history = simulate_history(wall, shaken, duration=duration, integrator=integrator, component=component, scale=scale)
     warn(suspicions_of_peak("the motion", float(abs(history["base_acceleration_x"]).max())), strict)
     warn(suspicions_of_ending(history), strict)

@@ -45,6 +45,10 @@ mass = "800 kg"
 width = 0.005
 [initial]
 rotation_1 = "4 deg"
+[channels.gauge]
+quantity = "displacement"
+position_x = "0.8 m"
+position_z = "1.75 m"
 """
 STUDIES = sorted((Path(__file__).resolve().parents[2] / "studies").glob("*.toml"))
 
@@ -71,6 +75,8 @@ def test_a_plan(old: str, new: str, words: tuple[str, ...]) -> None:
         ("0.005", "0.5", ("[tolerance] width = 50 %", "0.005 for 0.5 %")),
         ("4 deg", "400 deg", ("rotation_1 = 400 deg", "lies on its side")),
         ("1.8 m", "1800 m", ("height = 1800 m", "unusually large")),
+        ("0.8 m", "-20 m", ("channel gauge lies 20", "longest side is 1.8 m", "'-200 mm'")),
+        ("1.75 m", "40 m", ("channel gauge lies 40", "longest side is 1.8 m", "'-200 mm'")),
     ],
 )
 def test_a_specimen(old: str, new: str, words: tuple[str, ...]) -> None:

@@ -61,3 +61,13 @@ def test_a_run_that_is_no_answer_is_told() -> None:
     assert "warning: the run did not converge" in result.stderr and "not converged)" in result.stdout, result.output
     with xr.open_dataset("h.nc") as history:
         assert json.loads(history.attrs["outputs"])["status"] == "not_converged"
+
+
+def test_a_gauge_of_a_recording_far_from_the_block_is_told() -> None:
+    with xr.open_dataset(shaken(1.0)) as stored:
+        recording = stored.load()
+    about = {"units": "m", "quantity": "displacement", "position_z": 16.0}
+    recording["gauge"] = ("time", 0.001 * np.sin(recording["time"].values), about)
+    recording.to_netcdf("with_gauge.nc")
+    result = rocking("simulate", "block.toml", "--motion", "with_gauge.nc", "--out", "h.nc")
+    assert "warning: channel gauge lies 16 m from" in result.stderr, result.output
