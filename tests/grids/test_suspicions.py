@@ -9,8 +9,8 @@ import pytest
 
 from grids.recordings import Recording, read_recording
 from grids.recordings.suspicions import fit_rocking, suspicions_of
-from tests.grids.test_recordings import BASE, ROTATION
-from tests.grids.test_recordings import STEP as SOUND_STEP
+from tests.grids import rocking_block
+from tests.grids.rocking_block import BASE, ROTATION
 
 STEP, COUNT = 0.01, 400
 TIME = STEP * np.arange(COUNT)
@@ -44,13 +44,21 @@ def test_a_zero_that_moves_between_the_rests_is_suspected(moved: float, suspecte
 @pytest.mark.parametrize(
     ("rotation", "step", "words"),
     [
-        (ROTATION, SOUND_STEP, None),
-        (ROTATION + 0.01, SOUND_STEP, None),  # what a model of the sensor takes care of
-        (ROTATION + 0.3, SOUND_STEP, "rests at +0.3 rad before the shaking and after it: is the sensor's zero wrong"),
-        (ROTATION - 0.3, SOUND_STEP, "rests at -0.3 rad"),
-        (1e-3 * ROTATION, SOUND_STEP, "is the rotation in a larger unit than the one declared, or the clock too slow"),
-        (ROTATION, 10.0 * SOUND_STEP, "or the clock too slow"),
-        (ROTATION, 0.1 * SOUND_STEP, "or the clock too fast"),
+        (ROTATION, rocking_block.STEP, None),
+        (ROTATION + 0.01, rocking_block.STEP, None),  # what a model of the sensor takes care of
+        (
+            ROTATION + 0.3,
+            rocking_block.STEP,
+            "rests at +0.3 rad before the shaking and after it: is the sensor's zero wrong",
+        ),
+        (ROTATION - 0.3, rocking_block.STEP, "rests at -0.3 rad"),
+        (
+            1e-3 * ROTATION,
+            rocking_block.STEP,
+            "is the rotation in a larger unit than the one declared, or the clock too slow",
+        ),
+        (ROTATION, 10.0 * rocking_block.STEP, "or the clock too slow"),
+        (ROTATION, 0.1 * rocking_block.STEP, "or the clock too fast"),
     ],
 )
 def test_a_zero_a_unit_or_a_clock_that_no_block_explains(rotation: np.ndarray, step: float, words: str | None) -> None:
@@ -78,7 +86,7 @@ def test_one_column_named_twice(tmp_path: Path, unit: str, sign: int, words: str
     rows = [f"{a:.5f},{r:.6f}" for a, r in zip(BASE, ROTATION, strict=True)]
     (tmp_path / "run.csv").write_text("\n".join(["a,r", *rows]))
     (tmp_path / "run.toml").write_text(
-        f'time_step = "{SOUND_STEP} s"\n[columns]\nbase_acceleration_x = {{ column = "a", unit = "m/s2" }}\n'
+        f'time_step = "{rocking_block.STEP} s"\n[columns]\nbase_acceleration_x = {{ column = "a", unit = "m/s2" }}\n'
         'rotation_1 = { column = "r", unit = "rad" }\n'
         f'displacement_1_x = {{ column = "r", unit = "{unit}", sign = {sign} }}\n'
     )
