@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from diagnosis import calibrate, diagnose
-    from grids.motions import read_motion
+    from grids.motions import Motion, read_motion
     from grids.recordings import read_recording
     from grids.specimen import read_specimen
     from rocking.catalogue import mechanisms, models
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from study.run import run
 
 _WHERE = {
+    "Motion": "grids.motions",
     "calibrate": "diagnosis",
     "diagnose": "diagnosis",
     "mechanisms": "rocking.catalogue",
@@ -38,6 +39,7 @@ _WHERE = {
 """Module of every public name: a new name is one line here and one above."""
 
 __all__ = [
+    "Motion",
     "calibrate",
     "diagnose",
     "mechanisms",

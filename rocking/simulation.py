@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from numbers import Real
+from os.path import isfile  # False for the words of a pulse, which are too long for a file
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -33,24 +35,27 @@ def simulate(
     """History of a specimen: every observable over ``time``, events over ``event``.
 
     ``specimen`` and ``motion`` are what the readers return, or what they read: a specimen file; a
-    shipped motion, a motion file, or a recording, whose measured base motion is used. Without a
-    motion, ``duration`` (in s, or "3 s") of free motion from the specimen's initial state. The specimen says
-    whether the vertical component acts (default: the model's). Its instruments act on what is
+    shipped motion, a motion file, or a recording, whose measured base motion is used. Of arrays make a
+    motion, ``rocking.Motion("name", time_step, horizontal)`` in s and m s-2, with ``vertical`` if need be. Without a
+    motion, ``duration`` (in s, or "3 s") of free motion from the specimen's initial state. The specimen
+    says whether the vertical component acts (default: the model's). Its instruments act on what is
     written; the motion is then what the accelerometers of the base read. Mechanisms with stages act as
     they say for a recording of that name. Channels at positions on the bodies are those of the specimen and of a
     recording. Raises InputError.
     """
+    from grids.given import specimen_of
     from grids.recordings import Recording
-    from grids.specimen import read_specimen
+    from grids.recordings.checked import checked
     from grids.units import to_si
     from study.history import simulate_specimen
 
-    if isinstance(specimen, str | Path):
-        specimen = read_specimen(specimen)
+    specimen = specimen_of(specimen)
     if duration is not None:
         duration = to_si(duration, "s", "duration") if isinstance(duration, str) else duration
-        if not 0.0 < duration < math.inf:
+        if not _is_number(duration) or not 0.0 < duration < math.inf:
             raise InputError(f"duration is {duration!r} s: give a positive time")
+    if not _is_number(scale):
+        raise InputError(f"scale is {scale!r}: give a number, the factor on the motion")
     if scale == 0.0:
         raise InputError("scale 0 leaves no motion; for free motion leave the motion out and give a duration")
     if not abs(scale) <= LARGEST_SCALE:
@@ -66,6 +71,8 @@ def simulate(
     else:
         if isinstance(motion, str | Path):
             motion = recording_of(motion) or motion
+        elif isinstance(motion, Recording):
+            motion = checked(motion)
         shaking = _shaking(specimen, motion, component)
         if duration is not None:
             _check_steps(duration, shaking.time_step)
@@ -74,6 +81,10 @@ def simulate(
     return simulate_specimen(
         specimen, shaking, scale=scale, duration=duration, integrator=integrator, recording=name, places=places
     )
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool)
 
 
 def _check_steps(duration: float, step: float) -> None:
@@ -87,7 +98,7 @@ def _check_steps(duration: float, step: float) -> None:
 
 def _shaking(specimen: Specimen, motion: Motion | Recording | str | Path, component: str | None) -> Shaking:
     import models
-    from grids.motions import read_motion
+    from grids.motions import Motion, read_motion
     from grids.recordings import Recording
 
     model = models.get(specimen.model)
@@ -107,9 +118,9 @@ def _shaking(specimen: Specimen, motion: Motion | Recording | str | Path, compon
         if vertical is None:
             vertical = model.vertical_by_default and "base_acceleration_z" in motion.channels
         return motion.shaking(vertical, vertical_acts=acts)
-    if component is not None and not isinstance(motion, str | Path):
+    if component is not None and isinstance(motion, Motion):
         raise InputError(f"motion {motion.name} was read with its component: leave '{component}' out, or name the file")
-    if isinstance(motion, str | Path):
+    if not isinstance(motion, Motion):
         wanted = vertical if vertical is not None or model.vertical_by_default else False
         motion = read_motion(motion, component=component, vertical=wanted)
     use = model.vertical_by_default if vertical is None else vertical
@@ -125,7 +136,7 @@ def recording_of(motion: str | Path) -> Recording | None:
     if parse_made(str(motion)) is not None:  # a text of any length, which may be none as the name of a file
         return None
     path = Path(motion)
-    if not path.is_file():
+    if not isfile(path):
         try:
             path = locate(str(motion))[0]
         except InputError:

@@ -114,6 +114,8 @@ def run(
     plan = plan if isinstance(plan, Plan) else read_plan(plan)
     folder = Path(results).resolve() / plan.name
     check_name(folder)
+    if folder.parent.exists() and not folder.parent.is_dir():
+        raise InputError(f"results {results} is a file: name the folder of all results")
     check_axes(plan)
     setting = Setting.of(plan)
     with _alone(folder):

@@ -31,8 +31,8 @@ def check_scheduler(scheduler: str, workers: int | None) -> None:
             f"scheduler '{scheduler}' is not known: {nearest(scheduler, SCHEDULERS)} "
             "(or the address of a dask cluster, tcp://host:port)"
         )
-    if workers is not None and workers < 1:
-        raise InputError(f"workers is {workers}: give 1 or more")
+    if workers is not None and (isinstance(workers, bool) or not isinstance(workers, int) or workers < 1):
+        raise InputError(f"workers is {workers!r}: give 1 or more, a whole number")
 
 
 def count_workers(scheduler: str, workers: int | None) -> int:

@@ -12,7 +12,6 @@ import models
 from diagnosis.answer.drift import FEWEST, Drift, drift_of, value_at
 from diagnosis.answer.heldout import frozen, relative_misfit
 from diagnosis.answer.posterior import posterior
-from diagnosis.data.given import recordings_of, specimen_of
 from diagnosis.data.measured import Measured
 from diagnosis.data.twice import refuse_twice
 from diagnosis.errors.model import Errors, calibrated
@@ -24,6 +23,7 @@ from diagnosis.fit.solver import Fitted
 from diagnosis.fit.unknowns import instruments_of
 from diagnosis.progress import Progress, silent
 from diagnosis.search.refit import Explanation
+from grids.given import recordings_of, specimen_of
 from grids.instruments.staged import moved_in_stages
 from grids.recordings.base import Recording
 from grids.specimen import Specimen, with_values

@@ -12,7 +12,6 @@ from diagnosis.answer.ladder import confirmed
 from diagnosis.answer.result import Diagnosis
 from diagnosis.answer.statement import statement
 from diagnosis.answer.task import Task
-from diagnosis.data.given import recordings_of, specimen_of
 from diagnosis.data.twice import refuse_twice
 from diagnosis.errors.model import calibrated
 from diagnosis.fit.one_thread import one_thread
@@ -26,6 +25,7 @@ from diagnosis.search.grown import beside_in_grown_windows
 from diagnosis.search.ladder import Climbed, climb, rungs
 from diagnosis.search.refit import Explanation
 from diagnosis.search.select import first_effect, further_effects, take_best_single
+from grids.given import recordings_of, specimen_of
 from grids.instruments import INSTRUMENTS
 from grids.recordings.base import Recording
 from grids.specimen import Specimen

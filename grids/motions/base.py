@@ -7,11 +7,13 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from numbers import Real
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from grids.arrays import real_numbers
 from models.errors import InputError
 from models.shaking import Shaking
 
@@ -36,13 +38,14 @@ class Motion:
     notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.time_step) and self.time_step > 0.0):
-            raise InputError(f"motion {self.name}: time_step is {self.time_step!r} s: give a positive step")
+        step = self.time_step
+        if isinstance(step, bool) or not isinstance(step, Real) or not 0.0 < step < math.inf:
+            raise InputError(f"motion {self.name}: time_step is {step!r}: give a positive number, in s")
         for name in ("horizontal", "vertical"):
             values = getattr(self, name)
             if values is None:
                 continue
-            array = np.array(values, dtype=np.float64)
+            array = np.array(real_numbers(values, f"motion {self.name}: {name}"))
             if array.ndim != 1 or array.size < 2:
                 raise InputError(f"motion {self.name}: {name} has shape {array.shape}: give at least 2 samples")
             if not np.isfinite(array).all():

@@ -6,6 +6,7 @@ import glob
 import re
 from collections.abc import Iterator, Mapping
 from fnmatch import fnmatchcase
+from os.path import isfile  # False for a name that is too long for a file
 from pathlib import Path
 from typing import Any
 
@@ -57,13 +58,13 @@ def locate(source: str, near: Path | None = None) -> tuple[Path, str | None]:
     name, key = split_source(source)
     wanted = Path(name).expanduser()
     if wanted.is_absolute():
-        if wanted.is_file():
+        if isfile(wanted):
             return wanted, key
         raise InputError(f"motion {source!r}: there is no such file; {_cure(wanted.name, [wanted.parent])}")
     for folder in _folders(near):
-        if (folder / wanted).is_file():
+        if isfile(folder / wanted):
             return folder / wanted, key
-    if (SHIPPED / f"{name}.nc").is_file():
+    if isfile(SHIPPED / f"{name}.nc"):
         return SHIPPED / f"{name}.nc", key
     folders = [folder / wanted.parent for folder in _folders(near)]
     raise InputError(

@@ -37,6 +37,13 @@ def read_motion(
     """
     if isinstance(source, str):
         source = parse_made(source) or source
+    if not isinstance(source, str | Path | Mapping):
+        raise InputError(
+            f"motion is of type {type(source).__name__}: give a name, a path or a table; of arrays make "
+            "rocking.Motion(name, time_step, horizontal)"
+        )
+    if component is not None and not isinstance(component, str):
+        raise InputError(f"component is {component!r}: give the name of a horizontal component, as a text")
     if isinstance(source, Mapping):
         if any(kind in source for kind in MAKERS):
             return _with_hashes(make(source, component, vertical))

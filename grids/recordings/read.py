@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from os.path import isdir, isfile  # False for a name that is too long for a file
 from pathlib import Path
 
 import numpy as np
@@ -35,9 +36,9 @@ def read_recording(path: str | Path, *, base_only: bool = False) -> Recording:
     """
     path = Path(path)
     table = path.with_suffix(".csv") if path.suffix == ".toml" else path
-    if table.is_dir():
+    if isdir(table):
         raise InputError(f"recording {table} is a folder; name a file in it.")
-    if not table.is_file():
+    if not isfile(table):
         beside = [p.name for p in table.parent.glob(f"*{table.suffix}")] if table.parent.is_dir() else []
         cure = nearest(table.name, beside) if beside else "check the path."
         raise InputError(f"recording {table} does not exist; {cure}")

@@ -23,7 +23,7 @@ def keep_inputs(outputs: Iterable[Path], inputs: Iterable[Path]) -> None:
     for output in outputs:
         written = output.resolve()
         for path in read:
-            if path == written or (path.is_dir() and path in written.parents):
+            if path == written or path in written.parents:
                 raise InputError(f"{output} would be written over an input of this command; name another place for it.")
 
 

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 import xarray as xr
 from typer.testing import CliRunner, Result
 
+from models.errors import InputError
 from rocking.commands import app
 
 SPECIMEN = """
@@ -71,3 +74,49 @@ def test_a_gauge_of_a_recording_far_from_the_block_is_told() -> None:
     recording.to_netcdf("with_gauge.nc")
     result = rocking("simulate", "block.toml", "--motion", "with_gauge.nc", "--out", "h.nc")
     assert "warning: channel gauge lies 16 m from" in result.stderr, result.output
+
+
+def test_a_motion_of_arrays() -> None:
+    import rocking as names
+
+    time = 0.01 * np.arange(200)
+    motion = names.Motion("table", 0.01, 3.0 * np.sin(6.0 * time))
+    history = names.simulate("block.toml", motion, scale=0.5)
+    np.testing.assert_allclose(history["base_acceleration_x"][:200], 1.5 * np.sin(6.0 * time), atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("motion", "options", "said"),
+    [
+        ((1, 2), {}, "motion is of type tuple"),
+        (np.zeros(5), {}, "motion is of type ndarray"),
+        (None, {"duration": [1]}, r"duration is \[1\] s: give a positive time"),
+        (None, {"duration": True}, "duration is True s"),
+        (None, {"duration": 1.0, "scale": "2"}, "scale is '2': give a number"),
+        (None, {"duration": 1.0, "scale": True}, "scale is True"),
+    ],
+)
+def test_calls_with_odd_arguments_are_one_sentence(motion: Any, options: dict[str, Any], said: str) -> None:
+    from rocking import simulate
+
+    with pytest.raises(InputError, match=said):
+        simulate("block.toml", motion, **options)
+
+
+def test_a_recording_that_was_changed_is_checked() -> None:
+    from rocking import read_recording, simulate
+
+    time = 0.01 * np.arange(301)
+    held = {"base_acceleration_x": ("time", np.sin(6.0 * time), {"units": "m s-2"})}
+    held["rotation_1"] = ("time", 0.01 * np.sin(3.0 * time), {"units": "rad"})
+    xr.Dataset(held, {"time": ("time", time, {"units": "s"})}).to_netcdf("run.nc")
+    read = read_recording("run.nc")
+    broken = replace(read, channels={**read.channels, "base_acceleration_x": np.full(301, np.nan)})
+    with pytest.raises(InputError, match="recording run: channel base_acceleration_x holds values that are not finite"):
+        simulate("block.toml", broken)
+
+
+def test_a_pulse_longer_than_the_name_of_a_file() -> None:
+    pulse = 'pulse = { shape = "sine", amplitude = "0.3 g", frequency = "2 Hz", name = "' + 250 * "x" + '" }'
+    result = rocking("simulate", "block.toml", "--motion", pulse, "--out", "h.nc")
+    assert result.exit_code == 0, result.output

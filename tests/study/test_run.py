@@ -255,3 +255,12 @@ def test_what_is_unusual_about_a_plan_stands_in_the_report(tmp_path: Path) -> No
     report = run(plan, results=tmp_path, scheduler="synchronous")
     (said,) = report.suspicions
     assert "mass = 0.008 kg is unusually small" in said and str(report).startswith(f"warning: {said}\n")
+
+
+def test_odd_arguments_are_one_sentence(tmp_path: Path) -> None:
+    for workers in (1.5, "2", True, 0):
+        with pytest.raises(InputError, match=f"workers is {workers!r}: give 1 or more, a whole number"):
+            run(small_plan(), results=tmp_path, workers=workers)  # type: ignore[arg-type]
+    (tmp_path / "plan.toml").write_text("")
+    with pytest.raises(InputError, match=r"plan\.toml is a file: name the folder of all results"):
+        run(small_plan(), results=tmp_path / "plan.toml")

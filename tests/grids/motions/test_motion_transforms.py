@@ -124,7 +124,7 @@ def test_content_above_the_new_nyquist_frequency_is_removed():
         (lambda m: m.resampled(-0.01), ("time_step is -0.01 s", "positive")),
         (lambda m: m.resampled(0.01 / np.pi), ("no fraction of whole numbers", "give for instance")),
         (lambda m: m.resampled(61.0), ("59.99 s", "smaller step")),
-        (lambda m: Motion("x", 0.0, m.horizontal), ("time_step is 0.0 s",)),
+        (lambda m: Motion("x", 0.0, m.horizontal), ("time_step is 0.0", "positive", "in s")),
         (lambda m: Motion("x", 0.1, m.horizontal, m.horizontal[1:]), ("5999", "6000", "one length")),
         (lambda m: Motion("x", 0.1, np.array([1.0, np.inf])), ("not finite",)),
     ],
