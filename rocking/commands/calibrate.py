@@ -10,7 +10,7 @@ import typer
 import models
 from models.errors import InputError
 from rocking.commands.base import STRICT, console, warn
-from rocking.commands.outputs import keep_inputs
+from rocking.commands.outputs import keep_inputs, keep_others
 from rocking.commands.recordings import read_recordings, stages, warn_of_recordings
 
 if TYPE_CHECKING:
@@ -55,6 +55,7 @@ def calibrate(
         if out.suffix.lower() != ".toml":
             raise InputError(f"--out {out}: a specimen is written as TOML; end the name in .toml.")
         keep_inputs([out, samples_beside(out), law_of(out)], [specimen, *recordings])
+        keep_others(out)
     from diagnosis.answer.calibration import exposure_of
     from grids.plausibility import suspicions_of_specimen
     from grids.specimen import read_specimen

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from rocking.commands.base import NEAREST, SELECT, read_selection
-from rocking.commands.outputs import in_study, keep_inputs
+from rocking.commands.outputs import in_study, keep_inputs, keep_others
 
 
 def export(
@@ -24,6 +24,7 @@ def export(
     from study.selection import place
 
     keep_inputs([out], in_study(folder))
+    keep_others(out)
     with open_study(folder, lazy=True) as cube:
         at = read_selection(cube, select, nearest)
         path = export_cube(cube, out, outputs=output or (), at=at)

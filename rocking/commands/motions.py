@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from rocking.commands.outputs import keep_inputs
+from rocking.commands.outputs import keep_inputs, keep_others
 
 if TYPE_CHECKING:
     from grids.motions import Motion
@@ -33,6 +33,8 @@ def motions(
         return
     if out is not None and isinstance(sources[0], str):
         keep_inputs([out], [Path(split_source(sources[0])[0])])
+    if out is not None:
+        keep_others(out)
     motion = read_motion(sources[0], component=component)
     _describe(motion)
     if out is not None:

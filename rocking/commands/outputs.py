@@ -1,11 +1,14 @@
-"""Where commands write: never over what they read."""
+"""Where commands write: never over what they read, nor over a file that none of them wrote."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from mmap import ACCESS_READ, mmap
+from os.path import isfile
 from pathlib import Path
 
+from grids.writer import WRITER
 from models.errors import InputError
 
 STUDY = ("cube.nc", "manifest.json", "study.toml", "blocks", "failed")
@@ -25,6 +28,19 @@ def keep_inputs(outputs: Iterable[Path], inputs: Iterable[Path]) -> None:
         for path in read:
             if path == written or path in written.parents:
                 raise InputError(f"{output} would be written over an input of this command; name another place for it.")
+
+
+def keep_others(output: Path) -> None:
+    """Raise InputError when ``output`` is there and not from here: `WRITER` stands in the netCDF and TOML written.
+
+    A table is kept that a TOML beside it describes: a recording, or outcomes.
+    """
+    if not isfile(output) or not output.stat().st_size:
+        return
+    with output.open("rb") as file, mmap(file.fileno(), 0, access=ACCESS_READ) as held:
+        ours = held.find(WRITER.encode()) >= 0 or output.suffix not in (".nc", ".toml")
+    if not ours or (output.suffix == ".csv" and output.with_suffix(".toml").exists()):
+        raise InputError(f"{output} is there and was not written by this program: remove it, or give another name.")
 
 
 def in_study(folder: Path) -> list[Path]:

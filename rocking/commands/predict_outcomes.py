@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from rocking.commands.outputs import in_answer, keep_inputs
+from rocking.commands.outputs import in_answer, keep_inputs, keep_others
 from rocking.commands.recordings import stages
 
 
@@ -31,6 +31,7 @@ def predict_outcomes(
         described = parse_toml(read_text(outcomes, "description of outcomes"))
         table = outcomes.parent / str(described.get("table", ""))
         keep_inputs([out], [outcomes, table, *in_answer(answer)])
+        keep_others(out)
     specimen, posterior = read_answer(answer)
     runs = read_outcomes(outcomes)
     with stages("stopped; nothing was written") as progress:

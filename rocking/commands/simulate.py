@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from rocking.commands.base import STRICT, number, warn
-from rocking.commands.outputs import keep_inputs
+from rocking.commands.outputs import keep_inputs, keep_others
 from rocking.commands.recordings import say, warn_of_recordings
 
 
@@ -47,6 +47,7 @@ def simulate(
         check_suffix(figure)
     read = file_of(motion) if motion else None
     keep_inputs([out], [specimen, *([read] if read else [])])
+    keep_others(out)
     wall = read_specimen(specimen)
     if displacement_high_pass is not None:
         wall = with_mechanism(wall, "integrated_displacement", {"high_pass_hz": displacement_high_pass})

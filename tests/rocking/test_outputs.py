@@ -15,12 +15,15 @@ from diagnosis.answer.calibration import Calibration
 from diagnosis.fit.intervals import Estimate
 from grids.law_table import law_text
 from grids.specimen import read_specimen
+from grids.write_specimen import specimen_text
 from models.housner.model import MODEL
 from models.mechanisms import acting_on
 from models.tables import row
 from rocking.commands import app
 from rocking.commands.calibrate import write
+from rocking.commands.outputs import keep_others
 
+CUBE = Path(__file__).resolve().parents[2] / "results" / "example.nc"
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "from_a_data_logger"
 
 
@@ -72,6 +75,41 @@ def test_an_output_over_an_input_is_refused_before_the_work(words: str) -> None:
     assert refused.exit_code == 2 and "over an input of this command" in refused.stderr, refused.output
     assert refused.stderr.count("\n") == 1
     assert {path: path.read_bytes() for path in Path().rglob("*") if path.is_file()} == before
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "simulate block.toml --duration 0.1 --out",
+        "motions ridgecrest_2019_clc --out",
+        f"export {CUBE} --output status --out",
+    ],
+)
+def test_a_recording_is_not_written_over_and_an_own_file_is(words: str) -> None:
+    xr.Dataset({"rotation_1": ("time", np.zeros(9))}).to_netcdf("measured.nc")
+    before = Path("measured.nc").read_bytes()
+    refused = rocking(*words.split(), "measured.nc")
+    assert refused.exit_code == 2 and "error: measured.nc is there and was not written by" in refused.stderr
+    assert Path("measured.nc").read_bytes() == before
+    for _ in range(2):
+        written = rocking(*words.split(), "own.nc")
+        assert written.exit_code == 0, written.output
+
+
+def test_specimens_and_described_tables_of_others_are_kept() -> None:
+    for output in ("mine.toml", "shake_2.csv", "shake_2.toml"):
+        Path(output).write_text("kept")
+    for output, words in (
+        ("shake_2.csv", f"export {CUBE} --out"),
+        ("mine.toml", "calibrate block.toml shake_1.csv --out"),
+        ("shake_2.csv", "predict-outcomes answer --outcomes runs.toml --out"),
+    ):
+        refused = rocking(*words.split(), output)
+        assert refused.exit_code == 2 and f"error: {output} is there and was not" in refused.stderr, refused.output
+        assert Path(output).read_text() == "kept"
+    keep_others(Path("new.nc"))
+    Path("base.toml").write_text(specimen_text(read_specimen("block.toml")))
+    keep_others(Path("base.toml"))
 
 
 def test_a_calibrated_specimen_is_written_as_toml() -> None:
