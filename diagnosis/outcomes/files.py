@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from diagnosis.outcomes.answer import OutcomeDiagnosis, Posterior, Prediction
+from diagnosis.report.earlier import remove_earlier
 from diagnosis.report.json_file import entry, finite
 from diagnosis.report.posterior_file import LEFT_OUT, write_samples
 from grids.netcdf_file import read_netcdf
@@ -34,6 +35,7 @@ def write_answer(answer: OutcomeDiagnosis, specimen: Specimen, folder: str | Pat
 
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
+    remove_earlier(folder)
     write_text(folder / JSON, as_json(finite(as_mapping(answer)), indent=2, allow_nan=False) + "\n")
     write_text(folder / EXTENDED, specimen_text(answer.extended))
     write_posterior(answer.posterior, folder / POSTERIOR)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import models
 from diagnosis.answer.result import Diagnosis
+from diagnosis.report.earlier import remove_earlier
 from diagnosis.report.extended import extend
 from diagnosis.report.fit_file import write_fit
 from diagnosis.report.json_file import as_mapping, diagnosis_json
@@ -41,7 +42,7 @@ def write_answer(
 
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    _remove_tables(folder)
+    remove_earlier(folder)
     paths = [folder / name for name in ("diagnosis.json", "extended.toml", "report.html")]
     write_text(paths[0], diagnosis_json(diagnosis))
     extended = extend(specimen, diagnosis)
@@ -60,15 +61,3 @@ def write_answer(
     write_text(paths[2], report_page(diagnosis, specimen, train, holdout, drawn))
     write_figures(drawn, folder / "figures")
     return [*paths, fit, folder / "figures"]
-
-
-def _remove_tables(folder: Path) -> None:
-    """Remove the tables of an earlier answer, and no others: a folder may hold a user's own of these names."""
-    from grids.law_table import LAW_FILE
-
-    extended, runs = folder / "extended.toml", folder / "runs.csv"
-    if extended.is_file() and f'"{LAW_FILE}"' in extended.read_text("utf-8", "replace"):
-        (folder / LAW_FILE).unlink(missing_ok=True)
-    if (folder / "diagnosis.json").is_file() and runs.is_file():
-        if runs.read_text("utf-8", "replace").startswith("run,group,overturned,"):
-            runs.unlink()

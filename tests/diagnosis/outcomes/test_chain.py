@@ -97,7 +97,10 @@ def test_nothing_is_said_to_be_missing_when_nothing_is() -> None:
 
 @pytest.mark.slow
 def test_the_answer_predicts_further_runs_from_its_folder(with_inset: OutcomeDiagnosis, tmp_path: Path) -> None:
+    for name, text in ((JSON, "{}"), ("fit.nc", "curves"), (EXTENDED, 'file = "law.csv"'), ("law.csv", "a law")):
+        (tmp_path / name).write_text(text)
     write_answer(with_inset, BLOCK, tmp_path)
+    assert not (tmp_path / "fit.nc").exists() and not (tmp_path / "law.csv").exists()
     answer = json.loads((tmp_path / JSON).read_text())
     assert answer["verdict"] == with_inset.verdict
     assert answer["effects"][0]["parameters"]

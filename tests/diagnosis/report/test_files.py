@@ -15,6 +15,7 @@ import xarray as xr
 from diagnosis.answer.result import Effect, Verdict
 from diagnosis.fit.intervals import Estimate
 from diagnosis.report import diagnosis_json, extend
+from diagnosis.report.earlier import remove_earlier
 from diagnosis.report.pictures import write_figures
 from diagnosis.report.svg import Picture
 from grids.write_specimen import specimen_text
@@ -72,6 +73,19 @@ def test_a_second_diagnosis_takes_the_figures_of_the_first_away_and_no_others(tm
     (tmp_path / "mine.svg").write_text("<svg></svg>")
     write_figures({"raster": drawn["raster"]}, tmp_path)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["mine.svg", "raster.svg"]
+
+
+def test_what_an_earlier_answer_left_goes_and_a_users_own_stays(tmp_path: Path) -> None:
+    own = {"law.csv": "mine", "runs.csv": "mine", "fit.nc": "mine", "extended.toml": 'title = "mine"'}
+    theirs = {
+        "law.csv": "a law", "runs.csv": "run,group,overturned,PGA", "fit.nc": "curves", "diagnosis.json": "{}",
+        "extended.toml": '[mechanisms.table_force]\nfile = "law.csv"',
+    }  # fmt: skip
+    for held, left in ((own, set(own)), (theirs, {"diagnosis.json", "extended.toml"})):
+        for name, text in held.items():
+            (tmp_path / name).write_text(text)
+        remove_earlier(tmp_path)
+        assert {path.name for path in tmp_path.iterdir()} == left
 
 
 def test_figures_are_xml(answer: Path) -> None:
