@@ -75,7 +75,7 @@ def _range(low: float, high: float, given: object, spacing: str, target: Target,
     if spacing not in SPACINGS:
         raise InputError(f"{where}: spacing = {spacing!r}; write 'linear' or 'log'.")
     if not low < high or not np.isfinite([low, high]).all():
-        raise InputError(f"{where} = {given}: low must be below high, both finite; correct them.")
+        raise InputError(f"{where} = {given}: low must be below high, both finite; swap or separate them.")
     if spacing == "log" and low <= 0.0:
         raise InputError(f"{where}: a log spacing starts above zero, not at {low:.6g}; raise it or use linear.")
     bounded(np.array([low, high]), target, where)
