@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError
 from contextlib import contextmanager
 from dataclasses import dataclass
+from os.path import isfile
 from pathlib import Path
 
 from grids.changes import describe
@@ -114,8 +115,8 @@ def run(
     plan = plan if isinstance(plan, Plan) else read_plan(plan)
     folder = Path(results).resolve() / plan.name
     check_name(folder)
-    if folder.parent.exists() and not folder.parent.is_dir():
-        raise InputError(f"results {results} is a file: name the folder of all results")
+    if any(isfile(above) for above in folder.parents):
+        raise InputError(f"results {results} is a file, or lies in one: name the folder of all results")
     check_axes(plan)
     setting = Setting.of(plan)
     with _alone(folder):

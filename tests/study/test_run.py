@@ -262,5 +262,6 @@ def test_odd_arguments_are_one_sentence(tmp_path: Path) -> None:
         with pytest.raises(InputError, match=f"workers is {workers!r}: give 1 or more, a whole number"):
             run(small_plan(), results=tmp_path, workers=workers)  # type: ignore[arg-type]
     (tmp_path / "plan.toml").write_text("")
-    with pytest.raises(InputError, match=r"plan\.toml is a file: name the folder of all results"):
-        run(small_plan(), results=tmp_path / "plan.toml")
+    for place in ("plan.toml", "plan.toml/below"):
+        with pytest.raises(InputError, match="is a file, or lies in one: name the folder of all results"):
+            run(small_plan(), results=tmp_path / place)
