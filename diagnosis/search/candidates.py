@@ -20,6 +20,8 @@ GRID = (0.03, 0.1, 0.3, 0.6, 0.95)
 FINE_GRID = tuple(np.geomspace(0.01, 0.95, 32).tolist())
 """The same where the effect sets in at a threshold somewhere on the way."""
 SHAPE_GRID = 3
+FINE_SHAPES = tuple(np.geomspace(0.01, 0.95, 12).tolist())
+"""Shares of the range of a shape that may keep an effect from acting, such as the strain from which a set begins."""
 ORDERS = (1.0, 2.0, 3.0, 4.0)
 
 
@@ -55,6 +57,15 @@ class Candidate:
         """Whether the null is a bound of the effect's parameter."""
         low, high = self.unknowns[0].bounds
         return bool(self.null[0] <= low or self.null[0] >= high)
+
+    def nulls(self) -> Iterator[FloatArray]:
+        """Coordinates (d,) at which the effect is off, one after the other of what shapes it over its range, finely."""
+        for k, unknown in enumerate(self.unknowns[1:], start=1):
+            low, high = unknown.bounds
+            for share in FINE_SHAPES:
+                null = self.null
+                null[k] = low + share * (high - low)
+                yield null
 
     def grid(self, by_threshold: bool = False) -> Iterator[FloatArray]:
         """Coordinates (d,) spread over the range, on both sides of the null; finely for a ``by_threshold`` effect."""

@@ -5,7 +5,10 @@ base parameters (weights and priors included), the score (Lagrange multiplier) s
 
     S = (d'r)^2 / d'd,      one-sided where the null is a bound: 0 when the best step leaves it.
 
-A null at infinity or with a threshold (sliding, gaps, flight) has no usable derivative: there the
+Where what shapes the effect keeps it from acting (a permanent set that begins beyond a strain that is not reached) the
+derivative is taken at other values of the shape.
+
+A null at infinity or with a threshold (sliding, flight) has no usable derivative at all: there the
 model is run on a grid of values and the statistic is the largest gain over the grid, the base
 parameters and states answering linearly.
 """
@@ -26,15 +29,18 @@ from models.base import FloatArray
 from models.errors import InputError
 from models.runs import DONE
 
+NO_SLOPE = 1e-12
+"""Information of a derivative from which down there is none."""
+
 
 @dataclass(frozen=True)
 class Score:
     """``statistic``: the larger of score and grid gain; ``starts``: coordinates (d,) worth a refit, best first.
 
-    ``column`` (W, M): the direction in which the effect moves the residuals, off the states: the derivative at the null
-    if it is a ``slope``, else the change by ``trial`` (d,), the best of the grid: it may be worth a refit in a part of
-    the recordings though it is not in all; ``side``: the sign that an amplitude along it may have, 0 for either;
-    ``work``: lane-steps of one trial.
+    ``column`` (W, M): the direction in which the effect moves the residuals, off the states: the derivative at a null
+    if it is a ``slope``, else the change by the best of the grid, which may be worth a refit in a part of the
+    recordings though it is not in all; ``trial`` (d,): that null or that best; ``side``: the sign that an amplitude
+    along it may have, 0 for either; ``work``: lane-steps of one trial.
     """
 
     candidate: Candidate
@@ -49,13 +55,13 @@ class Score:
     def starts_from(self, amplitude: float) -> list[FloatArray]:
         """Coordinates (d,) worth a refit in a part of the recordings, from its ``amplitude`` there along the column."""
         found = list(self.starts[:1])
-        if not found and self.trial is not None:
-            found.append(self.trial)
+        if self.trial is None:
+            return found
         if self.slope:
-            start = self.candidate.null
+            start = self.trial.copy()
             start[0] += amplitude
-            found.insert(0, start)
-        return found
+            return [start, *found]
+        return found or [self.trial]
 
 
 def score(
@@ -75,20 +81,28 @@ def score(
 
 def _score_one(screen: Linearisation, base: Point, candidate: Candidate) -> Score:
     misfit = in_spell(screen.fitted.misfit, candidate.name, candidate.spell)
-    null = candidate.null
+
+    def reduced(trials: Sequence[FloatArray]) -> FloatArray:
+        return screen.reduced(misfit.residuals([at(base, candidate, u) for u in trials]))
+
+    null, trials = candidate.null, list(candidate.grid())
     low, high = candidate.unknowns[0].bounds
-    begin = DONE.steps
-    near = [null.copy(), null.copy()]
-    near[0][0], near[1][0] = min(max(null[0] - STEP, low), null[0]), min(max(null[0] + STEP, low), high)
-    trials = list(candidate.grid())
-    off = screen.reduced(misfit.residuals([at(base, candidate, u) for u in (*near, *trials)]))
+    near, begin = _near(null, low, high), DONE.steps
+    off = reduced([*near, *trials])
     work = (DONE.steps - begin) / len(off)
-    derivative = (off[1] - off[0]) / (near[1][0] - near[0][0])
-    off, information = off[2:], screen.product(derivative, derivative)
+    derivative, off = _slope(off[:2], near), off[2:]
+    information = screen.product(derivative, derivative)
+    if information <= NO_SLOPE and (nulls := list(candidate.nulls())):
+        pairs = [_near(one, low, high) for one in nulls]
+        found = reduced([u for pair in pairs for u in pair])
+        slopes = [_slope(found[2 * k : 2 * k + 2], pair) for k, pair in enumerate(pairs)]
+        most = int(np.argmax([screen.product(slope, slope) for slope in slopes]))
+        null, derivative = nulls[most], slopes[most]
+        information = screen.product(derivative, derivative)
     best, start = 0.0, null
-    if information <= 1e-12:
+    if information <= NO_SLOPE:
         trials = list(candidate.grid(by_threshold=True))
-        off = screen.reduced(misfit.residuals([at(base, candidate, u) for u in trials]))
+        off = reduced(trials)
     else:
         step = -screen.scores_with_residual(derivative) / information
         if null[0] < high if step > 0.0 else null[0] > low:
@@ -101,11 +115,22 @@ def _score_one(screen: Linearisation, base: Point, candidate: Candidate) -> Scor
     if best > 0.0:
         starts.insert(0 if not gains.size or best * 0.8 > gains[order[0]] else 1, start)
     statistic = max(best if np.isfinite(best) else 0.0, float(gains.max(initial=0.0)))
-    if information > 1e-12 or not order.size:
+    if information > NO_SLOPE or not order.size:
         side = 0 if not candidate.one_sided else 1 if null[0] < high else -1
-        return Score(candidate, statistic, tuple(starts[:2]), derivative, True, side, work)
+        return Score(candidate, statistic, tuple(starts[:2]), derivative, True, side, work, null)
     first = int(order[0])
     return Score(candidate, statistic, tuple(starts[:2]), off[first] - screen.residual, False, 1, work, trials[first])
+
+
+def _near(null: FloatArray, low: float, high: float) -> tuple[FloatArray, FloatArray]:
+    """Coordinates (d,) just below and just above a null, within the range of the effect's parameter."""
+    below, above = null.copy(), null.copy()
+    below[0], above[0] = min(max(null[0] - STEP, low), null[0]), min(max(null[0] + STEP, low), high)
+    return below, above
+
+
+def _slope(off: FloatArray, near: tuple[FloatArray, FloatArray]) -> FloatArray:
+    return np.asarray((off[1] - off[0]) / (near[1][0] - near[0][0]))
 
 
 def _gain(screen: Linearisation, off: FloatArray) -> float:

@@ -9,10 +9,12 @@ import numpy as np
 import pytest
 
 import models
+from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.setup import measure
 from diagnosis.fit.solver import fit
 from diagnosis.search.candidates import candidates
 from diagnosis.search.refit import Explanation
+from diagnosis.search.screen import score
 from diagnosis.search.thresholds import from_measured, misfits, setting_in
 from grids.instruments import INSTRUMENTS
 from grids.recordings.base import Recording
@@ -63,8 +65,12 @@ def recorded(name: str, seed: int) -> Recording:
 
 @cache
 def base(name: str) -> Explanation:
-    """Fitted from the true layers: how the search comes there is another test's."""
-    measured = measure(SPECIMEN, [recorded(name, seed) for seed in (1, 2)])
+    return fitted([recorded(name, seed) for seed in (1, 2)])
+
+
+def fitted(recordings: list[Recording]) -> Explanation:
+    """From the true layers: how the search comes there is another test's."""
+    measured = measure(SPECIMEN, recordings)
     one = misfit(measured)
     return Explanation((), fit(one, np.array([x.coordinate(TRUE[x.name]) for x in one.unknowns]), measured.states))
 
@@ -102,3 +108,17 @@ def test_friction_that_never_slips_is_not_fitted() -> None:
     before, (slip,) = base("tilt"), own_candidates(base("tilt"), SPECIMEN, SLIPS, EFFECTS[SLIPS])
     never = replace(slip, unknowns=(replace(slip.unknowns[0], low=1.0),))
     assert not from_measured(before, never)
+
+
+def test_a_set_that_begins_at_less_strain_than_its_search_does_is_seen() -> None:
+    """At the start of the limit it never acts: the slope is that at another limit, and where the fit begins."""
+    law = {"permanent_set": EFFECTS["permanent_set"]}
+    before = fitted([simulated("interface", TRUE, law, seed, 1.5) for seed in (1, 2)])
+    (own,) = own_candidates(before, SPECIMEN, "permanent_set", law["permanent_set"])
+    rate, limit = own.unknowns
+    far = replace(own, unknowns=(rate, replace(limit, start=1.9)))
+    (seen,) = score(linearise_about(before.fitted), [far])
+    assert seen.slope and seen.trial is not None and limit.value(seen.trial[1]) < 0.7
+    assert seen.starts_from(2.0)[0].tolist() == [2.0, seen.trial[1]]
+    (near,) = score(linearise_about(before.fitted), [own])
+    assert seen.statistic > 0.5 * near.statistic > 1000.0
