@@ -47,16 +47,7 @@ def _read(request: Request) -> Axis:
     if times > 1:
         raise InputError(f"{request.where}: the label '{label}' is given twice; give each case its own.")
     points = {name: _column(request, name, rows, labels) for name in names}
-    _refuse_twice(request, labels, points)
     return Axis(request.own_name(), labels, "1", "case", points)
-
-
-def _refuse_twice(request: Request, labels: NDArray[Any], points: dict[str, NDArray[Any]]) -> None:
-    first: dict[tuple[str, ...], str] = {}
-    for number, label in enumerate(labels):
-        other = first.setdefault(tuple(str(column[number]) for column in points.values()), label)
-        if other != label:
-            raise InputError(f"{request.where}: cases '{other}' and '{label}' have the same values; leave one out.")
 
 
 def _column(request: Request, name: str, rows: list[dict[str, Any]], labels: NDArray[Any]) -> NDArray[Any]:

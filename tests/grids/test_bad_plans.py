@@ -171,11 +171,6 @@ BAD: dict[str, tuple[str, str, tuple[str, ...]]] = {
         ("record_pga", "taken", "'case'"),
     ),
     "no cases": (PGA, "case = { cases = [] }", ("case", "at least one")),
-    "cases with equal values": (
-        PGA,
-        "case = { cases = [{ label = 'A', pga = 1 }, { label = 'B', pga = '1 m/s2' }] }",
-        ("cases 'A' and 'B' have the same values", "leave one out"),
-    ),
     "a unit of motions": (
         PGA,
         "motion = { values = ['ridgecrest_2019_clc'], unit = 'g' }",

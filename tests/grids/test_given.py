@@ -103,5 +103,5 @@ def test_reading_what_is_no_name() -> None:
     for path in ("x" * 300 + ".nc", Path("x" * 300 + ".csv")):
         with pytest.raises(InputError, match="does not exist"):
             read_recording(path)
-    with pytest.raises(InputError, match="is not beside the plan"):
+    with pytest.raises(InputError, match="is not beside the file that names it"):
         read_motion("x" * 300 + ".nc")
