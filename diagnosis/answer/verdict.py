@@ -76,12 +76,12 @@ def judge(task: Task, found: Search, climbed: Climbed | None) -> Judgement:
     p_value = p_of_missing(found, gains, errors.inadequacy, constancy.flagged, unfit, task.finished)
     doubtful = p_of_doubts(found, errors.inadequacy, constancy.flagged, unfit)
     if task.draws and task.finished and climbed is None and (gains or not doubtful):
-        drawn = stages.optional(
+        score_p = p_value
+        p_value = stages.optional(
             "the bootstrap (the p-value is that of the score)",
-            lambda: bootstrapping.p_value(task.specimen, found, task.draws, task.seed, progress),
-            lambda: None,
+            lambda: min([bootstrapping.p_value(task.specimen, found, task.draws, task.seed, progress), *doubtful]),
+            lambda: score_p,
         )
-        p_value = p_value if drawn is None else min([drawn, *doubtful])
     return Judgement(
         found=found, final=chosen, climbed=climbed, shown=shown, held=held, constancy=constancy, errors=errors,
         near=near, gains=gains, against=against, beyond=beyond, unfit=unfit, verdict=verdict, p_value=p_value,

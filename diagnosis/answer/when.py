@@ -16,7 +16,7 @@ from diagnosis.search.for_a_while import asking, exact, gain
 from diagnosis.search.found import MISSING
 from diagnosis.search.instants import Instant, ends_of
 from diagnosis.search.refit import Explanation
-from diagnosis.search.spells import LASTS, InEach, When
+from diagnosis.search.spells import LASTS, InEach, Interval, When
 from diagnosis.search.tables import form_of
 from grids.stages import Stage
 from models.base import FloatArray
@@ -94,12 +94,17 @@ def held_stages(explanation: Explanation, misfit: Misfit, states: FloatArray) ->
             begins, ends = (0.0, LASTS) if acts else (0.0, 0.0)
             if own:
                 asked = asking(misfit.measured, r, gained, MISSING + _price_of_one(candidate))
-                try:
-                    begins, ends = exact(misfit, candidate.name, states, r, asked)
-                except InputError:  # it cannot change within a window: in whole ones
-                    begins, ends = asked
+                begins, ends = _exact(misfit, candidate.name, states, r, asked)
             found.append(HeldStage(candidate.name, recording.name, begins, ends, own))
     return (*found, *_of_law(explanation, misfit, states))
+
+
+def _exact(misfit: Misfit, mechanism: str, states: FloatArray, r: int, interval: Interval) -> Interval:
+    """`exact`, or whole windows where the run of a specimen cannot be cut within one."""
+    try:
+        return exact(misfit, mechanism, states, r, interval)
+    except InputError:
+        return interval
 
 
 def _price_of_one(candidate: Candidate) -> float:
@@ -115,7 +120,7 @@ def _of_law(explanation: Explanation, misfit: Misfit, states: FloatArray) -> Ite
         return
     gained = gain(misfit, form.name, {f"{form.name}.{name}": null for name, null in form.nulls.items()}, states)
     for r, recording in enumerate(m.recordings):
-        interval = exact(misfit, form.name, states, r, asking(m, r, gained, MISSING))
+        interval = _exact(misfit, form.name, states, r, asking(m, r, gained, MISSING))
         yield HeldStage(form.name, recording.name, *interval, True)
 
 

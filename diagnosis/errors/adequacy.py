@@ -58,8 +58,7 @@ class Inadequacy:
 class Repeatability:
     """Relative standard deviation of events with 95 % interval; ``deviance``: what the likelihood loses without it.
 
-    ``at_limit``: the estimate is as large as it may be (`Errors.most_scatter`), so that what events do besides is no
-    scatter.
+    ``at_limit``: the estimate is as large as it may be (`Errors.most_scatter`); the events' law may differ.
     """
 
     events: str

@@ -1,9 +1,10 @@
 """What an event that does not repeat exactly leaves in the rest of its window.
 
-One column an event: the derivative of the recorded channels by a relative change of the rate just after it. Short runs
-from the first sample after the event, with the rate changed by a share of itself up and down, give it (reading it off
-the responses to pulses of base acceleration of 20 ms is 15-20 % low). A pulse of one sample makes nearly the same
-change: its height is known too, so that a run can have its events as they were (`diagnosis.errors.scattered`).
+One column an event: the derivative of the recorded channels by a relative change of the joint's rate just after it, by
+an impulse there, which changes the rates of other bodies too. Short runs from the first sample after the event, with
+the rates and what they have turned since changed up and down, give it (reading it off the responses to pulses of base
+acceleration of 20 ms is 15-20 % low). Where one rate alone changes, a pulse of one sample makes nearly the same change:
+its height is known too, so that a run can have its events as they were (`diagnosis.errors.scattered`).
 """
 
 from __future__ import annotations

@@ -145,10 +145,11 @@ def _about_the_events(fitted: Fitted, errors: Errors) -> tuple[Fitted, Errors]:
     """The fit, and its errors estimated anew, about the motion with the events as they are predicted.
 
     About the motion without scatter where there is none, or as much as there may be: then it is a law that differs,
-    and a motion with that law and with the pulses that stand for it would have it twice.
+    and a motion with that law and with the pulses that stand for it would have it twice. And where no pulse makes the
+    change that an event leaves.
     """
     for _ in range(RELINEARISED):
-        if not errors.scatters:
+        if not errors.scatters or not np.any(errors.kicks.height):
             break
         own = next(k for k, c in enumerate(errors.components) if c.kind == "scatter")
         now = Events(fitted.u, fitted.states, errors.kicks, known_changes(fitted.measured, errors.kicks))

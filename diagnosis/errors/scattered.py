@@ -11,8 +11,9 @@ is what the errors are estimated from and parameters u and states x are fitted t
 
     h = loss(f(u, x, z) - y) + sum (z_j/s)^2,
 
-shortened until h falls. A change of the rate is made by a pulse of base acceleration of one sample just after the
-event: no model has to know of it.
+shortened until h falls. A change of the rate is made by a pulse of base acceleration of one sample, a sample or two
+after the event: no model has to know of it. Where several rates change at an event no pulse does that, and its scatter
+stays linear about the motion without.
 """
 
 from __future__ import annotations

@@ -62,7 +62,7 @@ class ChannelErrors:
     ``noise``: of what is faster than `SLOW`; ``drift``: of the rest, at the end of the longest recording; ``growing``:
     of noise in proportion to the signal, at its peak; ``colour``: "white", "low" (denser below 10 Hz) or "filtered"
     (little above 20 Hz and no more below). ``corner_hz``: from where on a filter weakens the noise, of the residuals
-    (`diagnosis.errors.corner`); None where it is not filtered or that does not show.
+    (`diagnosis.errors.corner`); None where it is not filtered, hum lies over it, or that does not show.
     """
 
     channel: str
@@ -124,7 +124,7 @@ def _channel(errors: Errors, measured: Measured, channel: int, name: str, second
         unit=measured.unit_of(name),
         noise=float(np.sqrt(fast)) * scale,
         colour=colour,
-        corner_hz=_corner(spectrum) if colour == "filtered" else None,
+        corner_hz=_corner(spectrum) if colour == "filtered" and not hum else None,
         drift=float(np.sqrt(slow)) * scale,
         growing=float(np.sqrt(growing)) * scale,
         hum=hum,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from diagnosis.errors.pieces import LARGEST
 from diagnosis.errors.summary import CLEARLY, ChannelErrors, ErrorModel
 
 COLOURS = {
@@ -20,8 +19,8 @@ def error_lines(errors: ErrorModel) -> list[str]:
     scatter = errors.scatter
     if scatter is not None and scatter.at_limit:
         found.append(
-            f"{scatter.events.capitalize()} scatter by {LARGEST['scatter'] ** 0.5:.0%} or more: more than is taken for "
-            "scatter, so it may be a law of them that differs; check the base and the edges."
+            f"{scatter.events.capitalize()} scatter by {scatter.estimate:.1%} or more, which is the most that is taken "
+            "for scatter: their law may differ from the model's; check the base and the edges."
         )
     elif scatter is not None and scatter.clear:
         found.append(

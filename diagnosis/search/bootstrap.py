@@ -30,6 +30,7 @@ from diagnosis.search.screen import score
 from diagnosis.search.select import FEWEST
 from grids.specimen import Specimen
 from models.base import FloatArray
+from models.errors import InputError
 
 TAIL = 0.25
 FEWEST_FOR_A_TAIL = 20
@@ -37,11 +38,11 @@ FARTHEST = 600.0
 """v, beyond which Q underflows."""
 
 
-def p_value(specimen: Specimen, found: Search, draws: int, seed: int, progress: Progress) -> float | None:
+def p_value(specimen: Specimen, found: Search, draws: int, seed: int, progress: Progress) -> float:
     """Probability of a gain at least as large as that of the recordings if nothing is missing.
 
-    None where something was found and the short search does not find as much: what begins or ends, or what the errors
-    hide. Its gains are then not those of the answer.
+    Raises InputError where something was found and the short search finds nothing, as what begins or ends or what the
+    errors hide: its gains are not those of the answer.
     """
     start = found if found.at_null is None else found.at_null
     base, errors = start.base.fitted, start.errors
@@ -50,7 +51,7 @@ def p_value(specimen: Specimen, found: Search, draws: int, seed: int, progress: 
     progress("bootstrap: the recordings", 0.9)
     observed = gain(specimen, base, errors)
     if found.best is not None and observed < MISSING:
-        return None
+        raise InputError("its search of one effect that always acts does not find what was found")
     drawn = []
     for turn in range(draws):
         progress(f"bootstrap {turn + 1} of {draws}", 0.9)

@@ -31,6 +31,8 @@ from models.runs import DONE
 
 NO_SLOPE = 1e-12
 """Information of a derivative from which down there is none."""
+FAINT = 4.0
+"""Change (2 log likelihood) by an effect at the end of its range up to which what shapes it may keep it from acting."""
 
 
 @dataclass(frozen=True)
@@ -92,7 +94,9 @@ def _score_one(screen: Linearisation, base: Point, candidate: Candidate) -> Scor
     work = (DONE.steps - begin) / len(off)
     derivative, off = _slope(off[:2], near), off[2:]
     information = screen.product(derivative, derivative)
-    if information <= NO_SLOPE and (nulls := list(candidate.nulls())):
+    reach = max(high - null[0], null[0] - low)
+    if information * reach**2 <= FAINT and len(null) > 1:
+        nulls = [null, *candidate.nulls()]
         pairs = [_near(one, low, high) for one in nulls]
         found = reduced([u for pair in pairs for u in pair])
         slopes = [_slope(found[2 * k : 2 * k + 2], pair) for k, pair in enumerate(pairs)]

@@ -65,7 +65,9 @@ def test_impacts_at_the_limit_of_what_is_taken_for_scatter_are_warned_of() -> No
     assert ERRORS.scatter is not None
     scatter = replace(ERRORS.scatter, estimate=0.03, low95=0.027, high95=0.05, at_limit=True)
     said = " ".join(error_lines(replace(ERRORS, scatter=scatter)))
-    assert "Impacts scatter by 3% or more: more than is taken for scatter" in said and "repeat" not in said
+    assert (
+        "Impacts scatter by 3.0% or more, which is the most that is taken for scatter" in said and "repeat" not in said
+    )
 
 
 def test_the_file_holds_them() -> None:

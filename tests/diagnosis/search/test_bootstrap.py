@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from dataclasses import replace
 from functools import cache
 
@@ -20,6 +21,7 @@ from diagnosis.search.found import Search
 from diagnosis.search.null import LEAST_P, null_distribution
 from diagnosis.search.refit import Explanation
 from diagnosis.search.screen import score
+from models.errors import InputError
 from tests.diagnosis.answer.searched import among
 from tests.diagnosis.buildings import SPECIMEN as BUILDING
 from tests.diagnosis.buildings import made
@@ -107,5 +109,5 @@ def test_what_is_missing_is_beyond_every_draw_and_what_is_not_within() -> None:
 def test_draws_tell_nothing_of_what_their_search_does_not_find(restitution: float) -> None:
     """An effect that begins, say: their gains are not those of the answer."""
     found = null(restitution)
-    said = p_value(SPECIMEN, replace(found, best=found.base), 1, 0, lambda *_: None)
-    assert said is None if restitution == 1.0 else said == 0.5
+    with pytest.raises(InputError, match="does not find") if restitution == 1.0 else nullcontext():
+        assert p_value(SPECIMEN, replace(found, best=found.base), 1, 0, lambda *_: None) == 0.5
