@@ -62,7 +62,7 @@ class ChannelErrors:
     ``noise``: of what is faster than `SLOW`; ``drift``: of the rest, at the end of the longest recording; ``growing``:
     of noise in proportion to the signal, at its peak; ``colour``: "white", "low" (denser below 10 Hz) or "filtered"
     (little above 20 Hz and no more below). ``corner_hz``: from where on a filter weakens the noise, of the residuals
-    (`diagnosis.errors.corner`); None where it is not filtered, hum lies over it, or that does not show.
+    (`diagnosis.errors.corner`); None where it is not filtered, a line of hum lies there, or that does not show.
     """
 
     channel: str
@@ -116,7 +116,8 @@ def _channel(errors: Errors, measured: Measured, channel: int, name: str, second
     slow = sum(t for c, t in own if c.kind == "exponential" and c.scale >= SLOW)
     slow += sum(t * (seconds / WALK if np.isinf(c.scale) else 1.0) for c, t in own if c.shared)
     growing = sum(t for c, t in own if c.kind == "growing")
-    lines = [(*in_the_samples(measured, name, c.scale), t) for c, t in own if c.kind == "hum" and t > 0.0]
+    heard = [(c.scale, t) for c, t in own if c.kind == "hum" and t > 0.0]
+    lines = [(*in_the_samples(measured, name, frequency), t) for frequency, t in heard]
     hum = tuple(Line(frequency, float(np.sqrt(2.0 * t)) * scale / left) for frequency, left, t in lines)
     colour, spectrum = _colour(errors, channel), _spectrum(errors, channel, scale)
     return ChannelErrors(
@@ -124,7 +125,7 @@ def _channel(errors: Errors, measured: Measured, channel: int, name: str, second
         unit=measured.unit_of(name),
         noise=float(np.sqrt(fast)) * scale,
         colour=colour,
-        corner_hz=_corner(spectrum) if colour == "filtered" and not hum else None,
+        corner_hz=_corner(spectrum, [at for at, _ in heard]) if colour == "filtered" else None,
         drift=float(np.sqrt(slow)) * scale,
         growing=float(np.sqrt(growing)) * scale,
         hum=hum,
@@ -141,11 +142,11 @@ def _colour(errors: Errors, channel: int) -> str:
     return "white"
 
 
-def _corner(spectrum: Spectrum) -> float | None:
+def _corner(spectrum: Spectrum, hum: list[float]) -> float | None:
     """Below half the rate of the samples that are compared: from there on their spectrum is its own mirror image."""
     frequency = np.array(spectrum.frequency)
     kept = frequency < 0.5 / spectrum.lag[1]
-    return corner(frequency[kept], np.array(spectrum.found)[kept])
+    return corner(frequency[kept], np.array(spectrum.found)[kept], hum)
 
 
 def _spectrum(errors: Errors, channel: int, scale: float) -> Spectrum:

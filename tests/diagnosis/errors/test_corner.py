@@ -32,6 +32,13 @@ def test_a_density_that_does_not_fall_to_half_has_no_corner() -> None:
     assert corner(FREQUENCY[:9], 1.0 / FREQUENCY[:9] ** 4) is None
 
 
+def test_a_line_of_hum_is_no_corner() -> None:
+    density = np.where(FREQUENCY < 15.0, 1.0, 0.01) + np.where(np.abs(FREQUENCY - 35.0) < 0.6, 5.0, 0.0)
+    assert corner(FREQUENCY, density) == pytest.approx(38.0, abs=1.0)
+    assert corner(FREQUENCY, density, [35.0]) is None
+    assert corner(FREQUENCY, np.where(FREQUENCY < 15.0, 1.0, 0.01), [35.0]) == pytest.approx(15.0, abs=1.0)
+
+
 @pytest.mark.parametrize("true", [16.0, 30.0])
 def test_noise_that_a_filter_went_over_is_told_with_its_corner(true: float) -> None:
     """The estimated errors, sums of given kernels, fall to half at 16 Hz in both."""
