@@ -63,7 +63,7 @@ def _factor(unit: str, si_unit: str) -> float | None:
         return None
     # A radian is dimensionless for pint; a slope written as an angle, or a rate of turning without, is a mistake.
     angles = _angles(given)
-    if (si_unit in _ONE and angles) or (si_unit.startswith("rad") and angles != 1):
+    if (si_unit in _ONE and angles) or (si_unit.startswith("rad") and angles != _angles(wanted)):
         return None
     turns = math.tau if si_unit == "Hz" and angles == 1 else 1.0
     return float(given.to(wanted.units).magnitude) / turns
