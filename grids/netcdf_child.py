@@ -4,8 +4,9 @@ With the name of a file it reads that one and ends, which says whether anybody c
 
 The library under netCDF4 trusts what a file says of itself: a few wrong bytes make it take all memory, run for
 ever or end the process. So it works here, under limits of memory and computing time, and the process that asks
-survives it (`grids.netcdf_file`). A request is JSON with ``path`` and ``bytes`` (the most that may be taken); the
-answer is one line of JSON, then the numbers of the variables that have any, one after another.
+survives it (`grids.netcdf_file`). A request is JSON with ``path``, ``bytes`` (the most that may be taken) and
+``variables`` (false: the attributes of the file alone); the answer is one line of JSON, then the numbers of the
+variables that have any, one after another.
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ def main() -> None:
         arrays: list[np.ndarray] = []
         try:
             _limit(int(request["bytes"]), _seconds(Path(request["path"]).stat().st_size))
-            answer = _read(Path(request["path"]), int(request["bytes"]), arrays)
+            answer = _read(Path(request["path"]), int(request["bytes"]), arrays, request["variables"])
         except MemoryError:
             answer = {"error": "it wants more memory than a file of its size can hold"}
         except Exception as error:
@@ -72,10 +73,12 @@ def _limit(more_bytes: int, seconds: int) -> None:
         resource.setrlimit(kind, (limit if hard == resource.RLIM_INFINITY else min(limit, hard), hard))
 
 
-def _read(path: Path, most_bytes: int, arrays: list[np.ndarray]) -> dict[str, Any]:
-    """Attributes and variables of a file; numbers (float64, nan where there is none) go into ``arrays``."""
+def _read(path: Path, most_bytes: int, arrays: list[np.ndarray], variables: bool) -> dict[str, Any]:
+    """Attributes and ``variables`` of a file; numbers (float64, nan where there is none) go into ``arrays``."""
     described = []
     with netCDF4.Dataset(path) as data:
+        if not variables:
+            return {"attributes": _attributes(data), "variables": []}
         sizes = {name: variable.size * 8 for name, variable in data.variables.items()}
         if sum(sizes.values()) > most_bytes:
             raise ValueError(f"it says that it holds {sum(sizes.values()):.3g} bytes, far more than a file of its size")

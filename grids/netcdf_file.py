@@ -55,13 +55,22 @@ def check_name(path: Path) -> None:
 
 def read_netcdf(path: Path) -> NetcdfFile:
     """Everything in a netCDF file. Raises InputError without the name of the file when it cannot be read."""
+    return _ask(path, True)
+
+
+def read_attributes(path: Path) -> Mapping[str, str]:
+    """The global attributes of a netCDF file of any size; raises InputError as `read_netcdf` does."""
+    return _ask(path, False).attributes
+
+
+def _ask(path: Path, variables: bool) -> NetcdfFile:
     check_name(path)
     try:
         size = path.stat().st_size
     except OSError as error:
         raise InputError(f"cannot be read ({error.strerror}): check the path and its rights") from None
     with _LOCK:
-        return _reader().ask(path.absolute(), TIMES_THE_FILE * size + MORE_BYTES)
+        return _reader().ask(path.absolute(), TIMES_THE_FILE * size + MORE_BYTES, variables)
 
 
 def check_netcdf(path: Path) -> None:
@@ -106,11 +115,11 @@ class Reader:
             raise RuntimeError("the process that reads netCDF files has no output")
         return self.process.stdout
 
-    def ask(self, path: Path, most_bytes: int) -> NetcdfFile:
+    def ask(self, path: Path, most_bytes: int, variables: bool) -> NetcdfFile:
         timer = threading.Timer(LONGEST, self.process.kill)
         timer.start()
         try:
-            request = json.dumps({"path": str(path), "bytes": most_bytes}) + "\n"
+            request = json.dumps({"path": str(path), "bytes": most_bytes, "variables": variables}) + "\n"
             if self.process.stdin is not None:
                 self.process.stdin.write(request.encode())
                 self.process.stdin.flush()

@@ -10,7 +10,7 @@ from typing import Any
 from grids.law_table import LAW_FILE, law_text
 from grids.recordings.placed import attributes
 from grids.specimen import Specimen
-from grids.writer import WRITER
+from grids.writer import WRITTEN
 from models.mechanisms import acting_on
 
 
@@ -30,7 +30,7 @@ def specimen_text(specimen: Specimen, law_file: str = LAW_FILE) -> str:
         "options": specimen.options,
         "instruments": {} if specimen.reference_peak is None else {"reference_peak": specimen.reference_peak},
     }
-    parts = [f"# written by {WRITER}\n{_lines(head)}"]
+    parts = [f"# {WRITTEN}\n{_lines(head)}"]
     parts += [f"[{name}]\n{_lines(table)}" for name, table in tables.items() if table or name == "parameters"]
     parts += [f"[channels.{_key(name)}]\n{_lines(attributes(place))}" for name, place in specimen.places.items()]
     for name, values in specimen.mechanisms.items():

@@ -1,3 +1,6 @@
-"""The name that stands in every specimen, motion, history and cube that is written: commands know their own by it."""
+"""What files that are written say of their origin: commands know their own by it."""
 
 WRITER = "rocking-study"
+"""The program, with which the attribute `source` of histories, cubes and samples begins."""
+WRITTEN = f"written by {WRITER}"
+"""The first comment of a specimen and the attribute `history` of a motion."""

@@ -22,7 +22,7 @@ from study.derived import derived_coordinates
 from study.keys import Setting
 from study.labels import Coordinate, axis_coordinates, describe, motion_coordinates
 from study.manifest import Manifest
-from study.provenance import as_json, attribute, commit, machine, now, sha256, versions
+from study.provenance import as_json, attribute, commit, machine, now, sha256, source, versions
 from study.refined import COMPUTED, Refined
 from study.seal import seal
 from study.status import FAILED, NOT_RUN
@@ -208,7 +208,7 @@ def _attributes(plan: Plan, setting: Setting, path: Path, started: str, schedule
     return {
         "Conventions": "CF-1.11",
         "title": f"{plan.name}: {model.title}",
-        "source": f"rocking-study {versions()['rocking-study']}, model {setting.model} {setting.version}",
+        "source": f"{source()}, model {setting.model} {setting.version}",
         "model": setting.model,
         "fixed_values": "; ".join(map(str, entries)),
         "history": "\n".join([*_old_history(path), f"{now()} rocking run {plan.name}"]),

@@ -27,7 +27,7 @@ from models.kinematics import Place, ground_along
 from models.model import Model
 from models.piecewise import Part, simulate
 from models.shaking import Shaking
-from study.provenance import as_json, attribute, commit, machine, now, versions
+from study.provenance import as_json, attribute, commit, machine, now, source, versions
 from study.store import write_whole
 
 EVENT_KINDS = ("onset", "impact", "uplift", "closing", "rest", "overturned", "change_of_pattern")
@@ -87,7 +87,7 @@ def simulate_specimen(
     dataset.attrs = {
         "Conventions": "CF-1.11",
         "title": specimen.title,
-        "source": f"rocking-study {versions()['rocking-study']}, {model.name} {model.version}, {integrator}",
+        "source": f"{source()}, {model.name} {model.version}, {integrator}",
         "history": f"{now()} rocking simulate",
         "provenance": as_json(
             {

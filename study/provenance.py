@@ -20,7 +20,9 @@ from typing import Any
 
 import numpy as np
 
-PACKAGES = ("rocking-study", "numpy", "scipy", "numba", "xarray", "netCDF4", "dask", "distributed", "SALib")
+from grids.writer import WRITER
+
+PACKAGES = (WRITER, "numpy", "scipy", "numba", "xarray", "netCDF4", "dask", "distributed", "SALib")
 
 
 def attribute(value: Any) -> Any:
@@ -81,6 +83,11 @@ def versions() -> dict[str, str]:
         except metadata.PackageNotFoundError:
             found[package] = "not installed as a package"
     return found
+
+
+def source() -> str:
+    """The program and its version, with which the attribute `source` of a file begins."""
+    return f"{WRITER} {versions()[WRITER]}"
 
 
 @cache

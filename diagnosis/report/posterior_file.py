@@ -31,9 +31,10 @@ def write_samples(variables: Variables, attributes: Mapping[str, str], path: Pat
     import xarray as xr
 
     from grids.netcdf_lock import NETCDF_LOCK
+    from study.provenance import source
     from study.store import write_whole
 
-    about = {**attributes, "Conventions": "CF-1.11"}
+    about = {**attributes, "Conventions": "CF-1.11", "source": source()}
     data = xr.Dataset({name: ("sample", *rest) for name, rest in variables.items()}, attrs=about)
 
     def write(temporary: Path) -> None:

@@ -9,7 +9,7 @@ from tempfile import NamedTemporaryFile
 
 from grids.motions.base import FloatArray, Motion
 from grids.netcdf_lock import NETCDF_LOCK
-from grids.writer import WRITER
+from grids.writer import WRITTEN
 from models.errors import InputError
 
 
@@ -62,7 +62,7 @@ def _attributes(motion: Motion) -> dict[str, str]:
         "Conventions": "CF-1.11",
         **stated,
         "source": source,
-        "history": f"written by {WRITER}",
+        "history": WRITTEN,
         "notes": done,
         "fingerprint": motion.fingerprint,
     }

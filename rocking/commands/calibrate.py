@@ -56,11 +56,15 @@ def calibrate(
             raise InputError(f"--out {out}: a specimen is written as TOML; end the name in .toml.")
         keep_inputs([out, samples_beside(out), law_of(out)], [specimen, *recordings])
         keep_others(out)
+        keep_others(samples_beside(out))
     from diagnosis.answer.calibration import exposure_of
     from grids.plausibility import suspicions_of_specimen
     from grids.specimen import read_specimen
+    from grids.write_specimen import law_beside
 
     wall = read_specimen(specimen)
+    if out is not None and law_beside(wall) is not None:
+        keep_others(law_of(out), named_in=out)
     if at is not None:
         exposure_of(wall, *at, len(recordings))
     warn(suspicions_of_specimen(wall), strict)

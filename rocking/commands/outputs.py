@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from mmap import ACCESS_READ, mmap
 from os.path import isfile
 from pathlib import Path
 
-from grids.writer import WRITER
+from grids.writer import WRITER, WRITTEN
 from models.errors import InputError
 
 STUDY = ("cube.nc", "manifest.json", "study.toml", "blocks", "failed")
@@ -18,7 +17,7 @@ ANSWER = ("diagnosis.json", "extended.toml", "posterior.nc", "fit.nc", "report.h
 
 
 def keep_inputs(outputs: Iterable[Path], inputs: Iterable[Path]) -> None:
-    """Raise InputError when a file to write is one of the ``inputs`` or lies in one that is a folder.
+    """Raise InputError when a file to write is one of the ``inputs`` or lies in one of them.
 
     A table and the TOML that describes it are one input, whichever of them is named, and so are a specimen and its law.
     """
@@ -30,17 +29,46 @@ def keep_inputs(outputs: Iterable[Path], inputs: Iterable[Path]) -> None:
                 raise InputError(f"{output} would be written over an input of this command; name another place for it.")
 
 
-def keep_others(output: Path) -> None:
-    """Raise InputError when ``output`` is there and not from here: `WRITER` stands in the netCDF and TOML written.
+def keep_others(output: Path, named_in: Path | None = None) -> None:
+    """Raise InputError when ``output`` is there and not from here, as far as files tell (`_is_ours`).
 
-    A table is kept that a TOML beside it describes: a recording, or outcomes.
+    The law of a specimen tells nothing: it is from here if the specimen ``named_in`` names it.
     """
     if not isfile(output) or not output.stat().st_size:
         return
-    with output.open("rb") as file, mmap(file.fileno(), 0, access=ACCESS_READ) as held:
-        ours = held.find(WRITER.encode()) >= 0 or output.suffix not in (".nc", ".toml")
-    if not ours or (output.suffix == ".csv" and output.with_suffix(".toml").exists()):
+    if not (_is_ours(output) if named_in is None else output in _with_companions(named_in)):
         raise InputError(f"{output} is there and was not written by this program: remove it, or give another name.")
+
+
+def _is_ours(path: Path) -> bool:
+    """NetCDF files and specimens say it; of a table it is assumed, unless a TOML beside it describes the table."""
+    suffix = path.suffix.lower()
+    if suffix == ".nc":
+        from grids.netcdf_file import read_attributes
+
+        try:
+            stated = read_attributes(path)
+        except InputError:
+            return False
+        return stated.get("source", "").startswith(f"{WRITER} ") or stated.get("history") == WRITTEN
+    if suffix == ".toml":
+        with path.open("rb") as file:
+            return file.readline().strip() == f"# {WRITTEN}".encode()
+    return suffix != ".csv" or not _is_described(path)
+
+
+def _is_described(table: Path) -> bool:
+    """Whether the TOML of the same name states the columns of a table: a recording, a motion, or outcomes."""
+    from grids.files import parse_toml, read_text
+
+    beside = table.with_suffix(".toml")
+    if not isfile(beside):
+        return False
+    try:
+        stated = parse_toml(read_text(beside, "the description of the columns"))
+    except InputError:
+        return True  # what a damaged one describes is not known
+    return "columns" in stated or stated.get("table") == table.name
 
 
 def in_study(folder: Path) -> list[Path]:

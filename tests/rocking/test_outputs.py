@@ -16,11 +16,12 @@ from diagnosis.fit.intervals import Estimate
 from grids.law_table import law_text
 from grids.specimen import read_specimen
 from grids.write_specimen import specimen_text
+from models.errors import InputError
 from models.housner.model import MODEL
 from models.mechanisms import acting_on
 from models.tables import row
 from rocking.commands import app
-from rocking.commands.calibrate import write
+from rocking.commands.calibrate import samples_beside, write
 from rocking.commands.outputs import keep_others
 
 CUBE = Path(__file__).resolve().parents[2] / "results" / "example.nc"
@@ -86,7 +87,8 @@ def test_an_output_over_an_input_is_refused_before_the_work(words: str) -> None:
     ],
 )
 def test_a_recording_is_not_written_over_and_an_own_file_is(words: str) -> None:
-    xr.Dataset({"rotation_1": ("time", np.zeros(9))}).to_netcdf("measured.nc")
+    measured = xr.Dataset({"rotation_1": ("time", np.zeros(9))}, attrs={"comment": "for rocking-study 0.1.0"})
+    measured.to_netcdf("measured.nc")
     before = Path("measured.nc").read_bytes()
     refused = rocking(*words.split(), "measured.nc")
     assert refused.exit_code == 2 and "error: measured.nc is there and was not written by" in refused.stderr
@@ -97,19 +99,35 @@ def test_a_recording_is_not_written_over_and_an_own_file_is(words: str) -> None:
 
 
 def test_specimens_and_described_tables_of_others_are_kept() -> None:
-    for output in ("mine.toml", "shake_2.csv", "shake_2.toml"):
+    for output in ("mine.toml", "MINE.TOML", "shake_2.csv", "tests.csv", "new.posterior.nc"):
         Path(output).write_text("kept")
+    Path("shake_2.toml").write_text("[columns]\n")
+    Path("tests.toml").write_text('table = "tests.csv"')
     for output, words in (
         ("shake_2.csv", f"export {CUBE} --out"),
+        ("tests.csv", f"export {CUBE} --out"),
         ("mine.toml", "calibrate block.toml shake_1.csv --out"),
+        ("MINE.TOML", "calibrate block.toml shake_1.csv --out"),
         ("shake_2.csv", "predict-outcomes answer --outcomes runs.toml --out"),
     ):
         refused = rocking(*words.split(), output)
         assert refused.exit_code == 2 and f"error: {output} is there and was not" in refused.stderr, refused.output
         assert Path(output).read_text() == "kept"
+    refused = rocking("calibrate", "block.toml", "shake_1.csv", "--out", "new.toml")
+    assert refused.exit_code == 2 and "error: new.posterior.nc is there and was not" in refused.stderr, refused.output
     keep_others(Path("new.nc"))
     Path("base.toml").write_text(specimen_text(read_specimen("block.toml")))
     keep_others(Path("base.toml"))
+    Path("base.toml").write_text("# for rocking-study\n" + Path("block.toml").read_text())
+    with pytest.raises(InputError, match="was not written by"):
+        keep_others(Path("base.toml"))
+
+
+def test_a_table_named_like_its_plan_is_written_anew() -> None:
+    Path("first_map.toml").write_text('[model]\nname = "housner"\n')
+    for _ in range(2):
+        written = rocking("export", CUBE, "--output", "status", "--out", "first_map.csv")
+        assert written.exit_code == 0, written.output
 
 
 def test_a_calibrated_specimen_is_written_as_toml() -> None:
@@ -126,6 +144,7 @@ def test_samples_of_a_calibration_are_named_after_its_specimen() -> None:
     )
     wall = read_specimen("block.toml")
     write(wall, found, Path("answer/base.toml"), None)
+    keep_others(samples_beside(Path("answer/base.toml")))
     assert Path("answer/posterior.nc").read_text() == "kept"
     with xr.open_dataset("answer/base.posterior.nc") as samples:
         assert samples["width"].size == 5
@@ -161,4 +180,8 @@ def test_a_law_of_a_calibrated_specimen_lies_beside_it(tmp_path: Path) -> None:
     wall, width = read_specimen("lawful.toml"), Estimate(0.25, 0.24, 0.26, "m", "")
     write(wall, Calibration({"width": width}, np.eye(1), 0.1, 0.1, 1.0, 3), Path("answer/base.toml"), None)
     assert read_specimen("answer/base.toml").mechanisms == wall.mechanisms
+    keep_others(Path("answer/base.law.csv"), named_in=Path("answer/base.toml"))
+    Path("other.law.csv").write_text("kept")
+    refused = rocking("calibrate", "lawful.toml", "shake_1.csv", "--out", "other.toml")
+    assert refused.exit_code == 2 and "error: other.law.csv is there and was not" in refused.stderr, refused.output
     assert Path("answer/law.csv").read_text() == "kept"
