@@ -106,10 +106,13 @@ def suspicions_of_specimen(specimen: Specimen) -> tuple[str, ...]:
 
 def suspicions_of_places(specimen: Specimen, places: Mapping[str, Place]) -> tuple[str, ...]:
     """Sentences about channels that lie far outside the bodies of a specimen."""
-    sides = [value for name, value in specimen.parameters.items() if name.endswith(("width", "length", "height"))]
+    largest_of = {**specimen.parameters, **{name: high for name, (_, high) in specimen.calibrate.items()}}
+    sides = [
+        value for name, value in largest_of.items() if "." not in name and name.endswith(("width", "length", "height"))
+    ]
     if not sides:
         return ()
-    largest = max(sides) * max(1.0, specimen.parameters.get("aspect_ratio", 0.0))  # width or length over height
+    largest = max(sides) * max(1.0, largest_of.get("aspect_ratio", 0.0))  # width or length over height
     return tuple(
         f"channel {name} lies {np.hypot(place.x, place.z):.3g} m from the middle of its body's underside, and the "
         f"longest side is {largest:.3g} m: is the unit of its position right ('-200 mm')?"

@@ -85,6 +85,15 @@ def test_a_specimen(old: str, new: str, words: tuple[str, ...]) -> None:
     assert all(word in said for word in words), said
 
 
+def test_sides_that_are_calibrated_are_sides() -> None:
+    """With a gauge on top of the block only the upper end of its height tells that it is not far away."""
+    text = SPECIMEN.replace('height = "1.8 m"\n', "").replace("[tolerance]\nwidth = 0.005\n", "").split("[initial]")
+    high, low = ("[calibrate]\nheight = " + ends + "\n[initial]" for ends in ("[1.7, 1.8]", "[0.7, 0.8]"))
+    assert suspicions_of_specimen(parse_specimen(high.join(text))) == ()
+    (said,) = suspicions_of_specimen(parse_specimen(low.join(text)))
+    assert "longest side is 0.8 m" in said
+
+
 def test_a_stated_unit_is_no_slip() -> None:
     small = PLAN.replace("[0.1, 1.0, 4]", "[0.1, 0.2, 4]")
     assert suspicions_of_plan(parse_plan(small.replace('unit = "g"', 'unit = "m/s^2"'), Path())) == ()
