@@ -29,11 +29,15 @@ def answers(
     return given
 
 
+def missing(quantity: Quantity) -> float:
+    """What stands for an output that a run without a valid answer does not have."""
+    return np.nan if np.dtype(quantity.dtype).kind == "f" else MISSING
+
+
 def unanswered(declared: Iterable[Quantity], size: int, samples: int, states: int) -> Run:
     """Of lanes that cannot be run: ``status`` not_converged, other outputs nan or `MISSING`, states nan."""
     found: dict[str, NDArray[Any]] = {
-        quantity.name: np.full(size, np.nan if np.dtype(quantity.dtype).kind == "f" else MISSING, np.float64)
-        for quantity in declared
+        quantity.name: np.full(size, missing(quantity), np.float64) for quantity in declared
     }
     found["status"][:] = STATUS.index("not_converged")
     return Run(found, np.full((size, samples, states), np.nan), ((),) * size)

@@ -16,7 +16,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from models.base import Event, FloatArray, History, OverParts, Quantity, Values
+from models.answers import missing
+from models.base import UNANSWERED, Event, FloatArray, History, OverParts, Quantity, Values
 from models.errors import InputError
 from models.model import Model
 from models.observed import Observed
@@ -142,7 +143,11 @@ def _joined(model: Model[Any], parts: Sequence[History], firsts: Sequence[int], 
         for event in part.events
         if (event.time > 0.0 or begin == 0.0) and not (begin > 0.0 and _first_uplift(event, part))
     )
-    outputs = {q.name: _over(q, [p.outputs.get(q.name, math.nan) for p in parts], begins) for q in model.outputs}
+    lost = [part.outputs["status"] for part in parts if part.outputs.get("status") in UNANSWERED]
+    if lost:  # what follows begins from no answer
+        outputs = {q.name: lost[0] if q.name == "status" else missing(q) for q in model.outputs}
+    else:
+        outputs = {q.name: _over(q, [p.outputs.get(q.name, math.nan) for p in parts], begins) for q in model.outputs}
     count = next(iter(channels.values())).shape[-1]
     return History(step * np.arange(count, dtype=np.float64), channels, _once(events), outputs)
 

@@ -210,7 +210,7 @@ def suspicions_of_ending(history: xr.Dataset) -> tuple[str, ...]:
     """A sentence about a run that is no answer."""
     said = UNANSWERED.get(ending(history))
     cure = "check the motion's unit and scale and the specimen's values, or use another model."
-    return () if said is None else (f"{said}: its outputs are left out, its channels are no answer; {cure}",)
+    return () if said is None else (f"{said}: its results are not valid, and the outputs are nan; {cure}",)
 
 
 def write_history(history: xr.Dataset, out: str | Path) -> Path:

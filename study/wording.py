@@ -10,7 +10,7 @@ _TEXT = {
     "N m-1": "N m⁻¹", "N s m-1": "N s m⁻¹",
 }  # fmt: skip
 
-_ENDINGS = {"rest": "at rest", "outside_model": "outside the model"}
+_ENDINGS = {"rest": "at rest", "rocking": "rocked", "outside_model": "outside the model"}
 
 
 def spoken(status: str) -> str:

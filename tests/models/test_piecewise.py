@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 import models
-from models.base import FloatArray
+from models.base import MISSING, STATUS, FloatArray
 from models.errors import InputError
 from models.model import Model
 from models.piecewise import Part, begun_at, simulate, trajectories
@@ -120,6 +121,27 @@ def test_an_overturned_block_stays_down_over_the_parts() -> None:
     np.testing.assert_allclose(cut.channels["rotation_1"], whole.channels["rotation_1"], atol=1e-12)
     assert cut.outputs["overturning_time"] == whole.outputs["overturning_time"]
     assert cut.outputs["uplift_duration"] == pytest.approx(whole.outputs["uplift_duration"])
+
+
+@pytest.mark.parametrize("at", [0, 1])
+@pytest.mark.parametrize("word", ["not_converged", "outside_model"])
+def test_a_part_that_is_no_answer_makes_the_whole_none(word: str, at: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    model, status = models.get("housner"), float(STATUS.index(word))
+    plain, done = type(model).simulate_from, []
+
+    def flagged(*given: Any, **named: Any) -> Any:
+        history, state = plain(*given, **named)
+        done.append(history)
+        return (
+            replace(history, outputs={**history.outputs, "status": status}) if len(done) == at + 1 else history
+        ), state
+
+    monkeypatch.setattr(type(model), "simulate_from", flagged)
+    outputs = dict(simulate(model, [Part(0, BLOCK), Part(250, {**BLOCK, "width": 0.31})], SHAKING).outputs)
+    assert len(done) == 2 and done[1].outputs["status"] == STATUS.index("rocking")
+    assert outputs.pop("status") == status
+    assert outputs["impacts"] == MISSING and np.isnan(outputs["peak_rotation"])
+    assert all(np.isnan(value) or value == MISSING for value in outputs.values())
 
 
 @pytest.mark.parametrize(("name", "values"), [*OF_MODEL.items(), *PITCHED], ids=str)

@@ -71,7 +71,7 @@ def test_status_check_export_and_map(finished: Path) -> None:
     assert "168 of 168 cells (100.0%)" in said
     with xr.open_dataset(finished / "cube.nc") as cube:
         status = cube["status"].values
-    counts = {word: int(np.sum(status == k)) for k, word in ((1, "at rest"), (2, "rocking"), (3, "overturned"))}
+    counts = {word: int(np.sum(status == k)) for k, word in ((1, "at rest"), (2, "rocked"), (3, "overturned"))}
     assert sum(counts.values()) == 168
     assert "cells: " + ", ".join(f"{word} {count}" for word, count in counts.items()) in said
     assert "equal bit for bit" in rocking("check", finished, "--cells", 20).stdout

@@ -48,7 +48,7 @@ def shaken(peak: float) -> Path:
     ("peak", "word", "said"),
     [
         (1.0, "rest", "0 events, at rest)"),
-        (2.5, "rocking", "events, rocking)"),
+        (2.5, "rocking", "events, rocked)"),
         (9.0, "overturned", "events, overturned)"),
     ],
 )
