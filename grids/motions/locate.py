@@ -104,14 +104,14 @@ def find(source: str | Mapping[str, Any], near: Path | None = None) -> list[str 
         elif not (path.suffix.lower() in at2.AT2.suffixes and at2.is_vertical(path)):
             found.append(str(path))
     if not found:
-        where = " beside the file that names it and in the current folder" if _names_nothing(name) else ""
+        where = " beside the file that names it and in the current folder" if _of_the_user(name) else ""
         raise InputError(f"motion {source!r}: nothing matches{where}; {_cure(name, _folders(near))}")
     return found
 
 
-def _names_nothing(pattern: str) -> bool:
-    """Of "*.csv" and the like the files of the user are meant, not all that is shipped or lies in the data folder."""
-    return _is_pattern(pattern[0])
+def _of_the_user(pattern: str) -> bool:
+    """Whether files of the user alone are meant: by "*.csv" and the like, not all that is shipped or downloaded."""
+    return _is_pattern(str(Path(pattern))[0])  # without the ./ before it
 
 
 def _matching(name: str, near: Path | None) -> Iterator[Path]:
@@ -120,7 +120,7 @@ def _matching(name: str, near: Path | None) -> Iterator[Path]:
         yield locate(name, near)[0]
         return
     wanted = Path(name).expanduser()
-    bases = [Path(wanted.anchor)] if wanted.is_absolute() else _folders(near, _names_nothing(name))
+    bases = [Path(wanted.anchor)] if wanted.is_absolute() else _folders(near, _of_the_user(name))
     for base in bases:
         relative = wanted.relative_to(wanted.anchor) if wanted.is_absolute() else wanted
         paths = [base / p for p in glob.glob(str(relative), root_dir=base, recursive=True)]

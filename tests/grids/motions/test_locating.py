@@ -20,7 +20,7 @@ def test_a_pattern_that_names_nothing_stands_for_files_of_the_user(
         (tmp_path / place).touch()
     monkeypatch.chdir(tmp_path / "plan")
     assert len(find("[ab].csv", near=tmp_path / "data")) == len(find("../data/*.csv")) == 2
-    for pattern in ("*.csv", "*.nc"):
+    for pattern in ("*.csv", "*.nc", "./*.nc", "././*.csv"):
         with pytest.raises(InputError, match="nothing matches beside the file that names it"):
             find(pattern)
 
