@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
+from os import PathLike
 from pathlib import Path
 from typing import Any, TypeVar, get_args
 
@@ -18,6 +19,13 @@ class Schema(BaseModel):
     """A table of a file. Unknown keys are mistakes; a number is not guessed from a string."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+
+def path_of(given: object, what: str, cure: str = "give the name of its file") -> Path:
+    """The path that a call from Python names; InputError of what is none."""
+    if not isinstance(given, str | PathLike):
+        raise InputError(f"{what} is of type {type(given).__name__}: {cure}")
+    return Path(given)
 
 
 def read_text(path: Path, what: str) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from grids.recordings import Recording, read_recording
@@ -22,7 +22,8 @@ def specimen_of(given: Specimen | str | Path) -> Specimen:
 
 def recordings_of(given: Sequence[Recording | str | Path] | Recording | str | Path) -> list[Recording]:
     """Recordings, or one, read where their files are named, else checked. Raises InputError."""
-    if isinstance(given, Recording | str | Path) or not isinstance(given, Iterable):
+    alone = (Recording, str, Path, Mapping)  # a Mapping, as a Dataset is, would be taken for a list of its names
+    if isinstance(given, alone) or not isinstance(given, Iterable):
         given = [given]
     return [_recording(one) for one in given]
 

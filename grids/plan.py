@@ -39,7 +39,7 @@ from pydantic import Field
 from grids.alike import taken_once
 from grids.axes import Axis, Request, read_axis
 from grids.consistency import check_joints, check_laws, check_names, replaced
-from grids.files import Schema, check, parse_toml, read_text
+from grids.files import Schema, check, parse_toml, path_of, read_text
 from grids.grid import Grid
 from grids.instruments import INSTRUMENTS
 from grids.motions import Motion
@@ -131,7 +131,7 @@ def read_plan(path: str | Path) -> Plan:
     the wall and not what was recorded of it. Paths in the plan are relative to its folder.
     Raises InputError with one sentence: file, key, value, cure.
     """
-    path = Path(path)
+    path = path_of(path, "plan")
     text = read_text(path, "plan")
     try:
         return parse_plan(text, path.resolve().parent)

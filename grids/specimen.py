@@ -38,7 +38,7 @@ from typing import Any
 from pydantic import Field
 
 from grids.consistency import check_joints, check_laws, check_names
-from grids.files import Schema, check, parse_toml, read_text
+from grids.files import Schema, check, parse_toml, path_of, read_text
 from grids.instruments import INSTRUMENTS
 from grids.law_table import read_law
 from grids.plan_checks import check_cells, check_vertical
@@ -118,7 +118,7 @@ def read_specimen(path: str | Path) -> Specimen:
 
     Raises InputError with one sentence: file, key, value, cure.
     """
-    path = Path(path)
+    path = path_of(path, "specimen")
     text = read_text(path, "specimen")
     try:
         return parse_specimen(text, path.resolve().parent)

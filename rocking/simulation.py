@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from numbers import Real
 from os.path import isfile  # False for the words of a pulse, which are too long for a file
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -43,6 +42,7 @@ def simulate(
     they say for a recording of that name. Channels at positions on the bodies are those of the specimen and of a
     recording. Raises InputError.
     """
+    from grids.arrays import real_number
     from grids.given import specimen_of
     from grids.recordings import Recording
     from grids.recordings.checked import checked
@@ -51,11 +51,14 @@ def simulate(
 
     specimen = specimen_of(specimen)
     if duration is not None:
-        duration = to_si(duration, "s", "duration") if isinstance(duration, str) else duration
-        if not _is_number(duration) or not 0.0 < duration < math.inf:
+        length = to_si(duration, "s", "duration") if isinstance(duration, str) else real_number(duration)
+        if length is None or not 0.0 < length < math.inf:
             raise InputError(f"duration is {duration!r} s: give a positive time")
-    if not _is_number(scale):
+        duration = length
+    factor = real_number(scale)
+    if factor is None:
         raise InputError(f"scale is {scale!r}: give a number, the factor on the motion")
+    scale = factor
     if scale == 0.0:
         raise InputError("scale 0 leaves no motion; for free motion leave the motion out and give a duration")
     if not abs(scale) <= LARGEST_SCALE:
@@ -81,10 +84,6 @@ def simulate(
     return simulate_specimen(
         specimen, shaking, scale=scale, duration=duration, integrator=integrator, recording=name, places=places
     )
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, Real) and not isinstance(value, bool)
 
 
 def _check_steps(duration: float, step: float) -> None:

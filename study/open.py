@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 import study.accessor  # noqa: F401  (registers cube.rocking)
+from grids.files import path_of
 from grids.netcdf_file import check_name, check_netcdf
 from grids.netcdf_lock import NETCDF_LOCK, bounded_cache
 from models.base import STATUS
@@ -30,7 +31,7 @@ def open_study(folder: str | Path, outputs: Collection[str] | None = None, *, la
     Maps and slices hang on it: ``cube.rocking.overturning_map(x="aspect_ratio", y="top_mass")``.
     Raises InputError when there is no cube yet, or when a byte of it has changed since it was written.
     """
-    path = Path(folder)
+    path = path_of(folder, "study", "give the name of its folder, results/NAME")
     if path.is_dir() or not path.suffix:
         path = path / CUBE
     if not path.exists():

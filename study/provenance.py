@@ -20,6 +20,7 @@ from typing import Any
 
 import numpy as np
 
+from grids.arrays import real_number
 from grids.writer import WRITER
 
 PACKAGES = (WRITER, "numpy", "scipy", "numba", "xarray", "netCDF4", "dask", "distributed", "SALib")
@@ -39,15 +40,11 @@ def attribute(value: Any) -> Any:
         return value
     if isinstance(value, np.ndarray) and value.dtype.kind in "iuf":
         return value
-    if isinstance(value, list | tuple) and value and all(_is_number(item) for item in value):
+    if isinstance(value, list | tuple) and value and all(real_number(item) is not None for item in value):
         return np.asarray(value)
     if isinstance(value, Mapping | list | tuple | np.ndarray):
         return as_json(value)
     return str(value)
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float | np.number) and not isinstance(value, bool)
 
 
 def as_json(value: Any, **options: Any) -> str:

@@ -17,6 +17,7 @@ from os.path import isfile
 from pathlib import Path
 
 from grids.changes import describe
+from grids.files import path_of
 from grids.grid import Rectangle
 from grids.netcdf_file import check_name
 from grids.plan import Plan, read_plan
@@ -111,9 +112,9 @@ def run(
     Raises InputError for a plan that differs from the folder's in more than added axis values.
     """
     check_scheduler(scheduler, workers)
-    plan_folder = "" if isinstance(plan, Plan) else str(Path(plan).resolve().parent)
+    plan_folder = "" if isinstance(plan, Plan) else str(path_of(plan, "plan").resolve().parent)
     plan = plan if isinstance(plan, Plan) else read_plan(plan)
-    folder = Path(results).resolve() / plan.name
+    folder = path_of(results, "results", "give the name of the folder of all results").resolve() / plan.name
     check_name(folder)
     if any(isfile(above) for above in folder.parents):
         raise InputError(f"results {results} is a file, or lies in one: name the folder of all results")

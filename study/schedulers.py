@@ -14,6 +14,7 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import contextmanager
 from multiprocessing.connection import wait
+from numbers import Integral
 from typing import Any, TypeVar
 
 from models.errors import InputError, nearest
@@ -31,13 +32,13 @@ def check_scheduler(scheduler: str, workers: int | None) -> None:
             f"scheduler '{scheduler}' is not known: {nearest(scheduler, SCHEDULERS)} "
             "(or the address of a dask cluster, tcp://host:port)"
         )
-    if workers is not None and (isinstance(workers, bool) or not isinstance(workers, int) or workers < 1):
+    if workers is not None and (isinstance(workers, bool) or not isinstance(workers, Integral) or workers < 1):
         raise InputError(f"workers is {workers!r}: give 1 or more, a whole number")
 
 
 def count_workers(scheduler: str, workers: int | None) -> int:
     """How many blocks run at once on this machine."""
-    return 1 if scheduler == "synchronous" else workers or _cores()
+    return 1 if scheduler == "synchronous" else int(workers or _cores())
 
 
 def _cores() -> int:

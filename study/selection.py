@@ -129,7 +129,7 @@ def _number(axis: xr.DataArray, name: str, value: Any) -> float:
     unit = str(axis.attrs.get("units", "1"))
     if not isinstance(value, int | float | str | np.number) or isinstance(value, bool):
         raise InputError(f"axis '{name}' needs a number in {unit} or a text with its unit, not {value!r}")
-    if isinstance(value, str) and unit != "1" and is_number(value):
+    if isinstance(value, str) and unit != "1" and lacks_unit(value):
         shown = unit_shown(unit)[1]
         raise InputError(
             f"{name}={value} has no unit: write {name}='{value} {shown}' or another unit of {unit}; "
@@ -138,8 +138,8 @@ def _number(axis: xr.DataArray, name: str, value: Any) -> float:
     return to_si(value if isinstance(value, str) else float(value), unit, name)
 
 
-def is_number(text: str) -> bool:
-    """Whether a text is a number alone, without a unit."""
+def lacks_unit(text: str) -> bool:
+    """Whether a text is a number alone."""
     try:
         float(text)
     except ValueError:

@@ -7,13 +7,12 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from numbers import Real
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from grids.arrays import real_numbers
+from grids.arrays import real_number, real_numbers
 from models.errors import InputError
 from models.shaking import Shaking
 
@@ -38,9 +37,10 @@ class Motion:
     notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        step = self.time_step
-        if isinstance(step, bool) or not isinstance(step, Real) or not 0.0 < step < math.inf:
-            raise InputError(f"motion {self.name}: time_step is {step!r}: give a positive number, in s")
+        step = real_number(self.time_step)
+        if step is None or not 0.0 < step < math.inf:
+            raise InputError(f"motion {self.name}: time_step is {self.time_step!r}: give a positive number, in s")
+        object.__setattr__(self, "time_step", step)
         for name in ("horizontal", "vertical"):
             values = getattr(self, name)
             if values is None:

@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
-from numbers import Real
 
 import numpy as np
 
-from grids.arrays import real_numbers
+from grids.arrays import real_number, real_numbers
 from grids.recordings.base import CHANNELS, REQUIRED, Recording, unknown_channel
 from models.errors import InputError
 
@@ -23,9 +22,9 @@ def checked(recording: Recording) -> Recording:
 
 
 def _checked(recording: Recording) -> Recording:
-    step = recording.time_step
-    if isinstance(step, bool) or not isinstance(step, Real) or not 0.0 < step < math.inf:
-        raise InputError(f"time_step is {step!r}: give a positive number, in s")
+    step = real_number(recording.time_step)
+    if step is None or not 0.0 < step < math.inf:
+        raise InputError(f"time_step is {recording.time_step!r}: give a positive number, in s")
     if not isinstance(recording.channels, Mapping) or REQUIRED not in recording.channels:
         raise InputError(f"channels lack {REQUIRED}: add it, zeros for free rocking")
     time = real_numbers(recording.time, "time")
@@ -43,4 +42,4 @@ def _checked(recording: Recording) -> Recording:
             raise InputError(f"channel {name} has shape {channels[name].shape}: give {wanted} {axes}, as time has")
         if not np.isfinite(channels[name]).all():
             raise InputError(f"channel {name} holds values that are not finite: cut them off or leave the channel out")
-    return replace(recording, time=time, channels=channels)
+    return replace(recording, time_step=step, time=time, channels=channels)

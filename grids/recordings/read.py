@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from grids.files import path_of
 from grids.recordings import csv_toml, netcdf
 from grids.recordings.base import CHANNELS, REQUIRED, FloatArray, Raw, Recording
 from grids.recordings.lost import with_lost_samples
@@ -34,7 +35,7 @@ def read_recording(path: str | Path, *, base_only: bool = False) -> Recording:
     filtered or detrended.
     Raises InputError with one sentence: file, channel, place, cure.
     """
-    path = Path(path)
+    path = path_of(path, "recording")
     table = path.with_suffix(".csv") if path.suffix == ".toml" else path
     if isdir(table):
         raise InputError(f"recording {table} is a folder; name a file in it.")

@@ -87,7 +87,7 @@ def read_selection(cube: xr.Dataset, entries: Sequence[str] | None, nearest: boo
 def read_event(cube: xr.Dataset, text: str | None) -> Event:
     """``"peak_rotation > 2 deg"`` as an event of the cube; overturning without a text. Raises InputError."""
     from grids.units import to_si
-    from study.selection import is_number
+    from study.selection import lacks_unit
     from study.sets.cells import event_of, unit_of
 
     if text is None:
@@ -96,7 +96,7 @@ def read_event(cube: xr.Dataset, text: str | None) -> Event:
     if not sign or not value:
         raise InputError(f"event '{text}': write OUTPUT > VALUE, for instance 'peak_rotation > 2 deg'")
     unit = unit_of(cube, output)
-    if unit != "1" and is_number(value):
+    if unit != "1" and lacks_unit(value):
         raise InputError(f"event '{text}' has no unit; write '{output} > {value} {unit}', or another unit of it")
     return event_of(cube, output, to_si(value, unit, f"event '{text}'"))
 

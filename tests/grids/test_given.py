@@ -8,10 +8,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from grids.given import recordings_of, specimen_of
 from grids.motions import Motion, read_motion
+from grids.plan import read_plan
 from grids.recordings import Recording, read_recording
+from grids.specimen import read_specimen
 from models.errors import InputError
 from models.kinematics import Place
 
@@ -71,12 +74,24 @@ def test_a_recording_that_is_none(recording: Recording, said: str) -> None:
 
 def test_what_is_neither_a_file_nor_what_was_read() -> None:
     motion = Motion("m", STEP, BASE)
-    for given in (None, motion, [motion], [None], 3, BASE):
+    for given in (None, motion, [motion], [None], 3, BASE, {"a": SOUND}, xr.Dataset({"a": ("x", BASE)})):
         with pytest.raises(InputError, match=r"recording is of type \w+: give what read_recording returns"):
             recordings_of(given)  # type: ignore[arg-type]
     for given in (None, {"title": "wall"}, motion):
         with pytest.raises(InputError, match=r"specimen is of type \w+: give what read_specimen returns"):
             specimen_of(given)  # type: ignore[arg-type]
+
+
+def test_numbers_of_numpy_are_numbers() -> None:
+    """As an npz file holds them: of any kind, or an array without dimensions."""
+    for step in (np.array(STEP), np.float32(0.25), 1):
+        motion = Motion("m", step, BASE)  # type: ignore[arg-type]
+        assert isinstance(motion.time_step, float) and motion.time_step == step
+    (found,) = recordings_of(replace(SOUND, time_step=np.array(STEP)))  # type: ignore[arg-type]
+    assert isinstance(found.time_step, float) and found.time_step == STEP
+    for no_number in (np.array(True), np.array([STEP]), np.array("0.01"), 1j, 10**400):
+        with pytest.raises(InputError, match="time_step is"):
+            Motion("m", no_number, BASE)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
@@ -100,6 +115,9 @@ def test_reading_what_is_no_name() -> None:
             read_motion(given)  # type: ignore[arg-type]
     with pytest.raises(InputError, match=r"component is 1: give the name"):
         read_motion("ridgecrest_2019_clc", component=1)  # type: ignore[arg-type]
+    for read, what in ((read_recording, "recording"), (read_specimen, "specimen"), (read_plan, "plan")):
+        with pytest.raises(InputError, match=f"{what} is of type int: give the name of its file"):
+            read(5)  # type: ignore[operator]
     for path in ("x" * 300 + ".nc", Path("x" * 300 + ".csv")):
         with pytest.raises(InputError, match="does not exist"):
             read_recording(path)

@@ -16,6 +16,7 @@ from models.errors import InputError
 from study.check import check
 from study.open import open_study
 from study.run import Progress, run
+from study.schedulers import check_scheduler
 from study.seal import seal
 from study.state import state
 from study.status import FAILED, REST
@@ -258,9 +259,17 @@ def test_what_is_unusual_about_a_plan_stands_in_the_report(tmp_path: Path) -> No
 
 
 def test_odd_arguments_are_one_sentence(tmp_path: Path) -> None:
+    check_scheduler("threads", np.int64(2))  # type: ignore[arg-type]
     for workers in (1.5, "2", True, 0):
         with pytest.raises(InputError, match=f"workers is {workers!r}: give 1 or more, a whole number"):
             run(small_plan(), results=tmp_path, workers=workers)  # type: ignore[arg-type]
+    for call, said in (
+        (lambda: run(5), "plan is of type int: give the name of its file"),  # type: ignore[arg-type]
+        (lambda: run(small_plan(), results=5), "results is of type int: give the name of the folder"),  # type: ignore[arg-type]
+        (lambda: open_study(1), "study is of type int: give the name of its folder"),  # type: ignore[arg-type]
+    ):
+        with pytest.raises(InputError, match=said):
+            call()
     (tmp_path / "plan.toml").write_text("")
     for place in ("plan.toml", "plan.toml/below"):
         with pytest.raises(InputError, match="is a file, or lies in one: name the folder of all results"):
