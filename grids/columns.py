@@ -134,8 +134,9 @@ def _rows(path: Path, layout: Layout) -> tuple[list[str], list[tuple[int, list[s
     if not rows:
         after = f" after the {layout.skip} that are skipped" if layout.skip else ""
         raise InputError(f"{path.name}: holds no lines of numbers{after}; was it written to its end?")
-    if other := another_delimiter(rows[-1][1], layout.delimiter, f"{DELIMITERS} ".replace(layout.decimal, "")):
-        raise InputError(f"{path.name}: line {rows[-1][0]} is one cell by the delimiter {layout.delimiter!r}; {other}.")
+    line, cells = rows[len(rows) // 2]  # neither of the lines above the table nor one below it
+    if other := another_delimiter(cells, layout.delimiter, f"{DELIMITERS} ".replace(layout.decimal, "")):
+        raise InputError(f"{path.name}: line {line} is one cell by the delimiter {layout.delimiter!r}; {other}.")
     if layout.delimiter.isspace() and layout.delimiter != "\t":
         _check_cells(path, rows)
     if not layout.header:

@@ -27,8 +27,10 @@ SMALLEST, LARGEST = 1e-30, 1e30
 """Sizes (SI) beyond which a number is a mistake, and powers and products of several would leave floating point."""
 _EXPONENT = re.compile(r"(?<=[A-Za-zµμ])\s*(?:\^|\*\*)?\s*\(?([+-]?\d+)\)?")
 _PRODUCT = re.compile(r"(?<=[\w)])\s+(?=[A-Za-zµμ(])")
-_TON = re.compile(r"\b(?:kilo|k)?tons?(?:_force)?\b|\bforce_tons?\b")
+_TON = re.compile(r"\b(?:kilo|mega|giga|milli|[A-Za-zµμ])?tons?(?:_force)?\b|\bforce_tons?\b")
 """The word of three masses: 907 kg in the US, 1016 kg in Britain, 1000 kg elsewhere."""
+_THOUSANDS = re.compile(r"[+-]?[1-9][0-9]{0,2}(?:,[0-9]{3})+(?![0-9])")
+"""A number whose commas may part its thousands."""
 _ONE = ("", "1", "-")
 
 
@@ -117,7 +119,7 @@ def to_si(value: object, si_unit: str, where: str) -> float:
             raise InputError(f"{where} = '{value}': give a number and its unit, for example '{_sample(si_unit)}'.")
         number, unit = float(match[1]), match[2]
         if unit.startswith(","):
-            raise InputError(f"{where} = '{value}': write a decimal point, '{value.replace(',', '.', 1).strip()}'.")
+            raise InputError(f"{where} = '{value}': {_without_commas(value.strip())}.")
         if not unit and si_unit not in _ONE:
             raise InputError(
                 f"{where} = '{value}' has no unit; write '{match[1]} {si_unit}' "
@@ -135,6 +137,16 @@ def to_si(value: object, si_unit: str, where: str) -> float:
     if not infinite and number and not SMALLEST < abs(number) < LARGEST:
         raise InputError(f"{where} = {value!s:.40} is beyond any size; give a value{_in(si_unit)} within {LARGEST:g}.")
     return number
+
+
+def _without_commas(text: str) -> str:
+    decimal = f"a decimal point, '{text.replace(',', '.', 1)}'"
+    thousands = _THOUSANDS.match(text)
+    if thousands is None:
+        return f"write {decimal}"
+    whole = f"'{text.replace(',', '')}'"
+    one_reading = text.count(",") > 1 or text[thousands.end() :].startswith(".")
+    return f"write {whole}" if one_reading else f"write {whole} if the comma parts thousands, else {decimal}"
 
 
 def with_unit(value: float, si_unit: str) -> str:

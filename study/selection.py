@@ -148,12 +148,12 @@ def lacks_unit(text: str) -> bool:
 
 
 def _end_short_of(values: np.ndarray[tuple[int], np.dtype[np.float64]], wanted: float) -> float | None:
-    """The end of the grid that a value lies farther beyond than the grid's own last step; None where it does not."""
-    ordered = np.sort(values)
-    first, last = np.diff(ordered)[[0, -1]] if values.size > 1 else (SAME * abs(wanted),) * 2
-    if ordered[0] - wanted > first:
-        return float(ordered[0])
-    return float(ordered[-1]) if wanted - ordered[-1] > last else None
+    """The end of the grid that a value lies farther beyond than its largest step; None where it does not."""
+    low, high = float(values.min()), float(values.max())
+    step = np.max(np.diff(np.sort(values))) if values.size > 1 else SAME * abs(wanted)
+    if low - wanted > step:
+        return low
+    return high if wanted - high > step else None
 
 
 def _neighbours(axis: xr.DataArray, wanted: float) -> str:

@@ -141,8 +141,8 @@ def specimen_at(specimen: Specimen, found: Calibration, exposure: str, level: fl
     known = [d for d in found.drifts if any(c.exposure.name == exposure for c in d.curves)]
     if not known:
         raise InputError(
-            f"no calibrated parameter is told by {exposure}: give {FEWEST} tests or more in which that differs, of a "
-            "specimen whose layers have ranges in [calibrate]."
+            f"the tests do not tell how a parameter changes with {exposure}: give {FEWEST} tests or more in which that "
+            "differs, of a specimen whose layers have ranges in [calibrate]."
         )
     whole = calibrated_specimen(specimen, found)
     values = {d.parameter: value_at(d, exposure, level) for d in found.drifts if d in known or d.drifts}
@@ -158,9 +158,7 @@ def exposure_of(specimen: Specimen, name: str, level: float, tests: int) -> Expo
     identification = models.get(specimen.model).identification
     followed = {one.name: one for one in (identification.exposures if identification else ())}
     if not followed:
-        raise InputError(
-            f"model '{specimen.model}' has no layers that change over a sequence of tests: leave the {name} out."
-        )
+        raise InputError(f"{name} is not followed over a sequence of tests for '{specimen.model}': leave it out.")
     if name not in followed:
         raise InputError(f"'{name}' is not followed over a sequence of tests: give {' or '.join(followed)}.")
     if not 0.0 <= level < np.inf:

@@ -98,8 +98,10 @@ class Request:
             raise InputError(f"{self.where}: {key} = {entry!r}; give [low, high, count].")
         where = f"{self.where} {key}"
         low, high = (self.in_si(value, self.number_target(), where) for value in entry[:2])
-        if not low < high or not np.isfinite([low, high]).all():
-            raise InputError(f"{where} = {entry}: low must be below high, both finite; swap or separate them.")
+        if not np.isfinite([low, high]).all():
+            raise InputError(f"{where} = {entry}: both ends must be finite; correct them.")
+        if not low < high:
+            raise InputError(f"{where} = {entry}: low must be below high; swap or separate them.")
         return low, high, count(entry[2], 2, where)
 
     def own_name(self) -> str:

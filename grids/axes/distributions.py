@@ -74,8 +74,10 @@ def _words(target: Target, entry: object, where: str) -> Quantile:
 def _range(low: float, high: float, given: object, spacing: str, target: Target, where: str) -> Quantile:
     if spacing not in SPACINGS:
         raise InputError(f"{where}: spacing = {spacing!r}; write 'linear' or 'log'.")
-    if not low < high or not np.isfinite([low, high]).all():
-        raise InputError(f"{where} = {given}: low must be below high, both finite; swap or separate them.")
+    if not np.isfinite([low, high]).all():
+        raise InputError(f"{where} = {given}: both ends must be finite; correct them.")
+    if not low < high:
+        raise InputError(f"{where} = {given}: low must be below high; swap or separate them.")
     if spacing == "log" and low <= 0.0:
         raise InputError(f"{where}: a log spacing starts above zero, not at {low:.6g}; raise it or use linear.")
     bounded(np.array([low, high]), target, where)

@@ -41,8 +41,14 @@ def test_a_row_with_more_cells_than_the_header_is_refused(rows: list[str], writt
 )
 def test_another_delimiter_is_told(stated: str, mark: str, cure: str, written: Callable[[str, str], Path]) -> None:
     written("test_4.toml", TOML.replace("[columns]", f"delimiter = '{stated}'\n[columns]"))
-    with pytest.raises(InputError, match=f'line 401 is one cell by the delimiter .*; state delimiter = "{cure}"'):
+    with pytest.raises(InputError, match=f'line 201 is one cell by the delimiter .*; state delimiter = "{cure}"'):
         read_recording(written("test_4.csv", "\n".join([f"acc{mark}inc", *(mark.join(row) for row in VALUES)])))
+
+
+def test_a_line_below_the_table_says_nothing_of_its_delimiter(written: Callable[[str, str], Path]) -> None:
+    written("test_4.toml", TOML)
+    with pytest.raises(InputError, match=r"line 402.*(column|not a number)"):
+        read_recording(written("test_4.csv", "\n".join(["acc,inc", *map(",".join, VALUES), "end of record"])))
 
 
 def test_a_turned_sign_is_no_channel(written: Callable[[str, str], Path]) -> None:

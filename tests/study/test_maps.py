@@ -176,6 +176,14 @@ def test_the_nearest_value_lies_at_most_a_step_of_the_grid_away(cube: xr.Dataset
         shown(-1.1 * last)
 
 
+def test_a_short_last_step_leaves_the_nearest_value_as_near() -> None:
+    """Of a grid that a refinement has cut finely at its end its largest step counts."""
+    uneven = xr.Dataset(coords={"pga": ("pga", [1.0, 2.0, 2.0001], {"units": "m s-2"})})
+    assert position(uneven, "pga", 2.001, nearest=True) == 2 and position(uneven, "pga", 0.5, nearest=True) == 0
+    with pytest.raises(InputError, match="nor near its end"):
+        position(uneven, "pga", 3.1, nearest=True)
+
+
 def test_a_value_is_one_of_the_grid_or_the_nearest_if_asked_for(cube: xr.Dataset) -> None:
     pga = float(cube["pga"].values[3])
     by_number = cube.rocking.overturning_map(x="aspect_ratio", y="top_mass", pga=pga)
