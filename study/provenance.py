@@ -105,9 +105,9 @@ def commit() -> str:
         return ""
 
 
-def program() -> dict[str, str]:
-    """What an answer says of the program that gave it: commit, when it was made, and versions."""
-    return {"commit": commit(), "made": now(), **versions()}
+def program() -> dict[str, str | None]:
+    """What an answer says of the program that gave it: commit (None outside git), when it was made, and versions."""
+    return {"commit": commit() or None, "made": now(), **versions()}
 
 
 def machine() -> dict[str, str]:

@@ -27,5 +27,7 @@ def extrapolated(learned: Shown, held: Shown) -> tuple[Extrapolated, ...]:
         if peak <= BEYOND * largest or r not in m.recording_of:
             continue
         after = channel_misfit(m, held.after, r, m.lead)
+        if np.isnan(after):  # no sample of it is compared
+            continue
         found.append(Extrapolated(recording.name, name, learned.measured.unit_of(name), peak, largest, after))
     return tuple(found)

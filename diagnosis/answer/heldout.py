@@ -136,7 +136,9 @@ def _squares(measured: Measured, predicted: FloatArray | None, r: int, c: int) -
 
 
 def _rms(parts: Sequence[tuple[float, float]]) -> float:
-    return float(np.sqrt(sum(square for square, _ in parts) / max(sum(count for _, count in parts), 1.0)))
+    """The root of the mean square; nan where nothing is compared."""
+    squares, counts = (sum(one) for one in zip(*parts, strict=True))
+    return float(np.sqrt(squares / counts)) if counts else np.nan
 
 
 def fit_figures(shown: Shown, missing: bool) -> Fit:

@@ -16,6 +16,7 @@ import models
 from grids.plan import read_plan
 from models.base import STATUS
 from models.errors import InputError
+from study import provenance
 from study.derived import derived_coordinates
 from study.export import export
 from study.open import open_study
@@ -131,3 +132,10 @@ def test_any_value_becomes_an_attribute_that_netcdf_takes(value: Any) -> None:
     assert isinstance(made, str | int | float | np.ndarray) and not isinstance(made, bool)
     if isinstance(made, np.ndarray):
         assert made.dtype.kind in "if" and made.size
+
+
+def test_an_answer_outside_git_has_no_commit(monkeypatch: pytest.MonkeyPatch) -> None:
+    """None, which is null in the JSON of every answer: of recordings and of outcomes."""
+    assert provenance.program()["commit"] == (provenance.commit() or None)
+    monkeypatch.setattr(provenance, "commit", lambda: "")
+    assert provenance.program()["commit"] is None

@@ -62,3 +62,10 @@ def test_an_extrapolated_recording_has_one_misfit() -> None:
     assert len(off.measured.channels) == 1
     (beyond,) = extrapolated(learned, off)
     assert beyond.after == pytest.approx(relative_misfit(off.measured, off.after))
+
+
+def test_a_recording_of_which_nothing_is_compared_has_no_misfit() -> None:
+    learned, held = (shown(gauged(name, "left", size)) for name, size in (("a", 1.0), ("b", 2.0)))
+    lost = replace(held, measured=replace(held.measured, mask=np.zeros_like(held.measured.mask)))
+    assert np.isnan(relative_misfit(lost.measured, lost.after)) and np.isnan(relative_misfit(lost.measured, None))
+    assert extrapolated(learned, held) and not extrapolated(learned, lost)
