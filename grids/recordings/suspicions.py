@@ -34,10 +34,14 @@ SIGNIFICANT = 5.0
 SMALLEST_P2, LARGEST_P2 = 0.2, 120.0
 """s-2; p^2 of blocks with R = 37 m and 6 cm. Degrees taken for radians multiply it by 57, a clock ten times too fast
 by 100."""
-SAMPLES, SEEN = 13, 0.5
-"""Smoothed over whatever the clock says (65 ms at 200 Hz), and the share that the regression must explain then."""
-OFF, STILL = 0.02, 0.1
-"""rad at which no body rests before and after the shaking; the share of it by which it may move there."""
+SAMPLES_SMOOTHED = 13
+"""Width of a smoothing that does not trust the clock: 65 ms at 200 Hz."""
+LEAST_EXPLAINED = 0.5
+"""Share of the variance that the regression must explain where the clock is not trusted."""
+OFF_ZERO_ROTATION = 0.02
+"""rad at which no body rests before and after the shaking."""
+RESTING_RANGE = 0.1
+"""Share of such a rotation by which it may move at rest."""
 G_TAKEN_P2, G_TAKEN_ALPHA = 15.0, 0.04
 """g taken for m s-2 multiplies p^2 by 9.8 and divides alpha (rad) by as much."""
 AHEAD = 0.04
@@ -148,8 +152,8 @@ def _of_rotation(name: str, recording: Recording) -> Iterator[str]:
     if lead > AHEAD:
         yield f"{name} is ahead of {REQUIRED} by about {lead:.2g} s: were the clocks joined wrongly?"
     elif fit is None or fit.significance < SIGNIFICANT:
-        other = fit_rocking(rotation, base, recording.time_step, SAMPLES * recording.time_step)
-        if other is not None and other.significance > SIGNIFICANT and other.explained > SEEN:
+        other = fit_rocking(rotation, base, recording.time_step, SAMPLES_SMOOTHED * recording.time_step)
+        if other is not None and other.significance > SIGNIFICANT and other.explained > LEAST_EXPLAINED:
             yield from _of_size(name, other)
     elif fit.p2 < 0.0:
         yield (
@@ -171,7 +175,11 @@ def _of_zero(name: str, rotation: FloatArray, time_step: float) -> Iterator[str]
     ends = rotation[:size], rotation[-size:]
     before, after = (float(np.median(end)) for end in ends)
     moves = max(*(float(np.ptp(end)) for end in ends), abs(after - before))
-    if rotation.size > 4 * size and min(abs(before), abs(after)) > OFF and moves < STILL * abs(before):
+    if (
+        rotation.size > 4 * size
+        and min(abs(before), abs(after)) > OFF_ZERO_ROTATION
+        and moves < RESTING_RANGE * abs(before)
+    ):
         yield f"{name} rests at {before:+.2g} rad before the shaking and after it: is the sensor's zero wrong?"
 
 
