@@ -139,6 +139,12 @@ def test_page_says_when_it_was_stopped() -> None:
     assert "stopped before its end" not in render(diagnosis())
 
 
+def test_page_lists_no_commit_where_none_is_known() -> None:
+    known = diagnosis("missing")
+    unknown = replace(known, provenance={**known.provenance, "commit": None})
+    assert "<dt>commit</dt>" in render(known) and "<dt>commit</dt>" not in render(unknown)
+
+
 def test_page_of_a_search_stopped_at_once_has_its_own_next_step() -> None:
     found = replace(diagnosis("cannot_tell_apart"), effects=(), rivals=(), next_experiment=None, p_value=None)
     words = " ".join(" ".join(outline(render(replace(found, finished=False))).text).split())
