@@ -4,7 +4,8 @@
 
 u_e is what laws that shift leave of u, m the product of what softens. What softens multiplies all that the others
 carry: taken off k instead, it could exceed what a law such as Bouc-Wen's has left of it. As m falls only and psi
-is not negative, no combination gives more energy than it has taken. A dashpot stands outside.
+is not negative, no combination gives more energy than it has taken, but for a set that grows while the others pull
+(`models.rubber.permanent_set`). A dashpot stands outside.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """A layer that stays compressed: s = k (u - u_p) + c u', u_p' = rate e max(0, (u - u_p)/e - strain_limit).
 
 Beside other laws u - u_p is what they all see as the compression. The set grows with the strain, whatever the stress:
-beside `bouc_wen`, whose stress may turn to tension while the layer is compressed, it then gives energy.
+beside `bouc_wen` or `maxwell`, whose stress may turn to tension while the layer is compressed, it then gives energy.
 """
 
 from __future__ import annotations

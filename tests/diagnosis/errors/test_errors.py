@@ -137,7 +137,7 @@ def test_impacts_that_scatter_by_more_than_may_be_are_warned_of(scatter: float, 
     fitted, errors = refitted(first, disturbance_about(first))
     told = summary(errors, fitted.measured)
     assert told.scatter is not None and told.scatter.at_limit is beyond is not errors.scatters
-    assert ("scatter by 3% or more" in " ".join(error_lines(told))) is beyond
+    assert ("scatter by 3.0% or more" in " ".join(error_lines(told))) is beyond
 
 
 def test_impacts_that_repeat_do_not_scatter() -> None:
