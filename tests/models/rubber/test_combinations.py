@@ -1,4 +1,4 @@
-"""Laws together: what softens multiplies, the stiffness stays positive, only a set under tension of others gives energy."""
+"""Laws together: what softens multiplies, the stiffness stays positive, only a set under tension gives energy."""
 
 from itertools import pairwise
 
