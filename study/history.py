@@ -195,10 +195,12 @@ def _events(events: tuple[Event, ...]) -> dict[str, Any]:
     }
 
 
-UNANSWERED = {
+NOT_VALID = {
     "not_converged": "the run did not converge",
     "outside_model": "the run left the range in which the model holds",
+    "failed": "the run failed",
 }
+"""A sentence for every ending of `models.base.UNANSWERED`."""
 
 
 def ending(history: xr.Dataset) -> str:
@@ -208,7 +210,7 @@ def ending(history: xr.Dataset) -> str:
 
 def suspicions_of_ending(history: xr.Dataset) -> tuple[str, ...]:
     """A sentence about a run that is no answer."""
-    said = UNANSWERED.get(ending(history))
+    said = NOT_VALID.get(ending(history))
     cure = "check the motion's unit and scale and the specimen's values, or use another model."
     return () if said is None else (f"{said}: its results are not valid, and the outputs are nan; {cure}",)
 

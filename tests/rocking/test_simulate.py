@@ -12,8 +12,10 @@ import pytest
 import xarray as xr
 from typer.testing import CliRunner, Result
 
+from models.base import STATUS, UNANSWERED
 from models.errors import InputError
 from rocking.commands import app
+from study.history import NOT_VALID
 
 SPECIMEN = """
 title = "a block"
@@ -64,6 +66,10 @@ def test_a_run_that_is_no_answer_is_told() -> None:
     assert "warning: the run did not converge" in result.stderr and "not converged)" in result.stdout, result.output
     with xr.open_dataset("h.nc") as history:
         assert json.loads(history.attrs["outputs"])["status"] == "not_converged"
+
+
+def test_every_ending_that_is_no_answer_has_a_sentence() -> None:
+    assert set(NOT_VALID) == {STATUS[k] for k in UNANSWERED}
 
 
 def test_a_gauge_of_a_recording_far_from_the_block_is_told() -> None:
