@@ -21,7 +21,7 @@ RESERVED = 110.0
 """s for effects that begin or end: they may explain everything."""
 LADDER = 90.0
 """s after which no further base model is tried."""
-SEARCH, ANSWER = 300.0, 320.0
+SEARCH, ANSWER = 250.0, 265.0
 """s of all searches together, calibration included, and of an answer with the law in a table that it may lack."""
 ENDED = "the search's budget of work ended before it"
 
