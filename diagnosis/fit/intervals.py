@@ -8,7 +8,9 @@ which stays right when residuals within a window are correlated or the noise lev
 of V and H^-1 is taken. Errors of the count of events before the windows (`diagnosis.fit.miscounts`), columns c of unit
 variance, move the estimates by -H^-1 J'c each, and V has that times its transpose too. The profile raises the loss by
 3.84 V/H^-1 on either side, so a curved loss gives a lopsided interval, and one that goes flat (a floor that is no
-longer reached) an open one. Where a profile falls under the optimum the fit goes on from there (`settled`).
+longer reached) an open one. Under other parameters a window may have other events, which its states do not reach step
+by step: where the loss has risen enough, windows in which it has start again from scattered states. Where a profile
+falls under the optimum the fit goes on from there (`settled`).
 
 Where a fit works with another coordinate c than the model's own parameter x (`Identification.coordinates`: the slope of
 a layer under its load beside its stiffness), x depends on the other unknowns too, such as a law's: its interval is that
@@ -25,7 +27,7 @@ import numpy as np
 
 from diagnosis.fit.miscounts import miscounts
 from diagnosis.fit.misfit import STEP, reduce
-from diagnosis.fit.solver import Fitted, fit, normal
+from diagnosis.fit.solver import CLEARLY, Fitted, fit, normal, scattered
 from diagnosis.fit.unknowns import Unknown
 from models.base import FloatArray
 
@@ -33,6 +35,8 @@ QUANTILE = 1.959963984540054
 LEVEL = QUANTILE**2
 PROFILE_ITERATIONS = 4
 PROFILE_TRIES = 9
+NEARLY = 0.95
+"""Share of the rise at which an end is near enough, and from which windows are looked at that may be stuck."""
 FLAT = 0.1
 """Root of a rise under which nothing depends on a parameter yet: the end is sought by halves then."""
 BETTER = 1.0
@@ -183,8 +187,8 @@ def _end(fitted: Fitted, index: int, sign: float, step: float, wanted: float) ->
     inside, rise_inside, outside, rise_outside = 0.0, 0.0, np.inf, np.inf
     for _ in range(PROFILE_TRIES):
         step = min(step, most)
-        rise = float(np.sqrt(max(_rise(fitted, index, at + sign * step), 1e-12)))
-        if abs(rise - wanted) < 0.05 * wanted or (rise < wanted and step == most):
+        rise = _root_of_rise(fitted, index, at + sign * step, NEARLY * wanted)
+        if abs(rise - wanted) < (1.0 - NEARLY) * wanted or (rise < wanted and step == most):
             break
         if rise < wanted:
             inside, rise_inside = step, rise
@@ -203,15 +207,24 @@ def profile_rise(fitted: Fitted, index: int, at: float) -> float:
     return _held(fitted, index, at)[0]
 
 
-def _rise(fitted: Fitted, index: int, at: float) -> float:
-    """The same; raises `_Better` where the profile leads to a better optimum."""
+def _root_of_rise(fitted: Fitted, index: int, at: float, enough: float) -> float:
+    """The root of `profile_rise`, with windows that are stuck freed where it is ``enough``.
+
+    Raises `_Better` where the profile leads to a better optimum.
+    """
     rise, held = _held(fitted, index, at)
+    if rise > enough**2:
+        states = scattered(held, held.window_losses > fitted.window_losses + CLEARLY, seed=0)
+        if states is not None:
+            freed = fit(held.misfit, held.u, states, PROFILE_ITERATIONS)
+            if freed.loss < held.loss:
+                rise, held = rise + freed.loss - held.loss, freed
     if rise < -BETTER:
         misfit = fitted.misfit.at_level(held.misfit.level)
         again = fit(misfit, np.insert(held.u, index, at), held.states)
         if again.loss < fitted.loss - BETTER:
             raise _Better(again)
-    return rise
+    return float(np.sqrt(max(rise, 1e-12)))
 
 
 def _held(fitted: Fitted, index: int, at: float) -> tuple[float, Fitted]:

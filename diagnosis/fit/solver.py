@@ -90,26 +90,28 @@ def fit_thoroughly(misfit: Misfit, u: FloatArray, states: FloatArray) -> Fitted:
     """
     found = fit(misfit, u, states)
     for seed in range(SCATTERINGS):
-        scattered = scatter(found, seed)
-        if scattered is None:
+        better = scatter(found, seed)
+        if better is None:
             break
-        restarted = fit(misfit, found.u, scattered)
-        found = restarted if restarted.loss < found.loss else fit(found.misfit, found.u, scattered)
+        restarted = fit(misfit, found.u, better)
+        found = restarted if restarted.loss < found.loss else fit(found.misfit, found.u, better)
     return found
 
 
 def scatter(found: Fitted, seed: int) -> FloatArray | None:
-    """States (W, S) with better ones for windows that misfit badly; None if there are none.
+    """States (W, S) with better ones for windows that misfit badly; None if there are none."""
+    each = np.expm1(found.window_losses / (NU * found.measured.count)) * NU
+    return scattered(found, each > BADLY * max(1.0, float(np.median(each))), seed)
+
+
+def scattered(found: Fitted, bad: NDArray[np.bool_], seed: int) -> FloatArray | None:
+    """States (W, S) with better ones for some of the ``bad`` windows (W,); None if there are none.
 
     The best of fits from scattered states, around where they are and around those measured: a fit may have left these
     for a motion with other events, under parameters or errors that it no longer has, and lie many deviations away.
     """
     misfit, m = found.misfit, found.measured
-    if not found.states.shape[1]:
-        return None
-    each = np.expm1(found.window_losses / (NU * m.count)) * NU
-    bad = each > BADLY * max(1.0, float(np.median(each)))
-    if not bad.any():
+    if not found.states.shape[1] or not bad.any():
         return None
     draws = qmc.MultivariateNormalQMC(np.zeros(found.states.shape[1]), seed=seed).random(SCATTERED)
     width = m.state_size * np.where(np.arange(SCATTERED) % 2 == 0, NARROW, WIDEST)[:, None]

@@ -1,4 +1,4 @@
-"""A profile that finds a better optimum takes the fit there."""
+"""Profiles: a better optimum takes the fit there, a stuck window does not narrow an interval."""
 
 from __future__ import annotations
 
@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 
 from diagnosis.fit.intervals import LEVEL, estimates, profile_rise, settled
+from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.setup import base_fit, measure
-from diagnosis.fit.solver import fit
+from diagnosis.fit.solver import ITERATIONS, Fitted, fit
 from diagnosis.search.candidates import candidates
 from diagnosis.search.refit import Explanation, extend, with_memory
+from models.base import FloatArray
 from tests.diagnosis.made import SPECIMEN, recording
 
 
@@ -22,6 +24,25 @@ def test_a_profile_leads_back_to_the_optimum() -> None:
     assert intervals["width"].low95 < best.values["width"] < intervals["width"].high95
     same, _ = settled(best, ["width"])
     assert same is best
+
+
+def test_a_window_that_a_profile_leaves_stuck_does_not_narrow_the_interval(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each refit at a held value ends with one window in a motion that is not that of the recording."""
+    best = base_fit(SPECIMEN, measure(SPECIMEN, [recording("a", 1)]))
+    free = estimates(best, ["width"])["width"]
+    astray = np.zeros_like(best.states)
+    astray[1] = 4.0 * best.measured.state_size
+
+    def stuck(misfit: Misfit, u: FloatArray, states: FloatArray, iterations: int = ITERATIONS) -> Fitted:
+        found = fit(misfit, u, states, iterations)
+        return fit(misfit, found.u, found.states + astray, 0) if states is best.states else found
+
+    monkeypatch.setattr("diagnosis.fit.intervals.fit", stuck)
+    held = profile_rise(best, 1, float(best.u[1]))
+    assert held > 10.0 * LEVEL
+    found = estimates(best, ["width"])["width"]
+    for ends in zip((found.low95, found.high95), (free.low95, free.high95), strict=True):
+        assert np.subtract(*ends) == pytest.approx(0.0, abs=0.05 * (free.high95 - free.low95))
 
 
 def test_a_shape_on_which_nothing_depends_where_it_is_has_an_end_where_something_does() -> None:
