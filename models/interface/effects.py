@@ -40,6 +40,10 @@ BENDS = {"bend": "rotation_1", "bend_rate": "rotation_rate_1"}
 straight: the coordinates of the chain are the sums."""
 MEMORIES = ("closings", "opened", "torn_left", "torn_right")
 """Uplifts of the base closed again and whether one is under way (1 or 0); ends of what is bonded still (m)."""
+CELLS = 16
+"""Parts of equal length of a joint whose slips at landing are remembered."""
+LANDED = tuple(f"landed_{joint}_{k}" for joint in ("base", "top") for k in range(CELLS))
+"""Slip (m) at which what touches of each part of a joint has landed."""
 OPENED, CLOSED = 0.9, 0.98
 """Shares of the base in contact under which an uplift counts, and over which it has closed again."""
 FROZEN_OVER = 0.05

@@ -9,6 +9,7 @@ import numpy as np
 from models.base import FloatArray
 from models.interface.effects import FROZEN_OVER, Effects
 from models.interface.fibres import Fibres
+from models.interface.landing import lengths
 from models.interface.layered import LayeredWall
 from models.rubber.layer import Hidden
 
@@ -84,11 +85,16 @@ def static_compressions(wall: LayeredWall) -> tuple[FloatArray, FloatArray]:
 
 
 def stored(
-    wall: LayeredWall, q: FloatArray, memory: Sequence[FloatArray], hidden: Mapping[str, Hidden]
-) -> FloatArray:  # fmt: skip
+    wall: LayeredWall,
+    q: FloatArray,
+    memory: Sequence[FloatArray],
+    landed: FloatArray,
+    hidden: Mapping[str, Hidden],
+) -> FloatArray:
     """Energy (J) of the base and the top joint (n, 2) at q (n, 8): layers across and along, and the couples' spring.
 
-    ``memory``: closings, ends of what is bonded; ``hidden``: states of the laws by joint.
+    ``memory``: closings, ends of what is bonded; ``landed`` (n, 2, `CELLS`): slips at landing; ``hidden``: states of
+    the laws by joint.
     """
     e, found = wall.effects or Effects.none(wall.size), np.zeros((wall.size, 2))
     t1, t2, z1, z2, x1, x2, tm, _ = q.T
@@ -96,8 +102,9 @@ def stored(
     if wall.joints != "top":
         b, s = wall.base_half_width, np.sin(t1)
         low, high = in_contact((-b, b), z1, s)
-        along = np.where(np.isfinite(e.shear_base), e.shear_base, 0.0) * wall.base_stiffness * (high - low)
-        found[:, 0] = base_springs(wall, z1, s, memory) + 0.5 * along * x1**2
+        along = np.where(np.isfinite(e.shear_base), e.shear_base, 0.0) * wall.base_stiffness
+        sheared = np.sum(lengths(b, low, high) * (x1[:, None] - landed[:, 0]) ** 2, axis=1)
+        found[:, 0] = base_springs(wall, z1, s, memory) + 0.5 * along * sheared
         found[:, 0] += 0.5 * e.couple_stiffness * np.maximum(np.abs(t1) - e.couple_gap, 0.0) ** 2
         if "base" in hidden:
             found[:, 0] += (1.0 - e.frozen_base) * Fibres(wall, "base").energy(z1, t1, hidden["base"], wear)
@@ -108,7 +115,8 @@ def stored(
         share = frozen_share(z2, b * np.abs(s), static_compressions(wall)[1])
         found[:, 1] = (1.0 - e.frozen_top) * _springs(k, z2, s, (low, high))
         found[:, 1] += e.frozen_top * _frozen(k, z2, s, b, share)
-        found[:, 1] += 0.5 * np.where(np.isfinite(e.shear_top), e.shear_top, 0.0) * k * (high - low) * x2**2
+        sheared = np.sum(lengths(b, low, high) * (x2[:, None] - landed[:, 1]) ** 2, axis=1)
+        found[:, 1] += 0.5 * np.where(np.isfinite(e.shear_top), e.shear_top, 0.0) * k * sheared
         if "top" in hidden:
             found[:, 1] += (1.0 - e.frozen_top) * Fibres(wall, "top").energy(z2, turn, hidden["top"])
     return found

@@ -18,11 +18,15 @@ OPEN = (0.0, 0.0)
 
 
 class Strip(NamedTuple):
-    """Resultants of one strip: N (N, up), M (N m, restoring) and the share of the length that presses."""
+    """Resultants of one strip: N (N, up), M (N m, restoring) and the share of the length that presses.
+
+    ``landed``: integral (m2) over what presses of the slip at landing, of layers that give way along the joint.
+    """
 
     force: float
     moment: float
     share: float
+    landed: float = 0.0
 
 
 def touching(ends: tuple[float, float], z: float, s: float) -> tuple[float, float]:

@@ -1,4 +1,4 @@
-"""The layers give way along the joints, too."""
+"""The layers give way along the joints, too, and meet the other side unsheared where they land."""
 
 from __future__ import annotations
 
@@ -22,11 +22,12 @@ MECHANISM = Mechanism(
             fit_inverse=True,
         ),
     ),
-    equation="H = rho_s (k x + c x') times the length that presses, x the slip of the joint",
-    signature="above the rocking frequency, in horizontal accelerations most",
+    equation="H = rho_s (k (x L - integral of m over L) + c x' L), x the slip of the joint, L the length that presses, "
+    "m the slip at which each part of it landed",
+    signature="above the rocking frequency, in horizontal accelerations most; a wall that has rocked stays displaced",
     sentence="the layers give way along the joints with {shear_over_normal:.2f} of their stiffness across",
     acts={"interface": on_interface},
     at_joints=("interface",),
     static_test="push the wall along its base and read the slip",
-    source="linear layer in shear: models/interface/chain.py",
+    source="linear layer in shear: models/interface/chain.py; contact that lets go: models/interface/landing.py",
 )  # fmt: skip

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from models.base import FloatArray
 from models.interface import modes, resting
 from models.interface.declaration import STATES
-from models.interface.effects import BENDS, MEMORIES
+from models.interface.effects import BENDS, LANDED, MEMORIES
 from models.interface.effects import STATES as OTHER_STATES
 from models.interface.lanes import rows as r
 from models.interface.lanes.carry import carry as advance
@@ -61,7 +61,8 @@ def carry(
         states[lanes], history[lanes], others[lanes] = moved, past, more_moved
     found = {name: states[:, :, k] for k, name in enumerate(STATES) if name not in motion}
     if effects is not None:
-        found |= {name: others[:, :, k] for k, name in enumerate((*OTHER_STATES, *MEMORIES))}
+        landed = LANDED if "interface_shear" in effects.parts else ()
+        found |= {name: others[:, :, k] for k, name in enumerate((*OTHER_STATES, *MEMORIES, *landed))}
         found |= {name: found[name] - states[:, :, STATES.index(lower)] for name, lower in BENDS.items()}
     return found if laws is None else {**found, HISTORY: history}
 

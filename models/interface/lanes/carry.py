@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from models.interface.effects import CELLS
 from models.interface.fibres import COUNT
 from models.interface.lanes.along import APART, LAST
 from models.interface.lanes.effects import rows as e
@@ -35,7 +36,7 @@ def carry(
     ``motion`` (r, m, h): the states ``held`` (h,), by their place among the model's, at the samples from ``first`` on,
     of each lane in the row ``along`` (n,). ``marks`` (k,), counted from ``first``, in order and up to ``last`` (n,) of
     each lane: where ``states`` (n, k, 8) and ``history`` (n, k, joints,
-    laws, fibres) are written, and ``others`` (n, k, 12) of walls with effects (`More.ended`). ``mixed``, ``laws``,
+    laws, fibres) are written, and ``others`` (n, k, 44) of walls with effects (`More.ended`). ``mixed``, ``laws``,
     ``rubber``, ``more``: as of `models.interface.lanes.advance.advance`.
     """
     n, per = given.shape[0], int(given[0, Q_STEPS])
@@ -85,6 +86,8 @@ def carry(
                             others[begin + slot, mark, k] = flat[e.X1 + k * W + slot]
                         for k in range(4):
                             others[begin + slot, mark, 8 + k] = flat[e.CLOSINGS + k * W + slot]
+                        for k in range(2 * CELLS):
+                            others[begin + slot, mark, 12 + k] = flat[e.LANDED + k * W + slot]
                     if laws is not None:
                         for joint in range(2):
                             for law in range(N_HIDDEN):

@@ -15,7 +15,7 @@ from models.interface.declaration import STATES
 from models.interface.lanes import rows as r
 from models.interface.lanes.advance import advance
 from models.interface.lanes.effects.given import energy, given_effects
-from models.interface.lanes.effects.rows import G_STATE, More
+from models.interface.lanes.effects.rows import G_STATE, N_ENDED, More
 from models.interface.lanes.fibres import Rubber
 from models.interface.lanes.laws import given_laws, stored_in_layers
 from models.interface.lanes.sense import SAME_TIME, agree, diverged, pressed
@@ -34,9 +34,8 @@ LARGEST_PHASE = (0.1, 0.4)
 FINER, FINEST = 4, 16
 """Steps of lanes that are taken again: how much finer than before, and how much finer than the first at most."""
 
-
-PLAIN, WITH_MORE, WITH_BOTH = 5e-8, 1.9e-7, 4e-7
-"""s of a lane-step, of one with laws or effects, and of one with both."""
+PLAIN, WITH_MORE, WITH_BOTH = 8.5e-8, 3.2e-7, 7e-7
+"""s of a lane-step, of one with laws or effects, and of one with both: with what a fit then does with its samples."""
 
 
 def step_time(wall: LayeredWall) -> float:
@@ -165,7 +164,7 @@ def _account(wall: LayeredWall, given: FloatArray, laws: Rubber | None, more: Mo
         if more is None:
             change = stored_in_layers(wall, first, hidden[0]) - stored_in_layers(wall, last, hidden[1])
         else:
-            began = more.given[:, G_STATE:]
+            began = more.given[:, G_STATE : G_STATE + N_ENDED]
             change = energy(wall, first, began, hidden[0]) - energy(wall, last, more.ended, hidden[1])
         result[:, r.R_LOST_B : r.R_LOST_T + 1] += change
 

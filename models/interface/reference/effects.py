@@ -13,9 +13,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from models.base import FloatArray
-from models.interface import resting, strip
+from models.interface import landing, resting, strip
 from models.interface.chain import ROTATIONS, SIZE, Chain, chain, free_coordinates, masses
-from models.interface.effects import CLOSED, OPENED
+from models.interface.effects import CELLS, CLOSED, LANDED, OPENED
 from models.interface.layered import LayeredWall
 from models.interface.reference.account import Pair
 from models.interface.reference.equation import NONE, Both, Equation, Ground, Switch
@@ -28,7 +28,11 @@ COUPLE, SLIP = 0, 4
 
 
 class EffectsEquation(Equation):
-    """One wall (of one lane) in all eight coordinates; the last two hidden numbers are the ends of what is bonded."""
+    """One wall (of one lane) in all eight coordinates.
+
+    Behind the laws' hidden numbers come the ends of what is bonded and, where layers give way along the joints, the
+    slips at which they have landed.
+    """
 
     size = SIZE
 
@@ -37,7 +41,9 @@ class EffectsEquation(Equation):
         self.lanes, self.effects = wall, wall.one().effects
         self.free = free_coordinates(wall)
         self.weights, self.inertias = masses(self.wall)
-        self.laws, self.hidden = self.hidden, self.hidden + 2
+        self.laws, self.landed = self.hidden, self.hidden + 2
+        self.shears = bool(self.effects.parts & {"interface_shear"})
+        self.hidden = self.landed + (2 * CELLS if self.shears else 0)
         self.rest = resting.at_rest(wall)
         self.turning = ROTATIONS.T @ (self.inertias[:, None] * ROTATIONS)
         self.static = static_compressions(wall)
@@ -62,7 +68,8 @@ class EffectsEquation(Equation):
         b = self.wall.base_half_width
         left, right = (-b, b) if self.effects.tearing > 0.0 else (b, -b)
         found = self.relaxed(q)
-        found[self.laws :] = memory.get("torn_left", left), memory.get("torn_right", right)
+        found[self.laws : self.landed] = memory.get("torn_left", left), memory.get("torn_right", right)
+        found[self.landed :] = [memory.get(name, 0.0) for name in LANDED[: self.hidden - self.landed]]
         return found
 
     # --- forces
@@ -83,7 +90,23 @@ class EffectsEquation(Equation):
                 top = self._with_laws("top", top, (q[3], turn, v[3], rate), hidden, rates, 1.0)
             if e.frozen_top != 0.0:
                 top = _mixed(e.frozen_top, top, self._frozen(1, b, (k, k), c, motion))
+        if self.shears:
+            base, top = (self._landed(k, strip_, q, v, hidden, rates) for k, strip_ in enumerate((base, top)))
         return base, top, rates
+
+    def _landed(
+        self, k: int, strip_: Strip, q: Sequence[float], v: Sequence[float], hidden: FloatArray, rates: FloatArray
+    ) -> Strip:
+        """A joint with the slips at which it has landed; their rates are filled in."""
+        part, joint = slice(self.landed + k * CELLS, self.landed + (k + 1) * CELLS), ("base", "top")[k]
+        b = (self.wall.base_half_width, self.wall.top_half_width)[k]
+        (z, turn), (z_rate, turn_rate) = self.at_joint(joint, q), self.at_joint(joint, v)
+        motion = math.sin(turn), z_rate, math.cos(turn) * turn_rate
+        ends = strip.touching((-b, b), z, motion[0])
+        rates[part] = landing.rates(b, ends, motion, (q[4 + k], v[4 + k]), hidden[part])
+        pressed = landing.pressed(b, motion[0], strip_.share)
+        landed = landing.lengths(np.array(b), np.array(pressed[0]), np.array(pressed[1])) @ hidden[part]
+        return strip_._replace(landed=float(landed))
 
     def _base(self, q: Sequence[float], v: Sequence[float], hidden: FloatArray, rates: FloatArray) -> Strip:
         wall, e = self.wall, self.effects
@@ -91,7 +114,7 @@ class EffectsEquation(Equation):
         motion = (q[2], s, v[2], math.cos(q[0]) * v[0])
         left, right = b, -b
         if e.tearing > 0.0:
-            ends = torn(e, np.array(b), np.array(q[2]), np.array(s), list(hidden[self.laws :, None]))
+            ends = torn(e, np.array(b), np.array(q[2]), np.array(s), list(hidden[self.laws : self.landed, None]))
             left, right = (end.item() for end in ends)
         if e.tearing > 0.0 and s != 0.0:
             front, behind = (q[2] - e.tearing) / s, hidden[self.laws] if s > 0.0 else hidden[self.laws + 1]
@@ -146,7 +169,8 @@ class EffectsEquation(Equation):
             (5, e.shear_top, wall.top_half_width, wall.top_stiffness, wall.top_damping, strips[1]),
         ):
             held = ratio if math.isfinite(ratio) else 0.0
-            found.append(held * 2.0 * b * strip_.share * (stiffness * q[k] + damping * v[k]))
+            sheared = 2.0 * b * strip_.share * (stiffness * q[k] + damping * v[k]) - stiffness * strip_.landed
+            found.append(held * sheared)
         return found[0], found[1]
 
     def couple(self, q: Sequence[float], v: Sequence[float]) -> float:
@@ -281,8 +305,9 @@ class EffectsEquation(Equation):
 
     def stored(self, q: Sequence[float], hidden: FloatArray) -> Pair:
         laws = {joint: fibres.parted(hidden[self.parts[joint]]) for joint, fibres in self.fibres.items()}
-        memory = [np.array([self.closings]), *hidden[self.laws :, None]]
-        found = stored(self.lanes, np.asarray(q)[None], memory, laws)[0]
+        memory = [np.array([self.closings]), *hidden[self.laws : self.landed, None]]
+        landed = hidden[self.landed :].reshape(1, 2, CELLS) if self.shears else np.zeros((1, 2, CELLS))
+        found = stored(self.lanes, np.asarray(q)[None], memory, landed, laws)[0]
         return float(found[0]), float(found[1])
 
     def power(
@@ -307,5 +332,5 @@ def _frame(places: FloatArray, ground: Ground) -> FloatArray:
 
 
 def _mixed(share: float, exact: Strip, frozen: tuple[float, float]) -> Strip:
-    force, moment = ((1.0 - share) * one + share * other for one, other in zip(exact, frozen, strict=False))
-    return Strip(force, moment, exact.share)
+    force, moment = ((1.0 - share) * one + share * other for one, other in zip(exact[:2], frozen, strict=True))
+    return exact._replace(force=force, moment=moment)

@@ -35,7 +35,7 @@ def test_no_uplift_if_and_only_if_the_freer_end_is_compressed(side: float) -> No
     b, k, lean = 0.36, 6.21e7, 0.004
     for z, full in ((-b * lean * 1.001, True), (-b * lean * 0.999, False), (-b * lean * 2.0, True)):
         assert (strip(b, k, 0.0, z, side * lean).share == 1.0) is full
-    assert strip(b, k, 0.0, b * lean * 1.001, side * lean) == (0.0, 0.0, 0.0)
+    assert strip(b, k, 0.0, b * lean * 1.001, side * lean)[:3] == (0.0, 0.0, 0.0)
 
 
 def test_frozen_half_contact_would_jump_where_the_exact_strip_does_not() -> None:

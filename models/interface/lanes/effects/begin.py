@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from models.interface.effects import CELLS
 from models.interface.lanes import rows as r
 from models.interface.lanes.effects import rows as e
+from models.interface.lanes.effects.landing import touch
 from models.interface.lanes.effects.rows import More
 from models.interface.lanes.effects.step import predict, step
 from models.interface.lanes.rows import W
@@ -25,9 +27,12 @@ def put(t: Table, m: More, lane: int, slot: int) -> None:
         t[e.X1 + k * W + slot] = m.given[lane, e.G_STATE + k]
     for k in range(4):
         t[e.CLOSINGS + k * W + slot] = m.given[lane, e.G_MEMORY + k]
+    for k in range(2 * CELLS):
+        t[e.LANDED + k * W + slot] = m.given[lane, e.G_LANDED + k]
     for k in range(e.N_LAW):
         t[e.REACH + k * W + slot] = m.given[lane, e.G_LAW + k]
     follow(t, slot, 0.0, 0.0)
+    touch(t, slot)
     wear = 1.0 - t[e.LOSS + slot] * (1.0 - exponential_decay(t[e.CLOSINGS + slot] * t[e.PER_CLOSING + slot]))
     t[r.FACTOR_L * W + slot], t[r.FACTOR_R * W + slot] = wear * t[e.LEFT + slot], wear * t[e.RIGHT + slot]
 
@@ -45,7 +50,7 @@ def follow(t: Table, slot: int, turn: float, rate: float) -> None:
 @called
 def vacate(t: Table, slot: int) -> None:
     """A slot without a lane: bodies of unit mass that nothing turns."""
-    for k in range(e.N_OWN):
+    for k in range(e.N_OWN + e.N_LANDED):
         t[e.OWN + k * W + slot] = 0.0
     for k in range(e.N_LAW + 2):
         t[e.REACH + k * W + slot] = 0.0
@@ -99,3 +104,5 @@ def put_on_record(t: Table, m: More, lane: int, slot: int) -> None:
         m.ended[lane, k] = t[e.X1 + k * W + slot]
     for k in range(4):
         m.ended[lane, 8 + k] = t[e.CLOSINGS + k * W + slot]
+    for k in range(2 * CELLS):
+        m.ended[lane, 12 + k] = t[e.LANDED + k * W + slot]

@@ -8,7 +8,7 @@ import numpy as np
 
 from models.base import FloatArray
 from models.interface.chain import masses
-from models.interface.effects import BENDS, FROZEN_OVER, MEMORIES, STATES, Effects
+from models.interface.effects import BENDS, CELLS, FROZEN_OVER, LANDED, MEMORIES, STATES, Effects
 from models.interface.lanes.effects import rows as e
 from models.interface.lanes.effects.rows import More
 from models.interface.lanes.rows import W
@@ -28,6 +28,7 @@ ACTS = {
     "coulomb_damping": e.DRIES,
     "sliding": e.DRIES,
     "table_force": e.TABLES_ACT,
+    "interface_shear": e.SHEARS,
 }
 """The parts of a step that a mechanism needs beside those that always run."""
 
@@ -66,6 +67,8 @@ def given_effects(
     half = np.where(effects.tearing > 0.0, wall.base_half_width, -wall.base_half_width)
     for k, (name, value) in enumerate(zip(MEMORIES, (0.0 * half, 0.0 * half, -half, half), strict=True)):
         table[:, e.G_MEMORY + k] = initial.get(name, value)
+    for k, name in enumerate(LANDED):
+        table[:, e.G_LANDED + k] = initial.get(name, 0.0)
     if effects.law:
         scales = dict(zip(("base", "top", "block"), forces_of(wall), strict=True))
         reaches = [(KNOTS - 1) / effects.law[variable.reach] for variable in TABLES.variables.values()]
@@ -88,4 +91,5 @@ def energy(wall: LayeredWall, q: FloatArray, states: FloatArray, hidden: FloatAr
     }  # fmt: skip
     effects = wall.effects or Effects.none(wall.size)
     whole[:, 6] = np.where(np.isfinite(effects.bending), whole[:, 6], whole[:, 0])
-    return stored(wall, whole, [states[:, 8], states[:, 10], states[:, 11]], laws)
+    landed = states[:, 12:].reshape(-1, 2, CELLS)
+    return stored(wall, whole, [states[:, 8], states[:, 10], states[:, 11]], landed, laws)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from models.interface.effects import CELLS
 from models.interface.lanes.along import N_WORK_LAWS
 from models.interface.lanes.rows import W
 from models.interface.table import ONE_LINE, TABLES
@@ -37,9 +38,19 @@ N_OWN = 47
 OWN, N_CONSTANTS = X1, (HALF_INERTIA - PITCH) // W + 1
 """LENGTH: height of the wall; PER_OPENING: one over the opening that freezes a contact at half."""
 
+# --- of both joints: slips at which the layers have landed; ends of what touched at the last step and touches now, of
+# what presses now; integral of those slips over what presses
+_LANDED = N_WORK_LAWS + N_OWN
+N_LANDED = 2 * CELLS + 14
+LANDED = _LANDED * W
+(
+    FROM_B, FROM_T, TO_B, TO_T, NEXT_FROM_B, NEXT_FROM_T, NEXT_TO_B, NEXT_TO_T, LOW_B, LOW_T, HIGH_B, HIGH_T,
+    SHIFT_B, SHIFT_T,
+) = _places(_LANDED + 2 * CELLS, 14)  # fmt: skip
+
 # --- joints at the predictor: sines and cosines; forces, moments, integrals of the stiffness, pressing lengths; what
 # dry friction adds to theta1 and x1
-_JOINTS = N_WORK_LAWS + N_OWN
+_JOINTS = _LANDED + N_LANDED
 (
     S1, C1, SM, CM, SR, CR, N_B, N_T, M_B, M_T, D1_B, D1_T, D2_B, D2_T, D3_B, D3_T, LENGTH_B, LENGTH_T,
     HELD_1, HELD_X,
@@ -72,12 +83,13 @@ N_TABLE = _LAW + N_LAW + 2 + SIZE
 # --- given: constants in the order above, then coordinates, rates and memory at the start, then the law in a table
 G_STATE = N_CONSTANTS
 G_MEMORY = G_STATE + 8
-G_LAW = G_MEMORY + 4
+G_LANDED = G_MEMORY + 4
+G_LAW = G_LANDED + 2 * CELLS
 N_GIVEN = G_LAW + N_LAW
-N_ENDED = 12
+N_ENDED = 12 + 2 * CELLS
 
 # --- bits of what acts
-PITCHES, HALVES, BONDS, FREEZES, WEARS, DRIES, TABLES_ACT = (1 << k for k in range(7))
+PITCHES, HALVES, BONDS, FREEZES, WEARS, DRIES, TABLES_ACT, SHEARS = (1 << k for k in range(8))
 
 
 class More(NamedTuple):

@@ -113,7 +113,8 @@ def slide(t: Table, which: int, i: int, near: float, far: float) -> None:
     j, row = which * W + i, 4 + which
     free, along = t[e.FREE_X1 + j], t[e.SHEAR_B + j] * t[e.LENGTH_B + j]
     k, c = along * t[r.KB * W + j], along * t[r.CB * W + j]
-    t[e.F + 4 * W + j] -= free * (k * t[e.Q + 4 * W + j] + c * t[e.V + 4 * W + j])
+    landed = t[e.SHEAR_B + j] * t[r.KB * W + j] * t[e.SHIFT_B + j]
+    t[e.F + 4 * W + j] -= free * (k * t[e.Q + 4 * W + j] + c * t[e.V + 4 * W + j] - landed)
     t[at(row, row) + i] += free * (near * k + far * c) + 1.0 - free
 
 

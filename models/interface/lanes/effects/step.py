@@ -11,7 +11,7 @@ from typing import Any
 
 from models.interface.effects import CLOSED, OPENED
 from models.interface.lanes import rows as r
-from models.interface.lanes.effects import dry, joints, kinematics, solve, table
+from models.interface.lanes.effects import dry, joints, kinematics, landing, solve, table
 from models.interface.lanes.effects import rows as e
 from models.interface.lanes.effects.rows import More
 from models.interface.lanes.reading import account_joints, read_bodies, read_joints
@@ -57,6 +57,8 @@ def step(t: Table, m: More, laws: Any) -> int:
         joints.bonds(t)
     joints.top_strip(t)
     pressing(t)
+    if m.acts & e.SHEARS:
+        landing.land(t)
     if laws is not None:
         joints.add_laws(t)
     if m.acts & e.FREEZES:
@@ -160,6 +162,8 @@ def read(t: Table) -> int:
         along, along_2 = t[e.SHEAR_B + i] * t[e.LENGTH_B + i], t[e.SHEAR_T + i] * t[e.LENGTH_T + i]
         power_b -= along * slip * (t[r.KB * W + i] * t[e.X1 + i] + t[r.CB * W + i] * slip)
         power_t -= along_2 * slip_2 * (t[r.KT * W + i] * t[e.X2 + i] + t[r.CT * W + i] * slip_2)
+        power_b += t[e.SHEAR_B + i] * t[r.KB * W + i] * t[e.SHIFT_B + i] * slip
+        power_t += t[e.SHEAR_T + i] * t[r.KT * W + i] * t[e.SHIFT_T + i] * slip_2
         # forces of inertia at the end of the step: along x of all, along and across the top joint of the block
         m, m2, base = (1.0 - AM) * t[e.HALF_MASS + i], (1.0 - AM) * t[r.M2 * W + i], t[e.FREE_X1 + i] * d5
         lower = m * (t[e.XL_1 + i] * d1 + base)
