@@ -33,6 +33,12 @@ class Hidden:
     sensor: bool = False
     shapes: Callable[[np.random.Generator], dict[str, float]] = lambda rng: {}
 
+    def at(self, share: float, end: float) -> float:
+        """The parameter at a share of the way from its null to an end; of its inverse where the null is infinite."""
+        if np.isinf(self.null):
+            return end / share if share > 0.0 else self.null
+        return self.null + share * (end - self.null)
+
 
 class Apart(Protocol):
     """A program apart: rotations and rates (`HELD`) of two bodies at the shaking's steps, nan once one falls.

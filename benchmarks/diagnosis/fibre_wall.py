@@ -2,7 +2,9 @@
 
 Coordinates q: the gaps under the left and the right end of either underside over what carries it, in the axes of that
 (the ground, the wall). A fibre at the share s of an underside is stretched by (1 - s) w_left + s w_right, and a body
-stands on the lower end of its underside, which does not move along:
+stands on the lower end of its underside, which does not move along. Layers that give way along the joints add the
+slips x of both (`interface_shear`): a fibre that presses resists with ratio (k (x - m) + c x'), m the slip at which it
+came to touch.
 
     J^T [ M (J q'' + J' q') + (m a, m G, 0) of both bodies ] = forces of the fibres + couples on the wall
 
@@ -57,6 +59,7 @@ NULLS = {
     "added_stiffness.gap": 0.0,
     "viscous_damping.couple_damping": 0.0,
     "coulomb_damping.over_m_g_b": 0.0,
+    "interface_shear.shear_over_normal": np.inf,
 }
 """The mechanisms that this program knows, by parameter, each with the value that switches it off."""
 GRAVITY = 9.80665
@@ -91,13 +94,16 @@ def run(
     resists = lever[1] * np.arctan2(wall["wall_length"] / 2.0, lever[2])
     geometry = np.array([resists / largest, largest, GRAVITY, lever[3], largest])
     rate = sum(float(layer[1] * layer[3]) for layer in layers) * 2.0 / wall["wall_mass"]
+    shears = np.isfinite(values["interface_shear.shear_over_normal"])
+    rate *= max(1.0, values["interface_shear.shear_over_normal"]) if shears else 1.0
     rate = max(rate, float(couples[3]) / (lever[0] * SLIDES))
     per = max(1, int(np.ceil(step / LONGEST)), int(np.ceil(step * rate / STABLE)))
     couple, lean = law.couple if law else nothing, np.array([-GRAVITY * np.sin(tilt), GRAVITY * np.cos(tilt)])
     fixed = (body, *layers, couples, geometry, np.asarray(numbers, float), lean)
     rest = [_compression(layer, load) for layer, load in zip(layers, (mass, wall["top_mass"]), strict=True)]
     alone = (*fixed[:5], np.array([0.0, *numbers[1:]]), lean)  # the law of size 0
-    start = root(_unbalanced, np.repeat(np.negative(rest), 2), (couple, alone, fibres), tol=1e-10).x
+    begin = np.append(np.repeat(np.negative(rest), 2), np.zeros(2 if shears else 0))
+    start = root(_unbalanced, begin, (couple, alone, fibres), tol=1e-10).x
     if np.max(np.abs(_unbalanced(start, couple, alone, fibres))) > STILL:
         raise RuntimeError("the wall does not stand")
     return np.asarray(_integrate(couple, np.asarray(acceleration, float), step, per, fixed, start, fibres))
@@ -122,7 +128,8 @@ def _body(wall: Mapping[str, float], values: Mapping[str, float]) -> FloatArray:
 
 
 def _layers(wall: Mapping[str, float], values: Mapping[str, float]) -> list[FloatArray]:
-    """Of both: k, half contact, e, c, k_1/k, tau, beta2, softening, strain, a, u_y, n, factors left and right."""
+    """Of both: k, half contact, e, c, k_1/k, tau, beta2, softening, strain, a, u_y, n, factors by side, shear."""
+    along = values["interface_shear.shear_over_normal"]
     ratio = values["one_sided_stiffness.right_over_left"]
     halves = {"base": wall["wall_length"], "top": min(wall["wall_length"], wall["top_length"])}
     found = []
@@ -135,6 +142,7 @@ def _layers(wall: Mapping[str, float], values: Mapping[str, float]) -> list[Floa
             values["maxwell.arm_stiffness_ratio"], values["maxwell.relaxation_time"], values["hardening.beta2"],
             values["mullins.softening"], values["mullins.strain"], values["bouc_wen.post_yield_ratio"],
             values["bouc_wen.yield_compression"], values["bouc_wen.exponent"], *sides,
+            along if np.isfinite(along) else 0.0,
         ]))  # fmt: skip
     return found
 
@@ -160,7 +168,7 @@ def _compression(layer: FloatArray, mass: float) -> float:
     e = float(layer[2])
 
     def excess(u: float) -> float:
-        force, _ = _at_rest(-u, -u, layer, 1)[0]
+        force = _at_rest(-u, -u, 0.0, layer, 1)[0][0]
         return float(force - 0.5 * mass * GRAVITY)
 
     return float(brentq(excess, 0.0, 5.0 * e, xtol=1e-14))
@@ -178,6 +186,9 @@ def _placed(q, body):  # type: ignore[no-untyped-def]
     along, upper = _turned(toe + along, body[8] + min(q[2], q[3]) + upper, first)
     x1, z1 = _turned(0.0, body[1], first)
     x2, z2 = _turned(body[9], body[5], first + second)
+    if q.size > 4:
+        slid, lifted = _turned(q[5], 0.0, first)
+        foot_x, along, upper = foot_x + q[4], along + slid, upper + lifted
     return np.array([foot_x + x1, foot_z + z1, first, foot_x + along + x2, foot_z + upper + z2, first + second])
 
 
@@ -188,10 +199,10 @@ def _turned(x, z, angle):  # type: ignore[no-untyped-def]
 
 
 @njit
-def _fibres(left, right, left_rate, right_rate, layer, memory, change, count):  # type: ignore[no-untyped-def]
-    """Forces on both ends of an underside; ``change`` gets the rates of the fibres' memories (v, zeta)."""
+def _fibres(left, right, slip, left_rate, right_rate, slip_rate, layer, memory, change, count):  # type: ignore[no-untyped-def]
+    """Forces on both ends of an underside and along it; ``change`` gets the rates of the fibres' memories (v, zeta)."""
     k, half, e, c, arm, tau, beta2, softening, strain, a, u_y, n = layer[:12]
-    at_left = at_right = 0.0
+    at_left = at_right = sheared = 0.0
     for i in range(count):
         s = (i + 0.5) / count
         w, rate = (1.0 - s) * left + s * right, (1.0 - s) * left_rate + s * right_rate
@@ -208,42 +219,45 @@ def _fibres(left, right, left_rate, right_rate, layer, memory, change, count):  
         force = max(0.0, stress) * 2.0 * half / count
         at_left += (1.0 - s) * force
         at_right += s * force
-    return at_left, at_right
+        if force > 0.0:
+            sheared -= layer[14] * (k * (slip - memory[i, 3]) + c * slip_rate) * 2.0 * half / count
+    return at_left, at_right, sheared
 
 
 @njit
-def _at_rest(left, right, layer, count):  # type: ignore[no-untyped-def]
+def _at_rest(left, right, slip, layer, count):  # type: ignore[no-untyped-def]
     """Forces on both ends of an underside whose fibres have been held for ever, and the fibres' memories."""
-    memory = np.zeros((count, 3))
+    memory = np.zeros((count, 4))
     u_y = layer[10]
     for i in range(count):
         s = (i + 0.5) / count
         u = max(0.0, -(1.0 - s) * left - s * right)
         memory[i, 0] = memory[i, 2] = u
         memory[i, 1] = u_y * (1.0 - np.exp(-u / u_y)) if layer[11] == 1.0 else u_y * np.tanh(u / u_y)
-    return _fibres(left, right, 0.0, 0.0, layer, memory, np.zeros((count, 2)), count), memory
+    return _fibres(left, right, slip, 0.0, 0.0, 0.0, layer, memory, np.zeros((count, 2)), count), memory
 
 
 @njit
 def _unbalanced(q, couple, fixed, count):  # type: ignore[no-untyped-def]
     """Accelerations q'' of a wall that is held at q until all has come to rest."""
     still = np.zeros((count, 2))
-    low, high = _at_rest(q[0], q[1], fixed[1], count)[1], _at_rest(q[2], q[3], fixed[2], count)[1]
-    return _change(couple, 0.0, q, np.zeros(4), 0.0, fixed, low, high, still, still.copy())
+    low, high = _at_rest(q[0], q[1], 0.0, fixed[1], count)[1], _at_rest(q[2], q[3], 0.0, fixed[2], count)[1]
+    return _change(couple, 0.0, q, np.zeros(q.size), 0.0, fixed, low, high, still, still.copy())
 
 
 @njit
 def _change(couple, t, q, v, a, fixed, low, high, by_low, by_high):  # type: ignore[no-untyped-def]
     """Accelerations q'' at time t under the base acceleration a, and the rates of the memories of all fibres."""
     body, base, top, couples, geometry, numbers, lean = fixed
-    jacobian = np.empty((6, 4))
-    for i in range(4):
+    n = q.size
+    jacobian = np.empty((6, n))
+    for i in range(n):
         moved = q.copy()
         moved[i] += SMALL
         up = _placed(moved, body)
         moved[i] -= 2.0 * SMALL
         jacobian[:, i] = (up - _placed(moved, body)) / (2.0 * SMALL)
-    speed = np.sqrt(v[0] ** 2 + v[1] ** 2 + v[2] ** 2 + v[3] ** 2)
+    speed = np.sqrt(np.sum(v**2))
     turn = np.zeros(6)
     if speed > 0.0:
         ahead = q + TURN / speed * v
@@ -254,35 +268,40 @@ def _change(couple, t, q, v, a, fixed, low, high, by_low, by_high):  # type: ign
         [-body[2] * (a + lean[0]), -body[2] * lean[1], 0.0, -body[6] * (a + lean[0]), -body[6] * lean[1], 0.0]
     )
     theta, rate = np.arcsin((q[0] - q[1]) / (2.0 * body[0])), 0.0
-    for i in range(4):
+    for i in range(n):
         rate += jacobian[2, i] * v[i]
     beyond = max(0.0, abs(theta) - couples[1]) * np.sign(theta)
     loads[2] -= couples[0] * beyond + couples[2] * rate + couples[3] * np.tanh(rate / SLIDES)
     loads[2] += couples[4] * couple(t, theta, rate, 0.0, 0.0, a, numbers, geometry)
     count = low.shape[0]
-    one = _fibres(q[0], q[1], v[0], v[1], base, low, by_low, count)
-    two = _fibres(q[2], q[3], v[2], v[3], top, high, by_high, count)
-    forces, inertia = np.array([one[0], one[1], two[0], two[1]]), np.zeros((4, 4))
-    for i in range(4):
+    slips, slip_rates = np.zeros(2), np.zeros(2)
+    for i in range(4, n):
+        slips[i - 4], slip_rates[i - 4] = q[i], v[i]
+    one = _fibres(q[0], q[1], slips[0], v[0], v[1], slip_rates[0], base, low, by_low, count)
+    two = _fibres(q[2], q[3], slips[1], v[2], v[3], slip_rates[1], top, high, by_high, count)
+    forces, inertia = np.array([one[0], one[1], two[0], two[1], one[2], two[2]])[:n], np.zeros((n, n))
+    for i in range(n):
         for k in range(6):
             forces[i] += jacobian[k, i] * (loads[k] - masses[k] * turn[k])
-            for j in range(4):
+            for j in range(n):
                 inertia[i, j] += jacobian[k, i] * masses[k] * jacobian[k, j]
     return solved(inertia, forces)
 
 
 @njit
 def _integrate(couple, acceleration, step, per, fixed, start, count):  # type: ignore[no-untyped-def]
-    q, v = start.copy(), np.zeros(4)
-    body, low, high = fixed[0], _at_rest(q[0], q[1], fixed[1], count)[1], _at_rest(q[2], q[3], fixed[2], count)[1]
+    q, v = start.copy(), np.zeros(start.size)
+    low = _at_rest(q[0], q[1], 0.0, fixed[1], count)[1]
+    body, high = fixed[0], _at_rest(q[2], q[3], 0.0, fixed[2], count)[1]
     found = np.zeros((2, acceleration.size))
     h = step / per
     shares, weights = (0.0, 0.5, 0.5, 1.0), (1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0)
     for n in range(acceleration.size - 1):
         for part in range(per):
-            to_q, to_v = np.zeros(4), np.zeros(4)
+            to_q, to_v = np.zeros(q.size), np.zeros(q.size)
             to_low, to_high = np.zeros((count, 2)), np.zeros((count, 2))
-            by_q, by_v, by_low, by_high = np.zeros(4), np.zeros(4), np.zeros((count, 2)), np.zeros((count, 2))
+            by_q, by_v = np.zeros(q.size), np.zeros(q.size)
+            by_low, by_high = np.zeros((count, 2)), np.zeros((count, 2))
             for stage in range(4):
                 ahead = shares[stage] * h
                 at_q, at_v, at_low, at_high = q + ahead * by_q, v + ahead * by_v, low.copy(), high.copy()
@@ -302,8 +321,11 @@ def _integrate(couple, acceleration, step, per, fixed, start, count):  # type: i
             high[:, :2] += h * to_high
             for i in range(count):
                 s = (i + 0.5) / count
-                low[i, 2] = max(low[i, 2], -((1.0 - s) * q[0] + s * q[1]))
-                high[i, 2] = max(high[i, 2], -((1.0 - s) * q[2] + s * q[3]))
+                under, over = (1.0 - s) * q[0] + s * q[1], (1.0 - s) * q[2] + s * q[3]
+                low[i, 2], high[i, 2] = max(low[i, 2], -under), max(high[i, 2], -over)
+                if q.size > 4:
+                    low[i, 3] = q[4] if under >= 0.0 else low[i, 3]
+                    high[i, 3] = q[5] if over >= 0.0 else high[i, 3]
         placed = _placed(q, body)
         found[0, n + 1], found[1, n + 1] = placed[2], placed[5]
         if not abs(placed[2]) < 1.5 or not abs(placed[5]) < 1.5:

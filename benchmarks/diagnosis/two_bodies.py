@@ -120,7 +120,7 @@ def _sized(
     end, shapes, peak = float(rng.choice(row.ends)), row.shapes(rng), drawn[0][2]
 
     def at(share: float) -> dict[str, float]:
-        return {row.parameter: row.null + share * (end - row.null), **shapes}
+        return {row.parameter: row.at(share, end), **shapes}
 
     def largest(measure: Callable[..., float], share: float) -> float:
         sensors = {name: at(share)} if row.sensor else {}

@@ -54,6 +54,7 @@ CATALOGUE: dict[str, Hidden] = {
     "added_stiffness": Hidden("added_stiffness", "couple_stiffness", 0.0, (-1e6, 5e6)),
     "viscous_damping": Hidden("viscous_damping", "couple_damping", 0.0, (5e5,)),
     "coulomb_damping": Hidden("coulomb_damping", "over_m_g_b", 0.0, (0.1,)),
+    "interface_shear": Hidden("interface_shear", "shear_over_normal", np.inf, (0.05,)),
     "tilt": Hidden("tilt", "tilt", 0.0, (-0.05, 0.05)),
     "eccentricity": Hidden("tilt", "offset_top", 0.0, (-0.2, 0.2)),
     "offset": Hidden("offset", "offset_over_peak", 0.0, (-0.15, 0.15), sensor=True),

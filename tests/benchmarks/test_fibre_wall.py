@@ -61,6 +61,7 @@ def apart(one: np.ndarray, other: np.ndarray) -> float:
         {"added_stiffness.couple_stiffness": 2e5, "viscous_damping.couple_damping": 1e4},
         {"coulomb_damping.over_m_g_b": 0.02},
         {"coulomb_damping.over_m_g_b": 0.1},
+        {"interface_shear.shear_over_normal": 1.0},
     ],
     ids=lambda mechanisms: "+".join(sorted({name.split(".")[0] for name in mechanisms})) or "plain",
 )
