@@ -50,7 +50,7 @@ class Interface(Model[LayeredWall]):
     resumes_with: tuple[str, ...] | None = (
         "vertical_acceleration", "pivot_inset", "hardening", "locking", "tilt", "eccentricity", "table_pitch",
         "contact_length", "added_stiffness", "one_sided_stiffness", "viscous_damping", "coulomb_damping",
-        "interface_shear", "sliding", "wall_flexibility", "table_force",
+        "sliding", "wall_flexibility", "table_force",
     )  # fmt: skip
 
     def assemble(self, values: Values, options: Mapping[str, str], *, vertical: bool, size: int) -> LayeredWall:

@@ -25,7 +25,7 @@ OF_BLOCKS = {
     "bounce": {"contact_restitution": 0.2},
     "wall_flexibility": {"first_frequency": 50.0},
 }
-OF_WALLS = {"mullins", "maxwell", "bouc_wen", "permanent_set", "degradation", "bonded_layer"}
+OF_WALLS = {"mullins", "maxwell", "bouc_wen", "permanent_set", "degradation", "bonded_layer", "interface_shear"}
 
 
 def predicted(measured: Measured, values: dict[str, float], mechanism: str, sample: int) -> None:
