@@ -11,7 +11,7 @@ from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.unknowns import clip
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.found import MISSING, Search, adjusted, enough, explains_all, within_reach
-from diagnosis.search.refit import QUICK, Explanation, again, best_of, extend, joined
+from diagnosis.search.refit import QUICK, Explanation, again, best_of, extend, from_starts, joined
 from diagnosis.search.screen import Score, score
 from models.base import FloatArray
 from models.errors import InputError
@@ -102,7 +102,7 @@ def extended(
     tried = [entry for entry in worth if entry.candidate != but][:SECOND_TRIES]
     for entry in tried:
         if found.affordable(entry.candidate.name):
-            ways = [extend(explanation, entry.candidate, at, QUICK, most) for at in starts_of(entry, scores)]
+            ways = from_starts([explanation], entry.candidate, starts_of(entry, scores), most)
             if entry.candidate.mechanism.beside:
                 ways.append(split(explanation, entry.candidate, most))
             fits.append(best_of(ways))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 
@@ -19,6 +20,8 @@ from models.base import FloatArray
 RECOUNTS = 8
 SHAPES, QUICK = 5, 6
 """Values of a shape tried anew, and the iterations of each."""
+BEHIND = 30.0
+"""What a refit from another start may promise to end behind the best before it."""
 SIZES = (0.4, 1.6, 2.5)
 """Sizes of an effect tried anew, over the fitted one."""
 
@@ -84,6 +87,20 @@ def extend(
         (*explanation.candidates, candidate), replace(base, misfit=misfit, u=np.concatenate([base.u, start]))
     )
     return best_of([further(way, iterations, most) for way in ways(grown)])
+
+
+def from_starts(
+    explanations: Sequence[Explanation], candidate: Candidate, starts: Sequence[FloatArray], most: float = np.inf
+) -> list[Explanation]:
+    """Quick fits of the ``explanations`` with one more mechanism, from each of its ``starts``.
+
+    Given up on the way where one promises no loss of ``most``, or to end far behind the best before it.
+    """
+    fits: list[Explanation] = []
+    for explanation, start in product(explanations, starts):
+        near = min((fitted.loss + BEHIND for fitted in fits), default=most)
+        fits.append(extend(explanation, candidate, start, QUICK, min(near, most)))
+    return fits
 
 
 def ways(explanation: Explanation) -> list[Explanation]:

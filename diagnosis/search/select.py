@@ -45,13 +45,12 @@ from diagnosis.search.left_out import predicts_worse
 from diagnosis.search.null import null_distribution
 from diagnosis.search.outside import outside
 from diagnosis.search.refit import (
-    QUICK,
     Explanation,
     again,
     as_declared,
     best_of,
-    extend,
     from_other,
+    from_starts,
     further,
     over_ranges,
     reshaped,
@@ -78,6 +77,8 @@ NEAR_HEAVY = 0.3
 """Share of the largest statistic that a mechanism of many short steps must reach where another explains everything."""
 COSTLY = "not alone: another explains everything, the screen gives it much less, and its fits take long"
 THRESHOLD = "not alone: it sets in at a threshold, and another explains everything without it"
+NEAR_FIRST, MOST_FIRST = 0.3, 4
+"""Share of the largest statistic from which a mechanism is refitted before what has no slope; how many at most."""
 FIRST_POOL = 3
 LITTLE = 0.25
 """Share of what is missing that two effects must explain for one more to be sought beside them."""
@@ -172,7 +173,7 @@ def refit_singles(found: Search, progress: Progress) -> None:
         progress(f"refitting {entry.candidate.name}", 0.15 + 0.3 * k / len(wanted))
         starts = starts_of(entry, found.scores)
         own = begins[:1] if is_heavy else begins
-        fits = [extend(begin, entry.candidate, start, QUICK, most) for begin in own for start in starts]
+        fits = from_starts(own, entry.candidate, starts, most)
         if entry.candidate in late and not explained:
             fits += from_measured(found.base, entry.candidate)
         elif entry.candidate in late and not fits:
@@ -237,8 +238,10 @@ def in_turn(wanted: Sequence[Score], late: Sequence[Score], scores: Sequence[Sco
     Of those that something else may make needless, what takes many short steps comes last.
     """
     strongest = one_of_each(wanted)
-    others = sorted((*late, *strongest[FEWEST_ADEQUATE:]), key=lambda entry: heavy(entry, scores))
-    return list({entry.candidate: entry for entry in (*strongest[:FEWEST_ADEQUATE], *others)}.values())
+    near = sum(entry.statistic >= NEAR_FIRST * strongest[0].statistic for entry in strongest[:MOST_FIRST])
+    first = max(FEWEST_ADEQUATE, near)
+    others = sorted((*late, *strongest[first:]), key=lambda entry: heavy(entry, scores))
+    return list({entry.candidate: entry for entry in (*strongest[:first], *others)}.values())
 
 
 def led_by(found: Search, leader: Explanation) -> bool:

@@ -10,7 +10,7 @@ import pytest
 from diagnosis.errors.model import calibrated
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.setup import measure
-from diagnosis.search import beside
+from diagnosis.search import beside, refit
 from diagnosis.search import found as found_module
 from diagnosis.search.candidates import Candidate, candidates
 from diagnosis.search.found import BEHIND, Search
@@ -63,7 +63,7 @@ def test_once_a_pair_explains_everything_others_need_not_be_fitted_to_their_ends
         thorough.append(one.names[-1])
         return one
 
-    monkeypatch.setattr(beside, "extend", watched)
+    monkeypatch.setattr(refit, "extend", watched)
     monkeypatch.setattr(beside, "again", taken_on)
     monkeypatch.setattr(beside, "explains_all", lambda _: False)
     monkeypatch.setattr(found_module, "explains_all", lambda one: one.names[-1] == "base_gain")

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from diagnosis.search import beside, details, exchange, select, weighing
+from diagnosis.search import beside, details, exchange, refit, select, weighing
 from diagnosis.search import found as counting
 from diagnosis.search.budget import Budget
 from diagnosis.search.found import Search, rivals
@@ -197,7 +197,7 @@ def test_variants_of_a_law_leave_room_for_other_effects(monkeypatch: pytest.Monk
         tried.append(candidate)
         return fit(*explanation.candidates, candidate, loss=900.0)
 
-    monkeypatch.setattr(beside, "extend", extend)
+    monkeypatch.setattr(refit, "extend", extend)
     monkeypatch.setattr(beside, "again", lambda one: one)
     first: Any = fit(Effect("delay"), loss=1500.0)
     beside.extended(search(fit(loss=2000.0)), first, scored(*orders, TILT, A))
@@ -206,6 +206,34 @@ def test_variants_of_a_law_leave_room_for_other_effects(monkeypatch: pytest.Monk
     but: Any = orders[0]
     beside.extended(search(fit(loss=2000.0)), first, scored(*orders, TILT, A), but=but)
     assert tried == [TILT, A, *orders[1:5]]
+
+
+def test_a_later_start_is_bounded_by_the_best_before_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    losses = iter((1500.0, 1200.0, 1400.0, 1300.0))
+    bounds: list[float] = []
+
+    def extend(one: Any, candidate: Effect, start: Any, iterations: int, most: float) -> Any:
+        bounds.append(most)
+        return fit(candidate, loss=next(losses))
+
+    monkeypatch.setattr(refit, "extend", extend)
+    begins: Any = [fit(loss=2000.0), fit(loss=2100.0)]
+    fits = refit.from_starts(begins, Effect("delay"), [np.zeros(1), np.ones(1)], 1450.0)  # type: ignore[arg-type]
+    assert [one.loss for one in fits] == [1500.0, 1200.0, 1400.0, 1300.0]
+    assert bounds == [1450.0, 1450.0, 1200.0 + refit.BEHIND, 1200.0 + refit.BEHIND]
+
+
+def test_what_is_strong_in_the_screen_is_refitted_before_what_has_no_slope() -> None:
+    """At most four, and at least two; the rest by how many steps they take."""
+    strong = [Effect(name) for name in "abcdef"]
+    late: Any = scored(Effect("late"))
+    order = [entry.candidate.name for entry in select.in_turn(scored(*strong), late, scored(*strong))]
+    assert order == ["a", "b", "c", "d", "late", "e", "f"]
+    weak: Any = scored(*strong)
+    for entry in weak[1:]:
+        entry.statistic = 100.0
+    order = [entry.candidate.name for entry in select.in_turn(weak, late, weak)]
+    assert order == ["a", "b", "late", "c", "d", "e", "f"]
 
 
 def test_a_rival_is_kept_beside_variants_of_the_best() -> None:
