@@ -61,16 +61,13 @@ def beside(found: Search, progress: Progress) -> Iterator[Search]:
         return
     if found.begun is not None and _likelihood(found.begun) < _likelihood(found):
         yield found.begun
-    elif found.best is not None and len(found.best.candidates) == 1:
+    elif found.best is not None:
         progress("looking for effects that begin or end", 0.82)
+        several = len(found.best.candidates) > 1
         with found.work_of_its_own(RESERVED):
-            begun = _begun(found, found.best)
-        if begun is not None:
-            yield begun
-    elif found.best is not None and len(found.best.candidates) > 1:
-        progress("looking for effects that begin or end", 0.82)
-        with found.work_of_its_own(RESERVED):
-            begun = _one_of_several(found, found.best)
+            if not found.affordable("effects that begin or end"):
+                return
+            begun = _one_of_several(found, found.best) if several else _begun(found, found.best)
         if begun is not None:
             yield begun
 
