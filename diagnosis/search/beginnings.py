@@ -61,7 +61,7 @@ def beside(found: Search, progress: Progress) -> Iterator[Search]:
         return
     if found.begun is not None and _likelihood(found.begun) < _likelihood(found):
         yield found.begun
-    elif found.best is not None:
+    elif found.best is not None and found.measured.stretches is None:
         progress("looking for effects that begin or end", 0.82)
         several = len(found.best.candidates) > 1
         with found.work_of_its_own(RESERVED):

@@ -11,7 +11,8 @@ import models
 from diagnosis import diagnose
 from diagnosis.errors.model import calibrated
 from diagnosis.fit.setup import measure
-from diagnosis.search import weighing
+from diagnosis.progress import silent
+from diagnosis.search import beginnings, weighing
 from diagnosis.search.budget import ENDED, Budget
 from diagnosis.search.candidates import candidates
 from diagnosis.search.found import Search
@@ -48,7 +49,7 @@ def test_work_of_its_own_is_no_more_than_what_all_searches_have_together() -> No
     assert search.not_tried == {"tilt": ENDED}
 
 
-def test_other_sizes_are_left_out_once_the_work_of_an_answer_is_done(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_stages_are_left_out_once_the_work_of_an_answer_is_done(monkeypatch: pytest.MonkeyPatch) -> None:
     measured = measure(SPECIMEN, [recording(f"train_{k}", k, {"viscous_damping": {"rate": 0.15}}) for k in (1, 2)])
     fitted, errors = calibrated(SPECIMEN, measured)
     tried = tuple(c for c in candidates(measured, SPECIMEN) if c.name in TRIED)
@@ -69,6 +70,10 @@ def test_other_sizes_are_left_out_once_the_work_of_an_answer_is_done(monkeypatch
     found.whole = Budget(-1.0)
     weighing.weigh_again(found)
     assert not asked and found.not_tried["other sizes of what was found"] == ENDED
+    monkeypatch.setattr(beginnings, "_settled", lambda _: False)
+    monkeypatch.setattr(beginnings, "seconds", lambda *_: pytest.fail("a screen"))
+    assert not list(beginnings.beside(found, silent))
+    assert found.not_tried["effects that begin or end"] == ENDED
 
 
 def test_an_answer_is_given_however_little_work_it_may_take(monkeypatch: pytest.MonkeyPatch) -> None:
