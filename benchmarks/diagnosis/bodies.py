@@ -8,6 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
+from benchmarks.diagnosis.effects import Hidden
 from benchmarks.diagnosis.open_laws import Law
 from benchmarks.diagnosis.scene import FloatArray, Unsuitable
 from models.model import Model
@@ -20,24 +21,6 @@ FALLEN = 1.0
 Values = Mapping[str, float]
 Motion = tuple[str, Shaking, float]
 """Name and motion of a recording, and the largest rotation (rad) of the lower body without effects."""
-
-
-@dataclass(frozen=True)
-class Hidden:
-    """A row of the catalogue: class, primary parameter, its null, the ends of its range, how the others are drawn."""
-
-    effect_class: str
-    parameter: str
-    null: float
-    ends: tuple[float, ...]
-    sensor: bool = False
-    shapes: Callable[[np.random.Generator], dict[str, float]] = lambda rng: {}
-
-    def at(self, share: float, end: float) -> float:
-        """The parameter at a share of the way from its null to an end; of its inverse where the null is infinite."""
-        if np.isinf(self.null):
-            return end / share if share > 0.0 else self.null
-        return self.null + share * (end - self.null)
 
 
 class Apart(Protocol):

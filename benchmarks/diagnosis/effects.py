@@ -1,4 +1,4 @@
-"""What may be hidden in a case of one block: the catalogue's rows, with how a case draws them.
+"""What may be hidden in a case: rows of the catalogue, with how a case draws them; here those of one block.
 
 The ranges are those of the catalogue (see `docs`), written down a second time on purpose: the benchmark
 does not read what the diagnosis declares, and a test holds one against the other.

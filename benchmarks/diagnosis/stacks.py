@@ -11,8 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchmarks.diagnosis import bases, rigid_stack, shakings, suite, two_bodies
-from benchmarks.diagnosis.bodies import HELD, Bodies, Hidden, Motion, Values
+from benchmarks.diagnosis.bodies import HELD, Bodies, Motion, Values
 from benchmarks.diagnosis.cases import Case
+from benchmarks.diagnosis.effects import Hidden
 from benchmarks.diagnosis.open_laws import Law
 from benchmarks.diagnosis.scene import FloatArray, Unsuitable
 from models.shaking import Shaking
@@ -31,24 +32,25 @@ NARROWEST = 0.6
 FEWEST_IMPACTS = 8
 """Of both joints."""
 
-CATALOGUE: dict[str, Hidden] = {
-    "restitution": Hidden("restitution", "factor_on_housner", 1.0, (0.5, 1.1)),
-    "pivot_inset": Hidden("contact_geometry", "inset_over_half_width", 0.0, (0.35,)),
-    "viscous_damping": Hidden("viscous_damping", "rate", 0.0, (1.0,)),
-    "coulomb_damping": Hidden("coulomb_damping", "over_m_g_b", 0.0, (0.1,)),
-    "tilt": Hidden("tilt", "tilt", 0.0, (-0.05, 0.05)),
-    "eccentricity": Hidden("eccentricity", "offset_over_half_width", 0.0, (-0.2, 0.2)),
-    "table_pitch": Hidden(
-        "table_pitch", "pitch_per_acceleration", 0.0, (-0.003, 0.003),
-        shapes=lambda rng: {"low_pass_hz": float(rng.uniform(4.0, 20.0))},
+ROWS = (
+    Hidden("restitution", "restitution", "factor_on_housner", (0.5, 1.1), 1.0),
+    Hidden("pivot_inset", "contact_geometry", "inset_over_half_width", (0.35,)),
+    Hidden("viscous_damping", "viscous_damping", "rate", (1.0,)),
+    Hidden("coulomb_damping", "coulomb_damping", "over_m_g_b", (0.1,)),
+    Hidden("tilt", "tilt", "tilt", (-0.05, 0.05)),
+    Hidden("eccentricity", "eccentricity", "offset_over_half_width", (-0.2, 0.2)),
+    Hidden(
+        "table_pitch", "table_pitch", "pitch_per_acceleration", (-0.003, 0.003),
+        shapes=lambda rng, _: {"low_pass_hz": float(rng.uniform(4.0, 20.0))},
     ),
-    "gain": Hidden("gain", "gain", 0.0, (-0.12, 0.12), sensor=True),
-    "offset": Hidden("offset", "offset_over_peak", 0.0, (-0.15, 0.15), sensor=True),
-    "delay": Hidden("delay", "delay", 0.0, (0.04,), sensor=True),
-    "base_gain": Hidden("base_gain", "gain", 0.0, (-0.15, 0.15), sensor=True),
-    "accelerometer_offset": Hidden("tilt", "offset", 0.0, (-0.5, 0.5), sensor=True),
-}  # fmt: skip
+    Hidden("gain", "gain", "gain", (-0.12, 0.12), sensor=True),
+    Hidden("offset", "offset", "offset_over_peak", (-0.15, 0.15), sensor=True),
+    Hidden("delay", "delay", "delay", (0.04,), sensor=True),
+    Hidden("base_gain", "base_gain", "gain", (-0.15, 0.15), sensor=True),
+    Hidden("accelerometer_offset", "tilt", "offset", (-0.5, 0.5), sensor=True),
+)  # fmt: skip
 """Seven mechanisms and five instruments; without the vertical acceleration, which asks for a channel of its own."""
+CATALOGUE = {row.name: row for row in ROWS}
 
 
 @dataclass(frozen=True)

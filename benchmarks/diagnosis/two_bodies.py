@@ -117,7 +117,8 @@ def _sized(
 ) -> tuple[str, dict[str, float]]:
     """The effect at nominal size, by bisection between shares of the way to the end of its range."""
     row = of.catalogue[name]
-    end, shapes, peak = float(rng.choice(row.ends)), row.shapes(rng), drawn[0][2]
+    end, peak = float(rng.choice(row.ends)), drawn[0][2]
+    shapes = row.shapes(rng, peak)
 
     def at(share: float) -> dict[str, float]:
         return {row.parameter: row.at(share, end), **shapes}

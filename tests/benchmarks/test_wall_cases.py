@@ -26,7 +26,7 @@ def test_every_effect_is_asked_for_as_often_and_stands_in_the_catalogue(of: Modu
     asked = of.designs(7)
     assert Counter(design.kind for design in asked) == two_bodies.COUNTS
     singles = Counter(design.names[0] for design in asked if design.kind == "single")
-    assert set(singles) == set(of.CATALOGUE) and len(set(singles.values())) == 1
+    assert set(singles) == set(of.CATALOGUE) and max(singles.values()) - min(singles.values()) <= 1
     for name, row in of.CATALOGUE.items():
         known = (INSTRUMENTS if row.sensor else of.MODEL.mechanisms)[name]
         assert known.effect_class == row.effect_class and known.parameter(row.parameter).null == row.null
