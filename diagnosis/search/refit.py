@@ -20,7 +20,7 @@ from models.base import FloatArray
 RECOUNTS = 8
 SHAPES, QUICK = 5, 6
 """Values of a shape tried anew, and the iterations of each."""
-BEHIND = 30.0
+BETWEEN_STARTS = 30.0
 """What a refit from another start may promise to end behind the best before it."""
 SIZES = (0.4, 1.6, 2.5)
 """Sizes of an effect tried anew, over the fitted one."""
@@ -98,7 +98,7 @@ def from_starts(
     """
     fits: list[Explanation] = []
     for explanation, start in product(explanations, starts):
-        near = min((fitted.loss + BEHIND for fitted in fits), default=most)
+        near = min((fitted.loss + BETWEEN_STARTS for fitted in fits), default=most)
         fits.append(extend(explanation, candidate, start, QUICK, min(near, most)))
     return fits
 

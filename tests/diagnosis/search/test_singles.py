@@ -128,7 +128,7 @@ def test_what_is_far_behind_a_single_that_explains_everything_is_not_fitted_to_i
         return one
 
     without_restarts(monkeypatch)
-    monkeypatch.setattr(select, "extend", watched)
+    monkeypatch.setattr(refit, "extend", watched)
     monkeypatch.setattr(weighing, "by_white_noise", by_white)
     monkeypatch.setattr(select, "from_other", lambda one, *_: one)
     monkeypatch.setattr(select, "with_memory", lambda one: one)
@@ -150,7 +150,7 @@ def test_a_base_that_declared_numbers_do_not_better_stays_and_singles_begin_at_b
 
     (late,) = (e for e in free.singles if e.names == ("delay",))
     off = stuck(free.base)
-    monkeypatch.setattr(select, "extend", watched)
+    monkeypatch.setattr(refit, "extend", watched)
     monkeypatch.setattr(select, "further", lambda declared: replace(declared, fitted=replace(off.fitted, loss=1e9)))
     found = replace(free, base=off, candidates=late.candidates, singles=[])
     refit_singles(found, silent)
@@ -289,7 +289,10 @@ def test_the_strongest_of_the_screen_come_before_what_has_no_slope_there() -> No
         joints: str = ""
 
     ordered = [Law("maxwell", "both"), Law("maxwell", "base"), *(Law(x) for x in ("bouc_wen", "gain", "locking"))]
-    entries: dict[Law, Any] = {one: SimpleNamespace(candidate=one, work=1.0) for one in (*ordered, Law("sliding"))}
+    entries: dict[Law, Any] = {
+        one: SimpleNamespace(candidate=one, work=1.0, statistic=1000.0 if k < 2 else 100.0)
+        for k, one in enumerate((*ordered, Law("sliding")))
+    }
     late = [entries[Law("locking")], entries[Law("sliding")]]
     found = in_turn([entries[one] for one in ordered], late, list(entries.values()))
     names = [(entry.candidate.name, entry.candidate.joints) for entry in found]
@@ -298,3 +301,15 @@ def test_the_strongest_of_the_screen_come_before_what_has_no_slope_there() -> No
     entries[Law("locking")].work = 100.0
     found = in_turn([entries[one] for one in ordered], late, list(entries.values()))
     assert found[-1] is entries[Law("locking")]
+
+
+def test_at_most_four_that_are_strong_come_before_what_has_no_slope() -> None:
+    class Effect(NamedTuple):
+        name: str
+
+    entries: list[Any] = [
+        SimpleNamespace(candidate=Effect(name), work=100.0 if name == "c" else 1.0, statistic=1000.0 - 10.0 * k)
+        for k, name in enumerate("abcdef")
+    ]
+    found = in_turn(entries[:5], entries[5:], entries)
+    assert "".join(entry.candidate.name for entry in found) == "abcdfe"
