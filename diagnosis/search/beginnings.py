@@ -90,8 +90,7 @@ def _begun(found: Search, start: Explanation) -> Search | None:
 
 def _one_of_several(found: Search, best: Explanation) -> Search | None:
     """The search with one of several effects in a spell, where what they leave is not the same everywhere."""
-    through = found.measured.stretches is not None
-    if through or len(found.measured.windows) < FEWEST_WINDOWS or not found.measured.identification.forces:
+    if len(found.measured.windows) < FEWEST_WINDOWS or not found.measured.identification.forces:
         return None
     if not found.tested(best).flags(least(found, best)):
         return None

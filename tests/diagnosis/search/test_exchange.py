@@ -145,6 +145,7 @@ def test_an_exchange_that_is_right_is_not_given_up(found: Search, monkeypatch: p
     """However far off it starts, the wrong effect just taken out: it ends where it does without a bound."""
     within: list[float] = []
     bounds: list[float] = []
+    asked: list[float] = []
 
     def bounded_by(*how: Any) -> Explanation:
         bounds.append(how[4] if len(how) > 4 else np.inf)
@@ -152,7 +153,10 @@ def test_an_exchange_that_is_right_is_not_given_up(found: Search, monkeypatch: p
 
     def noted(*how: Any) -> list[Explanation]:
         within.append(how[-1])
-        bounded, free = extended(*how), extended(*how[:-1])
+        begun = len(bounds)
+        bounded = extended(*how)
+        asked.extend(bounds[begun:])
+        free = extended(*how[:-1])
         right = [[e for e in each if set(e.names) == set(TRUE)] for each in (bounded, free)]
         assert len(right[0]) == len(right[1])
         for one, other in zip(*right, strict=True):
@@ -163,8 +167,8 @@ def test_an_exchange_that_is_right_is_not_given_up(found: Search, monkeypatch: p
     monkeypatch.setattr(refit, "extend", bounded_by)
     monkeypatch.setattr(beside, "again", lambda one: one)  # the few best would be taken further all the same
     exchanged_from(found, taken(found, "tilt", "velocity_restitution"))
-    finite = {bound for bound in bounds if np.isfinite(bound)}  # lower ones where another explains everything
-    assert within and set(within) <= finite
+    finite = {bound for bound in asked if np.isfinite(bound)}  # lower ones where another explains everything
+    assert within and set(within) <= finite and max(finite) == max(within)
 
 
 def test_refits_far_from_what_stands_are_given_up(found: Search, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -57,8 +57,8 @@ def test_a_wall_that_has_rocked_stays_displaced_and_one_that_has_not_lifted_does
         slip = channels["displacement_1_x"]
         found.append((abs(slip[-1]), float(np.max(np.abs(slip)))))
     (still, size), (stays, most) = found
-    assert still < 1e-5 * size
-    assert 1e-3 * most < stays < 0.1 * most
+    assert still < 1e-5 * size  # what has not died out yet
+    assert stays / most > 100.0 * still / size
 
 
 def test_where_it_stays_the_sheared_layers_are_in_balance() -> None:
