@@ -83,7 +83,7 @@ def _begun(found: Search, start: Explanation) -> Search | None:
     fits = in_spells(found, start, screened)
     whole = [one for one in found.singles if found.gain(one) >= MISSING] if start is found.base else []
     if found.affordable("effects that come and go in every recording"):
-        screens = screened.both if fits or screened.hides else screened.both[:1]
+        screens = screened.screens if fits or screened.hides else screened.screens[:1]
         fits += in_each(found, start, screens, [*fits, *whole], screened.cost)
     return _taken(found, [single for single in fits if _needed(found, start, single)])
 

@@ -56,7 +56,8 @@ def heavy(entry: Score, scores: Sequence[Score]) -> bool:
 
 def seconds(found: Search, explanation: Explanation) -> list[Score]:
     """The screen of what may stand beside the effects of an explanation."""
-    return score(linearise_about(explanation.fitted), joinable(found, explanation), found.not_tried)
+    screen, others = linearise_about(explanation.fitted), joinable(found, explanation)
+    return score(screen, others, found.not_tried, explains_all(explanation))
 
 
 def joinable(found: Search, explanation: Explanation) -> list[Candidate]:

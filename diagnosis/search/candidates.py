@@ -67,6 +67,12 @@ class Candidate:
                 null[k] = low + share * (high - low)
                 yield null
 
+    def shapes(self) -> Iterator[FloatArray]:
+        """Coordinates (d,) at which the effect is off, what shapes it spread over its range."""
+        for rest in product(*(_spread(u) for u in self.unknowns[1:])):
+            if rest:
+                yield np.array([self.null[0], *rest])
+
     def grid(self, by_threshold: bool = False) -> Iterator[FloatArray]:
         """Coordinates (d,) spread over the range, on both sides of the null; finely for a ``by_threshold`` effect."""
         null = self.null

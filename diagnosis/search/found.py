@@ -243,12 +243,21 @@ def misfit_per_sample(explanation: Explanation) -> float:
     return float(np.mean(each[: max(1, int(0.9 * each.size))]))
 
 
-def left_over_white_noise(explanation: Explanation, errors: Errors) -> float:
-    """Misfit per sample over the white noise of the sensors and that of the base motion alone."""
+def over_white_noise(explanation: Explanation, errors: Errors) -> Explanation:
+    """The same fit with white noise of the sensors and the noise of the base motion as its only errors."""
     fitted = explanation.fitted
     white = sensor_noise_only(fitted.misfit.predictor).with_columns(errors.base)
-    seen = replace(fitted, misfit=replace(fitted.misfit, whitening=white))
-    return misfit_per_sample(replace(explanation, fitted=seen))
+    return replace(explanation, fitted=replace(fitted, misfit=replace(fitted.misfit, whitening=white)))
+
+
+def left_over_white_noise(explanation: Explanation, errors: Errors) -> float:
+    """Misfit per sample over the white noise of the sensors and that of the base motion alone."""
+    return misfit_per_sample(over_white_noise(explanation, errors))
+
+
+def passes_for_white(explanation: Explanation, errors: Errors) -> bool:
+    """Whether white noise explains what is left in every window: other errors then hold nothing that is missing."""
+    return explains_all(over_white_noise(explanation, errors))
 
 
 def adequate(explanation: Explanation) -> bool:

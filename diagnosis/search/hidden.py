@@ -26,7 +26,7 @@ from diagnosis.search.beside import (
 )
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.details import least
-from diagnosis.search.found import ADEQUATE, MISSING, Search, adjusted, left_over_white_noise, survives
+from diagnosis.search.found import MISSING, Search, adjusted, passes_for_white, survives
 from diagnosis.search.refit import QUICK, Explanation, best_of, extend, without
 from diagnosis.search.screen import Score, at
 from diagnosis.search.weighing import by_white_noise, weigh_again
@@ -52,7 +52,7 @@ def hidden_beside(found: Search, best: Explanation, fits: Sequence[Explanation])
 
     None where what is left of ``best`` passes for white noise, for then its errors hold nothing.
     """
-    if left_over_white_noise(best, found.errors) < ADEQUATE:
+    if passes_for_white(best, found.errors):
         return []
     if not found.affordable("what the errors hold beside what was found"):
         return []

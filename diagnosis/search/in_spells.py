@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from diagnosis.fit.linearisation import Linearisation, linearise_about
 from diagnosis.search.asked import asked_for
 from diagnosis.search.candidates import Candidate
-from diagnosis.search.found import MISSING, Search, adjusted
+from diagnosis.search.found import MISSING, Search, adjusted, passes_for_white
 from diagnosis.search.null import null_distribution
 from diagnosis.search.refit import QUICK, Explanation, best_of, extend
 from diagnosis.search.runs import InRuns, chance, in_runs, runs
@@ -38,33 +38,38 @@ MOST, MOST_HIDDEN, MOST_SINGLES, THOROUGH = 6, 3, 2, 3
 
 @dataclass(frozen=True)
 class Screened:
-    """The screen of an explanation under its errors and against white noise, and the price of a spell.
+    """The screen of an explanation under its errors, and against white noise unless that explains all that is left.
 
+    ``ends`` (R, 2): runs of windows; ``cost``: the price of a spell.
     Scatter of events holds much of a law of them that changes, and so white noise shows it.
     """
 
-    both: tuple[tuple[Linearisation, Sequence[Score]], ...]
+    screens: tuple[tuple[Linearisation, Sequence[Score]], ...]
     ends: NDArray[np.int64]
     cost: float
 
     @cached_property
     def in_runs(self) -> tuple[list[InRuns], ...]:
         """All mechanisms in all runs, by both screens."""
-        return tuple(in_runs(screen, scores, self.ends) for screen, scores in self.both)
+        return tuple(in_runs(screen, scores, self.ends) for screen, scores in self.screens)
 
     @cached_property
     def hides(self) -> bool:
         """Whether white noise shows more than chance brings under the errors as they are, which may be coloured."""
-        (screen, _), (white, scores) = self.both
+        if len(self.screens) < 2:
+            return False
+        (screen, _), (white, scores) = self.screens
         largest = max((float(one.statistic.max(initial=0.0)) for one in self.in_runs[1]), default=0.0)
         return largest > chance(white, scores, self.ends, screen)
 
     @classmethod
     def of(cls, found: Search, start: Explanation, scores: Sequence[Score]) -> Screened:
         screen = linearise_about(start.fitted)
-        white = against_white_noise(found, start, [one.candidate for one in scores])
+        screens = [(screen, scores)]
+        if not passes_for_white(start, found.errors):
+            screens.append(against_white_noise(found, start, [one.candidate for one in scores]))
         ends = runs(len(found.measured.windows))
-        return cls(((screen, scores), white), ends, price_of_a_spell(screen, scores, ends))
+        return cls(tuple(screens), ends, price_of_a_spell(screen, scores, ends))
 
 
 def price_of_a_spell(screen: Linearisation, scores: Sequence[Score], ends: NDArray[np.int64]) -> float:
@@ -75,9 +80,11 @@ def price_of_a_spell(screen: Linearisation, scores: Sequence[Score], ends: NDArr
 def in_spells(found: Search, start: Explanation, screened: Screened) -> list[Explanation]:
     """The explanation with one more mechanism, in its spell, the best first; none that gains too little."""
     ends, cost = screened.ends, screened.cost
-    plain, white = screened.in_runs
+    plain, *white = screened.in_runs
     fits = list(quick(found, start, plain, ends, cost))
-    hidden = list(quick(found, start, white, ends, cost, MOST_HIDDEN)) if fits or screened.hides else []
+    hidden: list[Explanation] = []
+    if white and (fits or screened.hides):
+        hidden = list(quick(found, start, white[0], ends, cost, MOST_HIDDEN))
     fits += hidden
     if start is found.base:
         strongest = (one for one in found.singles[:MOST_SINGLES] if found.affordable(at_an_instant(one.names[0])))

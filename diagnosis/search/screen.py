@@ -15,7 +15,7 @@ parameters and states answering linearly.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -28,6 +28,9 @@ from diagnosis.search.spells import in_spell
 from models.base import FloatArray
 from models.errors import InputError
 from models.runs import DONE
+
+Reduced = Callable[[Sequence[FloatArray]], FloatArray]
+"""Residuals (n, W, M) off the states at n coordinates of a candidate."""
 
 NO_SLOPE = 1e-12
 """Information of a derivative from which down there is none."""
@@ -67,26 +70,59 @@ class Score:
 
 
 def score(
-    screen: Linearisation, candidates: Sequence[Candidate], not_tried: dict[str, str] | None = None
+    screen: Linearisation,
+    candidates: Sequence[Candidate],
+    not_tried: dict[str, str] | None = None,
+    small: bool = False,
 ) -> list[Score]:
-    """Statistics of all candidates, strongest first; why the model refuses the others goes into ``not_tried``."""
+    """Statistics of all candidates, strongest first; why the model refuses the others goes into ``not_tried``.
+
+    ``small``: any effect can only be small, and derivatives are enough where there are any.
+    """
     base = screen.fitted.misfit.point(screen.fitted.u, screen.fitted.states)
     found = []
     for candidate in candidates:
         try:
-            found.append(_score_one(screen, base, candidate))
+            found.append(_score_one(screen, base, candidate, small))
         except InputError as refusal:  # it does not act together with a mechanism that is switched on
             if not_tried is not None:
                 not_tried.setdefault(candidate.name, str(refusal))
     return sorted(found, key=lambda s: -s.statistic)
 
 
-def _score_one(screen: Linearisation, base: Point, candidate: Candidate) -> Score:
+def _score_one(screen: Linearisation, base: Point, candidate: Candidate, small: bool) -> Score:
     misfit = in_spell(screen.fitted.misfit, candidate.name, candidate.spell)
 
     def reduced(trials: Sequence[FloatArray]) -> FloatArray:
         return screen.reduced(misfit.residuals([at(base, candidate, u) for u in trials]))
 
+    return (_by_slopes(screen, candidate, reduced) if small else None) or _by_values(screen, candidate, reduced)
+
+
+def _by_slopes(screen: Linearisation, candidate: Candidate, reduced: Reduced) -> Score | None:
+    """The largest score over the shapes of an effect; None where derivatives say too little."""
+    low, high = candidate.unknowns[0].bounds
+    begin, runs = DONE.steps, 0
+    for nulls in ([candidate.null, *candidate.shapes()], list(candidate.nulls())):
+        pairs = [_near(null, low, high) for null in nulls]
+        off = reduced([u for pair in pairs for u in pair])
+        runs += len(off)
+        slopes = [_slope(off[2 * k : 2 * k + 2], pair) for k, pair in enumerate(pairs)]
+        information = [screen.product(slope, slope) for slope in slopes]
+        faint = max(information) * _reach(candidate) ** 2 <= FAINT
+        if not faint or len(candidate.unknowns) == 1:
+            break
+    if max(information) <= NO_SLOPE or (faint and len(candidate.unknowns) == 1):
+        return None
+    found = [_step(screen, *one, low, high) for one in zip(slopes, information, nulls, strict=True)]
+    order = sorted(range(len(found)), key=lambda k: -found[k][0])
+    starts = tuple(found[k][1] for k in order[:2] if found[k][0] > 0.0)
+    first, work = order[0], (DONE.steps - begin) / runs
+    return Score(candidate, found[first][0], starts, slopes[first], True, _side(candidate), work, nulls[first])
+
+
+def _by_values(screen: Linearisation, candidate: Candidate, reduced: Reduced) -> Score:
+    """The larger of the score and of the largest gain at values over the range of an effect and of its shapes."""
     null, trials = candidate.null, list(candidate.grid())
     low, high = candidate.unknowns[0].bounds
     near, begin = _near(null, low, high), DONE.steps
@@ -94,8 +130,7 @@ def _score_one(screen: Linearisation, base: Point, candidate: Candidate) -> Scor
     work = (DONE.steps - begin) / len(off)
     derivative, off = _slope(off[:2], near), off[2:]
     information = screen.product(derivative, derivative)
-    reach = max(high - null[0], null[0] - low)
-    if information * reach**2 <= FAINT and len(null) > 1:
+    if information * _reach(candidate) ** 2 <= FAINT and len(null) > 1:
         nulls = [null, *candidate.nulls()]
         pairs = [_near(one, low, high) for one in nulls]
         found = reduced([u for pair in pairs for u in pair])
@@ -103,27 +138,46 @@ def _score_one(screen: Linearisation, base: Point, candidate: Candidate) -> Scor
         most = int(np.argmax([screen.product(slope, slope) for slope in slopes]))
         null, derivative = nulls[most], slopes[most]
         information = screen.product(derivative, derivative)
-    best, start = 0.0, null
+    best, start = _step(screen, derivative, information, null, low, high)
     if information <= NO_SLOPE:
         trials = list(candidate.grid(by_threshold=True))
         off = reduced(trials)
-    else:
-        step = -screen.scores_with_residual(derivative) / information
-        if null[0] < high if step > 0.0 else null[0] > low:
-            best = step**2 * information
-            start = null.copy()
-            start[0] = np.clip(null[0] + step, low, high)
     gains = np.array([_gain(screen, column) for column in off])
     order = np.argsort(-gains)[:2]
     starts = [trials[int(i)] for i in order if gains[i] > 0.0]
     if best > 0.0:
         starts.insert(0 if not gains.size or best * 0.8 > gains[order[0]] else 1, start)
-    statistic = max(best if np.isfinite(best) else 0.0, float(gains.max(initial=0.0)))
+    statistic = max(best, float(gains.max(initial=0.0)))
     if information > NO_SLOPE or not order.size:
-        side = 0 if not candidate.one_sided else 1 if null[0] < high else -1
-        return Score(candidate, statistic, tuple(starts[:2]), derivative, True, side, work, null)
+        return Score(candidate, statistic, tuple(starts[:2]), derivative, True, _side(candidate), work, null)
     first = int(order[0])
     return Score(candidate, statistic, tuple(starts[:2]), off[first] - screen.residual, False, 1, work, trials[first])
+
+
+def _step(
+    screen: Linearisation, derivative: FloatArray, information: float, null: FloatArray, low: float, high: float
+) -> tuple[float, FloatArray]:
+    """Score statistic and the coordinates (d,) of the best step from a null; 0 where that leaves the range."""
+    if information <= NO_SLOPE:
+        return 0.0, null
+    step = -screen.scores_with_residual(derivative) / information
+    statistic = step**2 * information
+    if not np.isfinite(statistic) or (null[0] >= high if step > 0.0 else null[0] <= low):
+        return 0.0, null
+    start = null.copy()
+    start[0] = np.clip(null[0] + step, low, high)
+    return float(statistic), start
+
+
+def _side(candidate: Candidate) -> int:
+    """The sign that an amplitude along the derivative may have, 0 for either."""
+    return 0 if not candidate.one_sided else 1 if candidate.null[0] < candidate.unknowns[0].bounds[1] else -1
+
+
+def _reach(candidate: Candidate) -> float:
+    """How far the effect's parameter can go from its null."""
+    low, high = candidate.unknowns[0].bounds
+    return float(max(high - candidate.null[0], candidate.null[0] - low))
 
 
 def _near(null: FloatArray, low: float, high: float) -> tuple[FloatArray, FloatArray]:

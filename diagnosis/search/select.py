@@ -36,6 +36,7 @@ from diagnosis.search.found import (
     adjusted,
     enough,
     explains_all,
+    passes_for_white,
     survives,
     within_reach,
 )
@@ -147,12 +148,12 @@ def refit_singles(found: Search, progress: Progress) -> None:
     """
     begins = starting_points(found)
     opened = linearise_about(found.base.fitted)
-    found.scores = score(opened, firsts(found.candidates), found.not_tried)
+    found.scores = score(opened, firsts(found.candidates), found.not_tried, explains_all(found.base))
     found.null = null_distribution(opened, found.scores)
     fewest = FEWEST_ADEQUATE if adequate(found.base) else FEWEST
     wanted = worth_a_refit(found.scores, fewest, SHARE_OF_FIRST)[:MOST]
     late: list[Candidate] = []
-    if found.measured.stretches is None:
+    if found.measured.stretches is None and not passes_for_white(found.base, found.errors):
         white, scores = against_white_noise(found, found.base, firsts(found.candidates))
         wanted += hidden_by_errors(scores, {entry.candidate for entry in wanted}, fewest, SHARE_OF_FIRST)
         if misfits(white.fitted):
@@ -256,7 +257,7 @@ def led_by(found: Search, leader: Explanation) -> bool:
         return False
     found.base = restarted
     opened = linearise_about(restarted.fitted)
-    found.scores = score(opened, firsts(found.candidates), found.not_tried)
+    found.scores = score(opened, firsts(found.candidates), found.not_tried, explains_all(found.base))
     found.null = null_distribution(opened, found.scores)
     fitted = {c for single in found.singles for c in single.candidates}
     again_worth = worth_a_refit([s for s in found.scores if s.candidate in fitted], FEWEST_ADEQUATE, SHARE_OF_FIRST)

@@ -16,7 +16,7 @@ from diagnosis.fit.solver import Fitted, fit
 from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.search.budget import ENDED
 from diagnosis.search.candidates import Candidate
-from diagnosis.search.found import STUCK, Search, adjusted, enough, within_reach
+from diagnosis.search.found import STUCK, Search, adjusted, enough, passes_for_white, within_reach
 from diagnosis.search.refit import Explanation, best_of, from_states_of, further, resized, ways, without
 
 NEAR, OWN = 0.3, 0.4
@@ -47,8 +47,10 @@ def as_white_noise(fitted: Fitted, errors: Errors) -> Fitted:
 def by_white_noise(explanation: Explanation, errors: Errors) -> Explanation:
     """The explanation refitted as if the sensors' errors were white, then under these errors, if that is better.
 
-    Errors that hold part of an effect make its valley flat; white noise leads into it.
+    Errors that hold part of an effect make its valley flat; white noise leads into it, unless that is all there is.
     """
+    if passes_for_white(explanation, errors):
+        return explanation
     f, led = explanation.fitted, as_white_noise(explanation.fitted, errors)
     back = replace(explanation, fitted=fit(f.misfit, led.u, led.states))
     return min(explanation, back, key=lambda e: e.loss)
