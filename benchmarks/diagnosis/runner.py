@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, wait
+from concurrent.futures import Future
 from pathlib import Path
 
 from benchmarks.diagnosis import bases, stacks, walls
@@ -12,7 +11,7 @@ from benchmarks.diagnosis import cases as blocks
 from benchmarks.diagnosis.files import write_case
 from benchmarks.diagnosis.suite import CaseDesign
 from diagnosis.prove.answers import Answering, answer, diagnosed, read_json
-from diagnosis.prove.pool import processes
+from diagnosis.prove.pool import in_turn, processes
 from diagnosis.prove.scores import Scored
 
 
@@ -43,20 +42,15 @@ def run_all(
     answering: Answering = diagnosed,
 ) -> None:
     """Run the cases in order; none is begun after ``minutes``. ``answering`` must be a module's function."""
-    end = time.monotonic() + 60.0 * minutes
     waiting = [w for w in designs if not (answers / f"{w.label}.json").is_file()]
     say(f"{len(designs) - len(waiting)} of {len(designs)} cases were answered before")
     with processes(jobs) as pool:
-        running: dict[Future[str], CaseDesign] = {}
-        while waiting or running:
-            while waiting and len(running) < jobs and time.monotonic() < end:
-                design = waiting.pop(0)
-                running[pool.submit(run_case, design, seed, cases, answers, answering)] = design
-            if not running:
-                return
-            for done in wait(running, return_when=FIRST_COMPLETED).done:
-                design = running.pop(done)
-                say(f"{design.label} {design.kind} {' + '.join(design.names)}: {_outcome(done)}")
+
+        def submit(design: CaseDesign) -> Future[str]:
+            return pool.submit(run_case, design, seed, cases, answers, answering)
+
+        for design, done in in_turn(submit, waiting, jobs, minutes):
+            say(f"{design.label} {design.kind} {' + '.join(design.names)}: {_outcome(done)}")
 
 
 def _outcome(done: Future[str]) -> str:

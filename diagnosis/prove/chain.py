@@ -6,9 +6,8 @@ answers.json beside them, ``{"cases": {"case_NN": {"kind", "effects", "recording
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
-from concurrent.futures import as_completed
+from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 from typing import Any
@@ -16,7 +15,7 @@ from typing import Any
 from diagnosis.prove import figures, report
 from diagnosis.prove.answers import Answering, answer, check_same, diagnosed, fingerprint, read_json, sha256, write_json
 from diagnosis.prove.cases import check_answer, check_files, check_key
-from diagnosis.prove.pool import processes
+from diagnosis.prove.pool import in_turn, processes
 from diagnosis.prove.scores import Scored
 from grids.files import parse_toml, read_text
 from models.errors import InputError
@@ -82,22 +81,24 @@ def prove(
             check_answer(kept, content)
             check_same(kept, content, path)
     say(f"{len(chosen) - len(waiting)} of {len(chosen)} cases were answered before")
-    end = time.monotonic() + 60.0 * minutes
+    begun: list[Path] = []
     with processes(jobs) as pool:
-        while waiting and time.monotonic() < end:
-            batch, waiting = waiting[:jobs], waiting[jobs:]
-            running = {pool.submit(answer, path, answers / f"{path.name}.json", answering): path for path in batch}
-            for done in as_completed(running):
-                try:
-                    found = done.result()
-                except BrokenProcessPool:
-                    lost = ", ".join(path.name for path in batch)
-                    raise InputError(
-                        f"a process was killed while it answered one of {lost} (is memory short?); answers are kept "
-                        f"in {answers}: start again, with --jobs 1 where memory is short."
-                    ) from None
+
+        def submit(path: Path) -> Future[dict[str, Any]]:
+            begun.append(path)
+            return pool.submit(answer, path, answers / f"{path.name}.json", answering)
+
+        try:
+            for path, done in in_turn(submit, waiting, jobs, minutes):
+                found = done.result()
                 why = f" ({found['statement'].strip().splitlines()[-1]})" if found["verdict"] == "failed" else ""
-                say(f"{running[done].name}: {found['verdict']}{why}, {found['seconds']:.0f} s")
+                say(f"{path.name}: {found['verdict']}{why}, {found['seconds']:.0f} s")
+        except BrokenProcessPool:
+            lost = ", ".join(path.name for path in begun if not (answers / f"{path.name}.json").is_file())
+            raise InputError(
+                f"a process was killed while it answered one of {lost} (is memory short?); answers are kept "
+                f"in {answers}: start again, with --jobs 1 where memory is short."
+            ) from None
     if left := [path for path in chosen if not (answers / f"{path.name}.json").is_file()]:
         say(f"{len(left)} cases are left: start again to go on")
         return {}

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import multiprocessing
-from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor
+import time
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from contextlib import contextmanager
+from typing import TypeVar
 
 from study.schedulers import start_worker
+
+Case = TypeVar("Case")
+Found = TypeVar("Found")
 
 
 @contextmanager
@@ -26,3 +31,19 @@ def processes(jobs: int) -> Iterator[ProcessPoolExecutor]:
             for worker in set(multiprocessing.active_children()) - others:
                 worker.terminate()
             raise
+
+
+def in_turn(
+    submit: Callable[[Case], Future[Found]], cases: Iterable[Case], jobs: int, minutes: float
+) -> Iterator[tuple[Case, Future[Found]]]:
+    """Yields the cases as they are done, ``jobs`` at a time in their order; none is begun after ``minutes``."""
+    end = time.monotonic() + 60.0 * minutes
+    waiting, running = list(cases), dict[Future[Found], Case]()
+    while waiting or running:
+        while waiting and len(running) < jobs and time.monotonic() < end:
+            case = waiting.pop(0)
+            running[submit(case)] = case
+        if not running:
+            return
+        for done in wait(running, return_when=FIRST_COMPLETED).done:
+            yield running.pop(done), done
