@@ -68,9 +68,10 @@ class Candidate:
                 yield null
 
     def shapes(self) -> Iterator[FloatArray]:
-        """Coordinates (d,) at which the effect is off, what shapes it spread over its range."""
+        """Coordinates (d,) at which the effect is off: the null, then what shapes it spread over its range."""
+        yield self.null
         for rest in product(*(_spread(u) for u in self.unknowns[1:])):
-            if rest:
+            if not np.array_equal(rest, self.null[1:]):
                 yield np.array([self.null[0], *rest])
 
     def grid(self, by_threshold: bool = False) -> Iterator[FloatArray]:

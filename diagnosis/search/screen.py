@@ -100,24 +100,19 @@ def _score_one(screen: Linearisation, base: Point, candidate: Candidate, small: 
 
 
 def _by_slopes(screen: Linearisation, candidate: Candidate, reduced: Reduced) -> Score | None:
-    """The largest score over the shapes of an effect; None where derivatives say too little."""
+    """The largest score over the shapes of an effect; None without a derivative, or with a faint one and no shapes."""
     low, high = candidate.unknowns[0].bounds
-    begin, runs = DONE.steps, 0
-    for nulls in ([candidate.null, *candidate.shapes()], list(candidate.nulls())):
-        pairs = [_near(null, low, high) for null in nulls]
-        off = reduced([u for pair in pairs for u in pair])
-        runs += len(off)
-        slopes = [_slope(off[2 * k : 2 * k + 2], pair) for k, pair in enumerate(pairs)]
-        information = [screen.product(slope, slope) for slope in slopes]
-        faint = max(information) * _reach(candidate) ** 2 <= FAINT
-        if not faint or len(candidate.unknowns) == 1:
-            break
-    if max(information) <= NO_SLOPE or (faint and len(candidate.unknowns) == 1):
+    begin, nulls = DONE.steps, list(candidate.shapes())
+    slopes = _slopes(nulls, low, high, reduced)
+    work = (DONE.steps - begin) / (2 * len(nulls))
+    information = [screen.product(slope, slope) for slope in slopes]
+    least = NO_SLOPE if len(nulls) > 1 else max(NO_SLOPE, FAINT / _reach(candidate) ** 2)
+    if max(information) <= least:
         return None
     found = [_step(screen, *one, low, high) for one in zip(slopes, information, nulls, strict=True)]
     order = sorted(range(len(found)), key=lambda k: -found[k][0])
     starts = tuple(found[k][1] for k in order[:2] if found[k][0] > 0.0)
-    first, work = order[0], (DONE.steps - begin) / runs
+    first = order[0]
     return Score(candidate, found[first][0], starts, slopes[first], True, _side(candidate), work, nulls[first])
 
 
@@ -132,9 +127,7 @@ def _by_values(screen: Linearisation, candidate: Candidate, reduced: Reduced) ->
     information = screen.product(derivative, derivative)
     if information * _reach(candidate) ** 2 <= FAINT and len(null) > 1:
         nulls = [null, *candidate.nulls()]
-        pairs = [_near(one, low, high) for one in nulls]
-        found = reduced([u for pair in pairs for u in pair])
-        slopes = [_slope(found[2 * k : 2 * k + 2], pair) for k, pair in enumerate(pairs)]
+        slopes = _slopes(nulls, low, high, reduced)
         most = int(np.argmax([screen.product(slope, slope) for slope in slopes]))
         null, derivative = nulls[most], slopes[most]
         information = screen.product(derivative, derivative)
@@ -185,6 +178,13 @@ def _near(null: FloatArray, low: float, high: float) -> tuple[FloatArray, FloatA
     below, above = null.copy(), null.copy()
     below[0], above[0] = min(max(null[0] - STEP, low), null[0]), min(max(null[0] + STEP, low), high)
     return below, above
+
+
+def _slopes(nulls: Sequence[FloatArray], low: float, high: float, reduced: Reduced) -> list[FloatArray]:
+    """The derivative (W, M) at every null, all run together."""
+    pairs = [_near(null, low, high) for null in nulls]
+    off = reduced([u for pair in pairs for u in pair])
+    return [_slope(off[2 * k : 2 * k + 2], pair) for k, pair in enumerate(pairs)]
 
 
 def _slope(off: FloatArray, near: tuple[FloatArray, FloatArray]) -> FloatArray:

@@ -47,7 +47,8 @@ def as_white_noise(fitted: Fitted, errors: Errors) -> Fitted:
 def by_white_noise(explanation: Explanation, errors: Errors) -> Explanation:
     """The explanation refitted as if the sensors' errors were white, then under these errors, if that is better.
 
-    Errors that hold part of an effect make its valley flat; white noise leads into it, unless that is all there is.
+    Errors that hold part of an effect make its valley flat; white noise leads into it. Where white noise explains all
+    that is left they hold nothing, and it stays as it is.
     """
     if passes_for_white(explanation, errors):
         return explanation

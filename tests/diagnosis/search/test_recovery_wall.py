@@ -117,8 +117,9 @@ def test_a_set_that_begins_at_less_strain_than_its_search_does_is_seen() -> None
     (own,) = own_candidates(before, SPECIMEN, "permanent_set", law["permanent_set"])
     rate, limit = own.unknowns
     far = replace(own, unknowns=(rate, replace(limit, start=1.9)))
-    (seen,) = score(linearise_about(before.fitted), [far])
-    assert seen.slope and seen.trial is not None and limit.value(seen.trial[1]) < 0.7
-    assert seen.starts_from(2.0)[0].tolist() == [2.0, seen.trial[1]]
     screen = linearise_about(before.fitted)
-    assert screen.product(seen.column, seen.column) * 20.0**2 > 1000.0
+    for small in (False, True):
+        (seen,) = score(screen, [far], small=small)
+        assert seen.slope and seen.trial is not None and limit.value(seen.trial[1]) < 0.7
+        assert seen.starts_from(2.0)[0].tolist() == [2.0, seen.trial[1]]
+        assert screen.product(seen.column, seen.column) * 20.0**2 > 1000.0

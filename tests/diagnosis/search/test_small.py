@@ -13,7 +13,7 @@ from diagnosis.fit.linearisation import Linearisation, linearise_about
 from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.setup import measure
 from diagnosis.progress import silent
-from diagnosis.search import in_spells, select, weighing
+from diagnosis.search import beside, in_spells, select, weighing
 from diagnosis.search.candidates import Candidate, candidates
 from diagnosis.search.found import BADLY, Search, by_window, explains_all, passes_for_white
 from diagnosis.search.refit import Explanation, extend
@@ -78,6 +78,37 @@ def test_the_shape_of_an_effect_is_looked_over_and_what_has_no_slope_is_tried_at
     for candidate in flat:
         assert slopes[candidate].statistic == pytest.approx(values[candidate].statistic)
         assert not slopes[candidate].slope
+
+
+def test_no_shape_is_run_twice(found: Search) -> None:
+    """Two starts at one place would be two fits of the same."""
+    shaped = [c for c in found.candidates if len(c.unknowns) > 1]
+    assert shaped
+    for candidate in found.candidates:
+        shapes = [tuple(one) for one in candidate.shapes()]
+        assert shapes[0] == tuple(candidate.null) and len(set(shapes)) == len(shapes)
+
+
+@pytest.mark.parametrize("all_explained", [True, False])
+def test_screens_go_by_slopes_alone_where_the_model_at_hand_explains_everything(
+    monkeypatch: pytest.MonkeyPatch, found: Search, all_explained: bool
+) -> None:
+    asked: list[bool] = []
+
+    def watched(screen: Linearisation, some: list[Candidate], refused: dict[str, str], small: bool) -> list[Score]:
+        asked.append(small)
+        return []
+
+    for module in (select, beside):
+        monkeypatch.setattr(module, "score", watched)
+        monkeypatch.setattr(module, "explains_all", lambda _: all_explained)
+    monkeypatch.setattr(select, "null_distribution", lambda *_: None)
+    monkeypatch.setattr(select, "passes_for_white", lambda *_: True)
+    monkeypatch.setattr(select, "in_turn", lambda *_: [])
+    search = replace(found, singles=[], not_tried={})
+    select.refit_singles(search, silent)
+    beside.seconds(search, search.base)
+    assert asked == [all_explained] * 2
 
 
 def _own(opened: Linearisation, candidate: Candidate) -> float:
