@@ -20,6 +20,8 @@ CLEAR = 8.0
 """Standard deviations over what is expected at which a line counts."""
 APART = 1.5
 """Hz between the lines of a channel."""
+AROUND = 5.0
+"""Hz to either side that a line has to exceed: the other components may be too low over a band."""
 MOST = 2
 
 
@@ -31,16 +33,28 @@ def lines(pieces: Sequence[Piece], channels: int, theta: FloatArray, weights: Fl
         return ()
     solved = [solve(piece, theta) for piece in pieces]
     for c in range(channels):
-        left = _score(pieces, solved, c, frequency, weights)
+        score, root = _score(pieces, solved, c, frequency, weights)
+        left = np.where(_over_its_band(score, root, frequency) < CLEAR, 0.0, score)
         for _ in range(MOST):
             best = int(np.argmax(left))
-            if left[best] < CLEAR:
+            if left[best] == 0.0:
                 break
             near = np.minimum(frequency[best] + np.arange(-STEP, STEP, FINE), frequency[-1])
-            sharp = near[int(np.argmax(_score(pieces, solved, c, near, weights)))]
+            sharp = near[int(np.argmax(_score(pieces, solved, c, near, weights)[0]))]
             found.append(Component("hum", c, float(sharp)))
             left[np.abs(frequency - frequency[best]) < APART] = 0.0
     return tuple(found)
+
+
+def _over_its_band(score: FloatArray, root: FloatArray, frequency: FloatArray) -> FloatArray:
+    """Standard deviations (f,) over what most frequencies around have, near ones left out.
+
+    Errors whose density is r times what is expected score (r - 1) ``root`` in the mean, with a deviation of r.
+    """
+    distance = np.abs(frequency[:, None] - frequency)
+    around = np.where((distance >= APART) & (distance <= AROUND), score, np.nan)
+    band = np.maximum(np.nanmedian(around, axis=1), 0.0)
+    return np.asarray((score - band) / (1.0 + band / root))
 
 
 def _fastest(pieces: Sequence[Piece]) -> float:
@@ -50,12 +64,14 @@ def _fastest(pieces: Sequence[Piece]) -> float:
 
 def _score(
     pieces: Sequence[Piece], solved: Sequence[Solved], channel: int, frequency: FloatArray, weights: FloatArray
-) -> FloatArray:
-    """Standard deviations (f,) by which a line's part exceeds what is expected without one."""
-    excess, variance = np.zeros_like(frequency), np.zeros_like(frequency)
+) -> tuple[FloatArray, FloatArray]:
+    """Standard deviations (f,) by which a line's part exceeds what is expected without one, and that over these."""
+    excess, variance, mean = np.zeros_like(frequency), np.zeros_like(frequency), np.zeros_like(frequency)
     for piece, one, weight in zip(pieces, solved, weights, strict=True):
         wave = np.exp(2j * np.pi * frequency[None, :] * piece.time[:, None]) * (piece.channel == channel)[:, None]
         expected = np.einsum("if,if->f", wave.conj(), one.projector @ wave).real
         excess += weight * np.abs(one.on_residual @ wave) ** 2 - expected
         variance += expected**2
-    return np.asarray(excess / np.sqrt(np.maximum(variance, 1e-300)))
+        mean += expected
+    deviation = np.sqrt(np.maximum(variance, 1e-300))
+    return excess / deviation, np.maximum(mean / deviation, 1e-300)

@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 import pytest
 from scipy.optimize import minimize
-from scipy.signal import lfilter
+from scipy.signal import butter, lfilter, sosfilt
 
 from diagnosis.errors import model
 from diagnosis.errors.adequacy import inadequacy, repeatability
@@ -103,6 +103,25 @@ def test_hum_is_sought_up_to_half_the_sampling_rate(rate: float, share: float) -
     )  # fmt: skip
     found = [line.scale for line in lines([piece] * 3, 1, np.zeros(0), np.ones(3))]
     assert found[0] == pytest.approx(hum, abs=0.1) and max(found) < 0.5 * rate + 1e-9
+
+
+@pytest.mark.parametrize("amplitude", [0.0, 0.3])
+def test_noise_that_is_denser_over_a_band_is_no_hum_but_a_line_in_it_is(amplitude: float) -> None:
+    """Behind a steep filter errors are denser, up to its corner, than the estimated components have them."""
+    rng, time = np.random.default_rng(7), np.arange(100) / 100.0
+    low_pass = butter(4, 16.0, fs=100.0, output="sos")
+    pieces = []
+    for _ in range(30):
+        filtered = sosfilt(low_pass, rng.normal(size=300))[200:]
+        line = amplitude * np.cos(2.0 * np.pi * (11.0 * time + rng.uniform()))
+        pieces.append(
+            Piece(
+                time, np.zeros(100, int), 0.3 * filtered / np.std(filtered) + line,
+                np.ones((100, 1)), np.zeros((100, 1)), 0.02 * np.eye(100), (),
+            )
+        )  # fmt: skip
+    found = [one.scale for one in lines(pieces, 1, np.zeros(0), np.ones(30))]
+    assert found == ([] if amplitude == 0.0 else [pytest.approx(11.0, abs=0.1)])
 
 
 @pytest.mark.parametrize("frequency", [30.0, 50.0, 60.0, 73.0])
