@@ -19,6 +19,7 @@ from models.peaks import peaks
 from models.placing import Placing
 from models.runs import DONE, Prescribed, Request, Run, by_lane
 from models.shaking import Shaking, Shakings
+from models.stepping import Stepping
 
 MOST_LOGGED = 50_000
 """Events kept of one history."""
@@ -36,7 +37,7 @@ class Coefficients(Protocol):
 C = TypeVar("C", bound=Coefficients, default=Any)
 
 
-class Model(Placing, ABC, Generic[C]):
+class Model(Placing, Stepping, ABC, Generic[C]):
     """A model of a wall: its declarations, its coefficients ``C`` and its integrators.
 
     Arrays broadcast; nothing here knows labels, files or dask. A model gives `assemble`, `run_lanes`,
@@ -45,8 +46,7 @@ class Model(Placing, ABC, Generic[C]):
     ``alternatives``: tuples of parameter sets of which exactly one must be given, for instance
     ``(("width", "height"), ("height", "aspect_ratio"))``.
     ``options``: words that choose a formulation, with their values, the default first.
-    ``states``: what a run starts from, by name.
-    ``identification``: what calibration and diagnosis need to know; None: neither is offered.
+    ``states``: what a run starts from, by name. ``identification``: what diagnosis needs to know; None: not offered.
     ``resumes_with``: mechanisms with which the states of `resume` are all that a run remembers, so that it can be cut
     at an instant (`models.piecewise`); None: it never can.
     ``takes_vertical``: whether a vertical motion of the base enters the equations; ``vertical_by_default``:

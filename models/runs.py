@@ -26,6 +26,7 @@ class Request:
     ``log``: most events kept of a lane. ``bare``: only the motion is asked for; outputs that cost more may be left out.
     ``motions``: of bare histories of lanes under motions of their own, of which ``shaking`` is one; None: all are
     under ``shaking``.
+    ``step``: that of the kernel (s), of models that `steps_a_sample` says have one; None: by their own rule.
     """
 
     shaking: Shaking
@@ -39,6 +40,7 @@ class Request:
     log: int = 0
     bare: bool = False
     motions: Shakings | None = None
+    step: float | None = None
 
     @property
     def history(self) -> bool:

@@ -138,7 +138,7 @@ def _evidence(truth: Explanation, rival: Explanation, made: Recording, errors: E
     if measured.lengths is None:
         return 0.0
     acts = measured.shakings[0].vertical is not None and measured.shakings[0].vertical_acts
-    windows = arrange(measured.model, [made], acts, measured.lengths, measured.reference_peak)
+    windows = arrange(measured.in_own_steps.model, [made], acts, measured.lengths, measured.reference_peak)
     true = truth.fitted
     of_truth = replace(true.misfit.predictor, measured=windows)  # effects that begin do so in their own stages
     own = Misfit(of_truth, errors.of_sensors(windows), (), {**true.misfit.fixed, **true.values})

@@ -77,6 +77,8 @@ class Measured:
     assumed: FloatArray | None = None
     """Least errors (W, C) beside the noise, of a model that runs through whole recordings."""
     as_it_was: AsItWas | None = None
+    step_error: FloatArray | None = None
+    """What steps of the model longer than by its own rule change in the windows (W, C, N): taken off predictions."""
 
     @property
     def first_errors(self) -> FloatArray:
@@ -209,13 +211,20 @@ class Measured:
             windows=tuple(self.windows[w] for w in windows),
             assumed=None if self.assumed is None else self.assumed[windows],
             as_it_was=self.as_it_was and replace(self.as_it_was, offset=self.as_it_was.offset[windows]),
+            step_error=None if self.step_error is None else self.step_error[windows],
             values=self.values[windows], mask=self.mask[windows], sigma=self.sigma[windows], base=self.base[windows],
             states=self.states[windows], memory={name: before[windows] for name, before in self.memory.items()},
         )  # fmt: skip
 
     def cut_again(self, windows: tuple[Window, ...]) -> Measured:
         """The same starts with other lengths."""
-        return replace(self, windows=windows, as_it_was=None, **gather(self.recordings, windows, self.channels))
+        gathered = gather(self.recordings, windows, self.channels)
+        return replace(self.in_own_steps, windows=windows, as_it_was=None, **gathered)
+
+    @property
+    def in_own_steps(self) -> Measured:
+        """The same for the model in steps of its own rule."""
+        return replace(self, model=self.model.stepping(None), step_error=None)
 
     @property
     def undisturbed(self) -> Measured:
@@ -314,16 +323,16 @@ def arrange(
 
 def seen_as(measured: Measured, other: Measured) -> Measured:
     """The same windows, recordings and channels for the model of ``other``."""
-    if measured.model is other.model:
+    if measured.model.name == other.model.name:
         return measured
-    return for_model(measured, other.model, other.alike, other.bonded)
+    return for_model(measured, other.model.stepping(None), other.alike, other.bonded)
 
 
 def for_model(measured: Measured, model: Model, alike: Mapping[str, str], bonded: bool) -> Measured:
     """The same windows, recordings and channels for another ``model``; the others: see `Measured`."""
     declared = identification_of(model)
     lengths = measured.lengths and replace(measured.lengths, carrying=max(NARROWEST, measured.lengths.carrying))
-    found = replace(measured, model=model, alike=alike, bonded=bonded, lengths=lengths, as_it_was=None)
+    found = replace(measured.in_own_steps, model=model, alike=alike, bonded=bonded, lengths=lengths, as_it_was=None)
     states = {state.name: state for state in declared.free}
     used = [states[alike.get(name, name)] for name in found.free]
     start = np.stack([start_of(measured.recordings, measured.windows, state) for state in used], axis=1)

@@ -19,6 +19,7 @@ from diagnosis.errors.pieces import LARGEST, Scene, opened, peaks_of, prior_of, 
 from diagnosis.errors.scattered import Events, gauss_newton, known_changes, linear_about, shortened
 from diagnosis.errors.sensors import of_sensors
 from diagnosis.errors.stills import stills
+from diagnosis.fit.long_steps import in_long_steps
 from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.setup import base_fit
@@ -136,8 +137,8 @@ def refitted(fitted: Fitted, base: FloatArray, start: Errors | None = None, roun
 
 
 def fit_under(fitted: Fitted, errors: Errors) -> tuple[Fitted, Errors]:
-    """The fit under these errors, and they, about the events as they were."""
-    fitted, errors = _about_the_events(fitted, errors)
+    """The fit under these errors, and they, about the events as they were; from here on in long steps of the model."""
+    fitted, errors = _about_the_events(in_long_steps(fitted), errors)
     return fit_thoroughly(replace(fitted.misfit, whitening=errors.whitening), fitted.u, fitted.states), errors
 
 

@@ -90,7 +90,10 @@ class Carrying:
         self, asked: Sequence[Asked], measured: Measured, options: Mapping[str, str]
     ) -> list[dict[str, FloatArray]]:  # fmt: skip
         """Carried states (P, k, ...) by name of P settings of each recording, at its samples ``marks`` (k,)."""
-        keys = [[(id(one.recording), one.marks.tobytes(), *setting.key) for setting in one.settings] for one in asked]
+        step = measured.model.step
+        keys = [
+            [(id(one.recording), step, one.marks.tobytes(), *setting.key) for setting in one.settings] for one in asked
+        ]
         new = {
             key: _Lane(one.recording, one.marks, setting)
             for one, own in zip(asked, keys, strict=True)

@@ -126,7 +126,10 @@ class Predictor:
                 together.setdefault((recording.time_step, *lanes.kind), []).append(lanes)
         for lanes_alike in together.values():
             self._run(points, lanes_alike, complete, instruments, out)
-        return out if m.as_it_was is None else out - m.as_it_was.offset
+        for offset in (m.as_it_was and m.as_it_was.offset, m.step_error):
+            if offset is not None:
+                out -= offset
+        return out
 
     def declared(self, points: Sequence[Point]) -> list[Point]:
         """The points with the model's own parameters in the place of a fit's coordinates."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -75,6 +76,12 @@ class Interface(Model[LayeredWall]):
         """q ``(n, 4)`` at rest under gravity, relaxed."""
         return modes.static_state(wall)
 
+    def steps_a_sample(self, values: Values, time_step: float, options: Mapping[str, str] | None = None) -> int:
+        from models.interface.lanes.run import substeps
+
+        wall = self.build(values, options)
+        return int(np.max(substeps(wall, modes.at_rest(wall).squares, time_step)))
+
     def step_time(self, coefficients: LayeredWall) -> float:
         from models.interface.lanes.run import step_time
 
@@ -83,7 +90,7 @@ class Interface(Model[LayeredWall]):
     def run_lanes(self, coefficients: LayeredWall, request: Request) -> Run:
         from models.interface.lanes.run import run
 
-        return run(coefficients, request)
+        return run(coefficients, replace(request, step=self.step))
 
     def run_reference(self, coefficients: LayeredWall, request: Request) -> Run:
         from models.interface.reference.run import run
@@ -105,7 +112,7 @@ class Interface(Model[LayeredWall]):
     ) -> dict[str, FloatArray]:
         from models.interface.lanes.carried import carry
 
-        return carry(coefficients, shakings, along, initial)
+        return carry(coefficients, shakings, along, initial, self.step)
 
     def observe(self, coefficients: LayeredWall, samples: FloatArray) -> Mapping[str, FloatArray]:
         return observe(coefficients, samples)

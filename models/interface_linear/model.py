@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from models.base import FloatArray
+from models.base import FloatArray, Values
 from models.interface import modes, standing
 from models.interface.layered import LayeredWall
 from models.interface.model import Interface
@@ -46,6 +46,10 @@ class InterfaceLinear(Interface):
 
     def rest(self, wall: LayeredWall) -> FloatArray:
         return equation.rest(wall)
+
+    def steps_a_sample(self, values: Values, time_step: float, options: Mapping[str, str] | None = None) -> int:
+        """None of them is prescribed: they are exact."""
+        return 0
 
     def cannot_stand(self, coefficients: LayeredWall) -> list[standing.Unable]:
         leaning = bool(np.any(coefficients.offset))

@@ -27,18 +27,19 @@ from models.shaking import Shakings
 
 
 def carry(
-    wall: LayeredWall, shakings: Shakings, along: Prescribed, initial: Mapping[str, FloatArray]
-) -> dict[str, FloatArray]:
+    wall: LayeredWall, shakings: Shakings, along: Prescribed, initial: Mapping[str, FloatArray],
+    step: float | None = None,
+) -> dict[str, FloatArray]:  # fmt: skip
     """The states that the motion does not hold, and the history of the layers, of n walls at k marks.
 
-    As `models.model.Model.carry`.
+    As `models.model.Model.carry`, in steps of ``step`` (s; None: by the rule of the walls).
     """
     at_rest, effects, time_step = resting.at_rest(wall), wall.effects, shakings.first.time_step
     motion, marks, rows, last = along.motion, along.marks, along.rows, along.ends
     rest = at_rest[:, :4]
     begun = {**initial, **{name: x[rows, 0] for name, x in motion.items()}}
     given = given_table(wall, np.ones(wall.size), begun, rest)
-    steps = substeps(wall, modes.at_rest(wall).squares, time_step)
+    steps = substeps(wall, modes.at_rest(wall).squares, time_step, step)
     given[:, r.Q_STEPS] = steps
     DONE.call(0, float(np.sum(last * steps)) * step_time(wall))
     laws = given_laws(wall, at_rest, time_step / steps, initial)

@@ -44,8 +44,13 @@ def step_time(wall: LayeredWall) -> float:
     return WITH_BOTH if all(more) else WITH_MORE if any(more) else PLAIN
 
 
-def substeps(wall: LayeredWall, squares: FloatArray, time_step: float) -> NDArray[np.int64]:
-    """Steps per sample of the record from omega^2 at rest, lane by lane: never a matter of which run together."""
+def substeps(wall: LayeredWall, squares: FloatArray, time_step: float, step: float | None = None) -> NDArray[np.int64]:
+    """Steps per sample of the record from omega^2 at rest, lane by lane: never a matter of which run together.
+
+    Of ``step`` (s) where it is given.
+    """
+    if step is not None:
+        return np.full(wall.size, max(1, round(time_step / step)))
     omega = np.sqrt(np.maximum(squares, 0.0))
     needed = omega[:, 1] * time_step / LARGEST_PHASE[0]
     if wall.joints == "both":
@@ -143,7 +148,7 @@ def _advanced(wall: LayeredWall, request: Request, refinement: int, low_pass: fl
     squares = modes.at_rest(wall).squares
     given = given_table(wall, request.scale, request.initial, rest)
     given[:, r.Q_PERIOD] = 2.0 * np.pi / np.sqrt(np.abs(squares[:, 0]))
-    given[:, r.Q_STEPS] = substeps(wall, squares, time_step) * refinement
+    given[:, r.Q_STEPS] = substeps(wall, squares, time_step, request.step) * refinement
     laws = given_laws(wall, at_rest, time_step / given[:, r.Q_STEPS], request.initial)
     more = None if effects is None else given_effects(wall, effects, request.initial, at_rest)
     steps = advance(
