@@ -27,7 +27,7 @@ from diagnosis.search.found import MISSING, Search, adjusted
 from diagnosis.search.null import LEAST_P
 from diagnosis.search.refit import Explanation, extend
 from diagnosis.search.screen import score
-from diagnosis.search.select import FEWEST
+from diagnosis.search.singles import FEWEST
 from grids.specimen import Specimen
 from models.base import FloatArray
 from models.errors import InputError

@@ -1,85 +1,47 @@
-"""Which mechanisms are missing: refits of the strongest, forward selection, exchange, rivals.
+"""Which mechanisms are missing: the strongest alone, forward selection, exchange, rivals.
 
-The fit of the base may be stuck; a rival's optimum then shows it, and the base is refitted from
-there. What counts is in `diagnosis.search.found`.
+What counts is in `diagnosis.search.found`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
-from math import isfinite
 
-from diagnosis.errors.model import estimate, refitted
-from diagnosis.fit.linearisation import linearise_about
+from diagnosis.errors.model import estimate
 from diagnosis.progress import Progress
 from diagnosis.search.beside import (
     POOL_SHARE,
-    THOROUGH,
     extended,
-    heavy,
-    one_of_each,
     seconds,
-    starts_of,
-    worth_a_refit,
 )
-from diagnosis.search.budget import FURTHER, JOINTS, LAST, UNTRIED
-from diagnosis.search.candidates import Candidate, firsts
+from diagnosis.search.budget import FURTHER, LAST
 from diagnosis.search.details import least
 from diagnosis.search.exchange import drop, exchanged
 from diagnosis.search.found import (
     GAP,
     MISSING,
-    STUCK,
     Search,
     adequate,
     adjusted,
-    enough,
-    explains_all,
-    passes_for_white,
     survives,
-    within_reach,
 )
-from diagnosis.search.hidden import hidden_beside, hidden_by_errors, take_hidden
-from diagnosis.search.joints import at_other_joints
+from diagnosis.search.hidden import hidden_beside, take_hidden
 from diagnosis.search.left_out import predicts_worse
-from diagnosis.search.null import null_distribution
 from diagnosis.search.outside import outside
 from diagnosis.search.refit import (
     Explanation,
     again,
-    as_declared,
     best_of,
-    from_other,
-    from_starts,
-    further,
     over_ranges,
     reshaped,
-    ways,
     with_memory,
 )
-from diagnosis.search.screen import Score, score
-from diagnosis.search.thresholds import from_measured, misfits, setting_in
+from diagnosis.search.singles import refit_singles
 from diagnosis.search.ties import settle_ties
-from diagnosis.search.untried import in_its_place
 from diagnosis.search.variants import with_other_numbers
-from diagnosis.search.weighing import add_single, weigh_again
-from diagnosis.search.white_screen import against_white_noise
+from diagnosis.search.weighing import weigh_again
 from grids.instruments import INSTRUMENTS
 
-FAINT = 8.0
-"""Gain of the strongest single that is not taken further where the base model is adequate."""
-FEWEST, FEWEST_ADEQUATE, MOST = 5, 2, 16
-SHARE_OF_FIRST = 0.05
-"""Of the strongest statistic: what a first mechanism must reach to be refitted."""
-NEAR, NEAR_ADEQUATE = 0.2, 0.6
-"""Share of the leader's gain from which a single is refitted from the leader's optimum too."""
-NEAR_HEAVY = 0.3
-"""Share of the largest statistic that a mechanism of many short steps must reach where another explains everything."""
-COSTLY = "not alone: another explains everything, the screen gives it much less, and its fits take long"
-THRESHOLD = "not alone: it sets in at a threshold, and another explains everything without it"
-NEAR_FIRST, MOST_FIRST = 0.3, 4
-"""Share of the largest statistic from which a mechanism is refitted before what has no slope; how many at most."""
 FIRST_POOL = 3
 LITTLE = 0.25
 """Share of what is missing that two effects must explain for one more to be sought beside them."""
@@ -139,135 +101,6 @@ def take_best_single(found: Search) -> None:
             found.best = single
             return
         found.pass_over(single)
-
-
-def refit_singles(found: Search, progress: Progress) -> None:
-    """Screen the mechanisms and refit the strongest alone: ``scores``, ``null`` and ``singles``, the likeliest first.
-
-    The leader is taken further: over its ranges, to other joints, and against what the budget left untried.
-    """
-    begins = starting_points(found)
-    opened = linearise_about(found.base.fitted)
-    found.scores = score(opened, firsts(found.candidates), found.not_tried, explains_all(found.base))
-    found.null = null_distribution(opened, found.scores)
-    fewest = FEWEST_ADEQUATE if adequate(found.base) else FEWEST
-    wanted = worth_a_refit(found.scores, fewest, SHARE_OF_FIRST)[:MOST]
-    late: list[Candidate] = []
-    if found.measured.stretches is None and not passes_for_white(found.base, found.errors):
-        white, scores = against_white_noise(found, found.base, firsts(found.candidates))
-        wanted += hidden_by_errors(scores, {entry.candidate for entry in wanted}, fewest, SHARE_OF_FIRST)
-        if misfits(white.fitted):
-            late = setting_in(found.base, [entry.candidate for entry in found.scores])
-    left = []
-    wanted = in_turn(wanted, [entry for entry in found.scores if entry.candidate in late], found.scores)
-    largest = max((entry.statistic for entry in wanted), default=0.0)
-    most, creeps = enough(found.singles), found.measured.stretches is not None
-    for k, entry in enumerate(wanted):
-        explained = isfinite(most) or (creeps and any(explains_all(single) for single in found.singles))
-        is_heavy = heavy(entry, found.scores)
-        if explained and is_heavy and entry.statistic < NEAR_HEAVY * largest:
-            found.not_tried.setdefault(entry.candidate.name, COSTLY)
-            continue
-        if not found.affordable(entry.candidate.name):
-            left.append(entry)
-            continue
-        progress(f"refitting {entry.candidate.name}", 0.15 + 0.3 * k / len(wanted))
-        starts = starts_of(entry, found.scores)
-        own = begins[:1] if is_heavy else begins
-        fits = from_starts(own, entry.candidate, starts, most)
-        if entry.candidate in late and not explained:
-            fits += from_measured(found.base, entry.candidate)
-        elif entry.candidate in late and not fits:
-            found.not_tried.setdefault(entry.candidate.name, THRESHOLD)
-        if fits:
-            most = add_single(found, fits, most)
-    for single in found.singles:  # in another variant
-        if found.not_tried.get(single.names[0]) in (COSTLY, THRESHOLD):
-            del found.not_tried[single.names[0]]
-    found.singles.sort(key=adjusted)
-    if not found.singles:
-        return
-    if adequate(found.base) and found.gain(found.singles[0]) < FAINT:
-        return
-    found.singles[0] = over_ranges(again(reshaped(found.singles[0])))
-    if found.gain(found.singles[0]) < MISSING:
-        return
-    if led_by(found, found.singles[0]):
-        found.singles[0] = again(reshaped(found.singles[0]))
-        tried = {single.candidates[0] for single in found.singles}
-        worth = one_of_each(worth_a_refit(found.scores, fewest, SHARE_OF_FIRST))[:MOST]
-        left = [s for s in worth if s.candidate not in tried and found.not_tried.get(s.candidate.name) != COSTLY]
-    with found.work_of_its_own(min(JOINTS, found.spare)):
-        at_other_joints(found)
-    with found.work_of_its_own(min(UNTRIED, found.spare)):
-        in_its_place(found, left)
-    leader = found.singles[0]
-    near = NEAR_ADEQUATE if adequate(leader) else NEAR
-    for k, single in enumerate(found.singles[1:], start=1):
-        if found.gain(single) <= near * found.gain(leader) or not found.affordable(single.names[0]):
-            continue
-        single = from_other(single, leader, enough([leader]))
-        found.singles[k] = again(single) if k < THOROUGH and within_reach(single, leader) else single
-    least = NEAR * found.gain(leader)  # of a law with a memory counts along its own motion may add much
-    found.singles = [
-        with_memory(single) if found.gain(single) > least and within_reach(single, leader) else single
-        for single in found.singles
-    ]
-    found.singles.sort(key=adjusted)
-    found.tried += found.singles
-
-
-def starting_points(found: Search) -> list[Explanation]:
-    """Where refits of singles begin: at the base model, and at the specimen as it is declared where the base misfits.
-
-    If the base fits better from there it is taken there, with errors of its own, and is the only one.
-    """
-    if found.measured.stretches is not None or adequate(found.base) or found.spent:
-        return [found.base]
-    declared = as_declared(found.base)
-    restarted = best_of([further(way) for way in ways(declared)])
-    if restarted.loss >= found.base.loss - STUCK:
-        return [found.base, declared]
-    fitted, found.errors = refitted(restarted.fitted, found.errors.base, found.errors)
-    found.base = replace(found.base, fitted=fitted)
-    return [found.base]
-
-
-def in_turn(wanted: Sequence[Score], late: Sequence[Score], scores: Sequence[Score]) -> list[Score]:
-    """The strongest of a screen, then what has no slope at its null, then the others: a budget may end on the way.
-
-    Of those that something else may make needless, what takes many short steps comes last.
-    """
-    strongest = one_of_each(wanted)
-    near = sum(entry.statistic >= NEAR_FIRST * strongest[0].statistic for entry in strongest[:MOST_FIRST])
-    first = max(FEWEST_ADEQUATE, near)
-    others = sorted((*late, *strongest[first:]), key=lambda entry: heavy(entry, scores))
-    return list({entry.candidate: entry for entry in (*strongest[:first], *others)}.values())
-
-
-def led_by(found: Search, leader: Explanation) -> bool:
-    """Take the base to the leader's optimum, and the singles with it, if it was stuck; whether it was.
-
-    The screen is then that of the freed base.
-    What one mechanism gains by freeing a window that was stuck says nothing for it: all others were fitted from there.
-    Those that a screen of the freed base gives no chance, and that explain no more than it does, stay where they are.
-    """
-    restarted = from_other(found.base, leader)
-    if restarted.loss >= found.base.loss - STUCK:
-        return False
-    found.base = restarted
-    opened = linearise_about(restarted.fitted)
-    found.scores = score(opened, firsts(found.candidates), found.not_tried, explains_all(found.base))
-    found.null = null_distribution(opened, found.scores)
-    fitted = {c for single in found.singles for c in single.candidates}
-    again_worth = worth_a_refit([s for s in found.scores if s.candidate in fitted], FEWEST_ADEQUATE, SHARE_OF_FIRST)
-    worth = {entry.candidate for entry in again_worth}
-    led = (
-        from_other(single, restarted) if worth.intersection(single.candidates) or found.gain(single) > 0.0 else single
-        for single in found.singles
-    )
-    found.singles = sorted(led, key=adjusted)
-    return True
 
 
 def pool(found: Search, best: Explanation) -> list[list[Explanation]]:

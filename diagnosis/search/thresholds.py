@@ -12,15 +12,16 @@ from dataclasses import replace
 
 import numpy as np
 
+from diagnosis.errors.model import Errors
 from diagnosis.fit.misfit import STEP
-from diagnosis.fit.solver import Fitted
 from diagnosis.search.candidates import Candidate
+from diagnosis.search.found import left_over_white_noise
 from diagnosis.search.refit import QUICK, Explanation, extend
 from diagnosis.search.screen import at
 from models.base import FloatArray
 
 MISFITS = 2.0
-"""Loss per sample from which on a fit is no guide to where its windows begin."""
+"""Misfit per sample over white noise from which on a fit is no guide to where its windows begin."""
 BEYOND = (0.03, 0.1, 0.2, 0.35)
 """Shares by which starts lie beyond the value at which the effect sets in."""
 BETWEEN = 16
@@ -29,9 +30,9 @@ CHANGED = 1e-3
 """Noise levels by which a prediction is another one, beyond rounding."""
 
 
-def misfits(fitted: Fitted) -> bool:
+def misfits(explanation: Explanation, errors: Errors) -> bool:
     """Whether a fit is far from its recordings."""
-    return bool(fitted.loss > MISFITS * float(np.sum(fitted.measured.count)))
+    return left_over_white_noise(explanation, errors) > MISFITS
 
 
 def setting_in(explanation: Explanation, candidates: Sequence[Candidate]) -> list[Candidate]:

@@ -15,11 +15,11 @@ from diagnosis.fit.setup import base_fit, measure
 from diagnosis.fit.solver import Fitted, fit
 from diagnosis.fit.starts import nominal
 from diagnosis.progress import silent
-from diagnosis.search import refit, select, weighing
+from diagnosis.search import refit, singles, weighing
 from diagnosis.search.candidates import Candidate, candidates
 from diagnosis.search.found import BEHIND, Search, adjusted, enough, explains_all, within_reach
 from diagnosis.search.refit import Explanation, extend, from_states_of, with_memory
-from diagnosis.search.select import COSTLY, THRESHOLD, in_turn, led_by, refit_singles
+from diagnosis.search.singles import COSTLY, THRESHOLD, in_turn, led_by, refit_singles
 from diagnosis.search.weighing import Judged, evidence, led_by_each_other, reweighed
 from models.base import FloatArray
 from tests.diagnosis import buildings
@@ -89,8 +89,8 @@ def test_what_explains_more_is_told_though_its_fit_was_stuck(free: Search) -> No
 def without_restarts(monkeypatch: pytest.MonkeyPatch) -> None:
     """A single's first fits alone, none of what takes the leader further."""
     for name in ("again", "over_ranges", "reshaped"):
-        monkeypatch.setattr(select, name, lambda one: one)
-    monkeypatch.setattr(select, "led_by", lambda *_: False)
+        monkeypatch.setattr(singles, name, lambda one: one)
+    monkeypatch.setattr(singles, "led_by", lambda *_: False)
 
 
 def test_what_the_fit_of_the_base_did_astray_does_not_lead_a_single(
@@ -130,8 +130,8 @@ def test_what_is_far_behind_a_single_that_explains_everything_is_not_fitted_to_i
     without_restarts(monkeypatch)
     monkeypatch.setattr(refit, "extend", watched)
     monkeypatch.setattr(weighing, "by_white_noise", by_white)
-    monkeypatch.setattr(select, "from_other", lambda one, *_: one)
-    monkeypatch.setattr(select, "with_memory", lambda one: one)
+    monkeypatch.setattr(singles, "from_other", lambda one, *_: one)
+    monkeypatch.setattr(singles, "with_memory", lambda one: one)
     base = replace(free.base, fitted=replace(free.base.fitted, loss=1000.0))
     refit_singles(replace(free, base=base, singles=[]), silent)
     assert given[0] == np.inf and given[-1] == pytest.approx(100.0 + BEHIND)
@@ -151,7 +151,7 @@ def test_a_base_that_declared_numbers_do_not_better_stays_and_singles_begin_at_b
     (late,) = (e for e in free.singles if e.names == ("delay",))
     off = stuck(free.base)
     monkeypatch.setattr(refit, "extend", watched)
-    monkeypatch.setattr(select, "further", lambda declared: replace(declared, fitted=replace(off.fitted, loss=1e9)))
+    monkeypatch.setattr(singles, "further", lambda declared: replace(declared, fitted=replace(off.fitted, loss=1e9)))
     found = replace(free, base=off, candidates=late.candidates, singles=[])
     refit_singles(found, silent)
     assert found.base is off
@@ -220,11 +220,11 @@ def test_costly_fits_are_left_out_where_another_explains_all(
     fitted, errors = calibrated(SPECIMEN, measured)
     some = {one.name: one for one in candidates(measured, SPECIMEN) if one.name in known}
     at_measured: list[str] = []
-    monkeypatch.setattr(select, "heavy", lambda entry, _: entry.candidate.name == "coulomb_damping")
-    monkeypatch.setattr(select, "NEAR_HEAVY", near)
-    monkeypatch.setattr(select, "misfits", lambda _: True)
-    monkeypatch.setattr(select, "setting_in", lambda *_: [some["coulomb_damping"]])
-    monkeypatch.setattr(select, "from_measured", lambda _, candidate: at_measured.append(candidate.name) or [])
+    monkeypatch.setattr(singles, "heavy", lambda entry, _: entry.candidate.name == "coulomb_damping")
+    monkeypatch.setattr(singles, "NEAR_HEAVY", near)
+    monkeypatch.setattr(singles, "misfits", lambda *_: True)
+    monkeypatch.setattr(singles, "setting_in", lambda *_: [some["coulomb_damping"]])
+    monkeypatch.setattr(singles, "from_measured", lambda _, candidate: at_measured.append(candidate.name) or [])
     found = Search(Explanation((), fitted), tuple(some.values()), errors)
     refit_singles(found, silent)
     assert ("coulomb_damping" in [single.names[0] for single in found.singles]) == refitted
@@ -240,9 +240,9 @@ def test_costly_fits_are_left_out_where_whole_runs_are_compared_too(monkeypatch:
     known = ("viscous_damping", "coulomb_damping")
     some = tuple(one for one in candidates(measured, SPECIMEN) if one.name in known)
     without_restarts(monkeypatch)
-    monkeypatch.setattr(select, "heavy", lambda entry, _: entry.candidate.name == "coulomb_damping")
-    monkeypatch.setattr(select, "NEAR_HEAVY", 2.0)
-    monkeypatch.setattr(select, "explains_all", lambda _: True)
+    monkeypatch.setattr(singles, "heavy", lambda entry, _: entry.candidate.name == "coulomb_damping")
+    monkeypatch.setattr(singles, "NEAR_HEAVY", 2.0)
+    monkeypatch.setattr(singles, "explains_all", lambda *_: True)
     monkeypatch.setattr(Measured, "stretches", property(lambda _: (), lambda *_: None), raising=False)
     found = Search(Explanation((), fitted), some, errors)
     refit_singles(found, silent)
@@ -259,9 +259,9 @@ def test_what_sets_in_at_a_threshold_is_said_not_to_be_tried_where_another_expla
     fitted, errors = calibrated(SPECIMEN, measured)
     some = {one.name: one for one in candidates(measured, SPECIMEN) if one.name in ("viscous_damping", "gain")}
     twin = replace(some["viscous_damping"], price=1.0)
-    monkeypatch.setattr(select, "misfits", lambda _: True)
-    monkeypatch.setattr(select, "setting_in", lambda *_: [some["gain"], twin])
-    monkeypatch.setattr(select, "starts_of", lambda e, _: () if e.candidate in (some["gain"], twin) else e.starts)
+    monkeypatch.setattr(singles, "misfits", lambda *_: True)
+    monkeypatch.setattr(singles, "setting_in", lambda *_: [some["gain"], twin])
+    monkeypatch.setattr(singles, "starts_of", lambda e, _: () if e.candidate in (some["gain"], twin) else e.starts)
     found = Search(Explanation((), fitted), (*some.values(), twin), errors)
     refit_singles(found, silent)
     assert found.not_tried == {"gain": THRESHOLD}

@@ -13,7 +13,7 @@ from diagnosis.fit.linearisation import Linearisation, linearise_about
 from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.setup import measure
 from diagnosis.progress import silent
-from diagnosis.search import beside, in_spells, select, weighing
+from diagnosis.search import beside, in_spells, singles, weighing
 from diagnosis.search.candidates import Candidate, candidates
 from diagnosis.search.found import BADLY, Search, by_window, explains_all, passes_for_white
 from diagnosis.search.refit import Explanation, extend
@@ -99,14 +99,14 @@ def test_screens_go_by_slopes_alone_where_the_model_at_hand_explains_everything(
         asked.append(small)
         return []
 
-    for module in (select, beside):
+    for module in (singles, beside):
         monkeypatch.setattr(module, "score", watched)
         monkeypatch.setattr(module, "explains_all", lambda _: all_explained)
-    monkeypatch.setattr(select, "null_distribution", lambda *_: None)
-    monkeypatch.setattr(select, "passes_for_white", lambda *_: True)
-    monkeypatch.setattr(select, "in_turn", lambda *_: [])
+    monkeypatch.setattr(singles, "null_distribution", lambda *_: None)
+    monkeypatch.setattr(singles, "passes_for_white", lambda *_: True)
+    monkeypatch.setattr(singles, "in_turn", lambda *_: [])
     search = replace(found, singles=[], not_tried={})
-    select.refit_singles(search, silent)
+    singles.refit_singles(search, silent)
     beside.seconds(search, search.base)
     assert asked == [all_explained] * 2
 
@@ -125,15 +125,38 @@ def test_where_white_noise_explains_all_nothing_is_screened_or_fitted_against_it
         raise AssertionError("white noise is all there is")
 
     assert passes_for_white(found.base, found.errors)
-    for module in (select, in_spells):
+    for module in (singles, in_spells):
         monkeypatch.setattr(module, "against_white_noise", refuse)
     monkeypatch.setattr(weighing, "as_white_noise", refuse)
     search = replace(found, singles=[], not_tried={})
-    select.refit_singles(search, silent)
+    singles.refit_singles(search, silent)
     assert search.singles
     screened = in_spells.Screened.of(search, search.base, search.scores)
     assert len(screened.screens) == 1 and not screened.hides
     in_spells.in_spells(search, search.base, screened)
+
+
+@pytest.mark.parametrize("name", ["delay", "gain"])
+def test_where_a_mechanism_leaves_white_noise_none_is_sought_in_the_errors(
+    monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    """Only where none does is there a screen against white noise."""
+    asked: list[Explanation] = []
+
+    def watched(_: Search, start: Explanation, some: list[Candidate]) -> tuple[None, list[Score]]:
+        asked.append(start)
+        return None, []
+
+    effects = {"delay": {"delay": 0.012}}
+    measured = measure(SPECIMEN, [recording(f"run_{seed}", seed, effects) for seed in (1, 2)])
+    fitted, errors = calibrated(SPECIMEN, measured)
+    known = tuple(one for one in candidates(measured, SPECIMEN) if one.name == name)
+    search = Search(Explanation((), fitted), known, errors)
+    assert not passes_for_white(search.base, search.errors)
+    monkeypatch.setattr(singles, "against_white_noise", watched)
+    singles.refit_singles(search, silent)
+    assert len(search.singles) == 1
+    assert asked == ([] if name == "delay" else [search.base])
 
 
 def test_one_window_that_white_noise_does_not_explain_is_enough_to_ask_it(found: Search) -> None:

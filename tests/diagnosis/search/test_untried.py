@@ -10,7 +10,7 @@ from diagnosis.errors.model import disturbance_about, estimate
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.setup import base_fit, measure
 from diagnosis.progress import silent
-from diagnosis.search import select
+from diagnosis.search import singles
 from diagnosis.search.budget import ENDED, Budget
 from diagnosis.search.candidates import candidates
 from diagnosis.search.found import Search
@@ -74,6 +74,6 @@ def test_a_search_whose_budget_ends_at_once_tries_all_that_the_screen_asks_for(b
             return True
 
     found = Short(begun.base, begun.candidates, begun.errors)
-    select.refit_singles(found, silent)
+    singles.refit_singles(found, silent)
     assert {single.names[0] for single in found.singles} == {TRUE, WRONG, "tilt"}
     assert found.singles[0].names == (TRUE,) and TRUE not in found.not_tried
