@@ -9,33 +9,15 @@ from collections.abc import Iterator, Sequence
 
 from diagnosis.errors.model import estimate
 from diagnosis.progress import Progress
-from diagnosis.search.beside import (
-    POOL_SHARE,
-    extended,
-    seconds,
-)
+from diagnosis.search.beside import POOL_SHARE, extended, seconds
 from diagnosis.search.budget import FURTHER, LAST
 from diagnosis.search.details import least
 from diagnosis.search.exchange import drop, exchanged
-from diagnosis.search.found import (
-    GAP,
-    MISSING,
-    Search,
-    adequate,
-    adjusted,
-    survives,
-)
+from diagnosis.search.found import GAP, MISSING, Search, adequate, adjusted, survives
 from diagnosis.search.hidden import hidden_beside, take_hidden
 from diagnosis.search.left_out import predicts_worse
 from diagnosis.search.outside import outside
-from diagnosis.search.refit import (
-    Explanation,
-    again,
-    best_of,
-    over_ranges,
-    reshaped,
-    with_memory,
-)
+from diagnosis.search.refit import Explanation, again, best_of, over_ranges, reshaped, with_memory
 from diagnosis.search.singles import refit_singles
 from diagnosis.search.ties import settle_ties
 from diagnosis.search.variants import with_other_numbers
