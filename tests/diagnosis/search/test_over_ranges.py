@@ -11,7 +11,7 @@ from diagnosis.errors.model import calibrated
 from diagnosis.fit.setup import base_fit, measure
 from diagnosis.fit.solver import fit
 from diagnosis.progress import silent
-from diagnosis.search import exchange, select
+from diagnosis.search import exchange, select, singles
 from diagnosis.search.candidates import candidates
 from diagnosis.search.found import Search
 from diagnosis.search.refit import QUICK, Explanation, again, extend, over_ranges
@@ -59,7 +59,7 @@ def test_the_leading_single_and_what_an_exchange_finds_start_anew_over_the_range
         asked.append(explanation.names)
         return explanation
 
-    for where in (select, exchange):
+    for where in (singles, exchange):
         monkeypatch.setattr(where, "over_ranges", noted)
     effect = {"restitution": {"factor_on_housner": 0.93}}
     measured = measure(made.SPECIMEN, [made.recording(name, k, effect) for k, name in ((1, "a"), (2, "b"))])
