@@ -65,6 +65,14 @@ def test_near_it_its_error_is_less_than_that_of_the_own_rule_and_further_away_st
         assert steps < 0.75 * steps_of_rule
 
 
+def test_what_is_carried_to_a_window_is_that_of_its_own_steps(wall: Fitted) -> None:
+    """Though both keep it in one place."""
+    by_rule, by_long = (one.misfit.predictor.carried(wall.point) for one in (wall, in_long_steps(wall)))
+    assert all(not np.array_equal(by_long[name], x) for name, x in by_rule.items())
+    for name in ("displacement_z_1", "displacement_z_2"):
+        np.testing.assert_allclose(by_long[name], by_rule[name], atol=0.02 * np.max(np.abs(by_rule[name])))
+
+
 def test_nothing_is_taken_off_where_the_error_is_not_small(monkeypatch: pytest.MonkeyPatch, wall: Fitted) -> None:
     taken = in_long_steps(wall).measured.step_error
     assert taken is not None and np.any(taken)
