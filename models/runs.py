@@ -26,7 +26,7 @@ class Request:
     ``log``: most events kept of a lane. ``bare``: only the motion is asked for; outputs that cost more may be left out.
     ``motions``: of bare histories of lanes under motions of their own, of which ``shaking`` is one; None: all are
     under ``shaking``.
-    ``step``: that of the kernel (s), of models that `steps_a_sample` says have one; None: by their own rule.
+    ``step``: that of the kernel (s), of models that have `steps_chosen`; None: by their own rule.
     """
 
     shaking: Shaking

@@ -52,8 +52,8 @@ def _over_its_band(score: FloatArray, root: FloatArray, frequency: FloatArray) -
     Errors whose density is r times what is expected score (r - 1) ``root`` in the mean, with a deviation of r.
     """
     distance = np.abs(frequency[:, None] - frequency)
-    around = np.where((distance >= APART) & (distance <= AROUND), score, np.nan)
-    band = np.maximum(np.nanmedian(around, axis=1), 0.0)
+    around = (distance >= APART) & (distance <= AROUND)
+    band = np.array([max(0.0, float(np.median(score[one]))) if one.any() else 0.0 for one in around])
     return np.asarray((score - band) / (1.0 + band / root))
 
 

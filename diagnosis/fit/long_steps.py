@@ -24,7 +24,7 @@ LARGEST = 0.25
 def in_long_steps(fitted: Fitted) -> Fitted:
     """The same point in long steps of the model, their error there taken off; as it is where they are no longer."""
     misfit, plain = fitted.misfit, fitted.measured.in_own_steps
-    if plain.stretches is not None:
+    if not plain.model.steps_chosen:
         return fitted
     sample = plain.recordings[0].time_step
     own = plain.model.steps_a_sample(without_instruments(fitted.point.values), sample, misfit.predictor.options)

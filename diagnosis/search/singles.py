@@ -78,11 +78,11 @@ def refit_singles(found: Search, progress: Progress) -> None:
     if found.measured.stretches is None and misfits(found.base, found.errors):
         late = setting_in(found.base, [entry.candidate for entry in found.scores])
     wanted = in_turn(wanted, [entry for entry in found.scores if entry.candidate in late], found.scores)
-    left = _refit_in_turn(found, wanted, begins, late, progress)
+    left = _refit_in_turn(found, wanted, begins, late, (0.15, 0.35), progress)
     if _may_hide(found):
         _, white = against_white_noise(found, found.base, firsts(found.candidates))
         hidden = hidden_by_errors(white, {entry.candidate for entry in wanted}, fewest, SHARE_OF_FIRST)
-        left += _refit_in_turn(found, hidden, begins, late, progress)
+        left += _refit_in_turn(found, in_turn(hidden, [], found.scores), begins, [], (0.35, 0.45), progress)
     for single in found.singles:  # in another variant
         if found.not_tried.get(single.names[0]) in (COSTLY, THRESHOLD):
             del found.not_tried[single.names[0]]
@@ -131,12 +131,14 @@ def _refit_in_turn(
     wanted: Sequence[Score],
     begins: Sequence[Explanation],
     late: Sequence[Candidate],
+    between: tuple[float, float],
     progress: Progress,
 ) -> list[Score]:
     """Add refits of those ``wanted`` to the singles, of what is ``late`` from the measured states too.
 
-    Those that the budget leaves are returned.
+    Those that the budget leaves are returned. ``between``: the progress from the first to the last.
     """
+    first, last = between
     largest = max((entry.statistic for entry in (*found.scores, *wanted)), default=0.0)
     most, creeps = enough(found.singles), found.measured.stretches is not None
     left = []
@@ -149,7 +151,7 @@ def _refit_in_turn(
         if not found.affordable(entry.candidate.name):
             left.append(entry)
             continue
-        progress(f"refitting {entry.candidate.name}", 0.15 + 0.3 * k / len(wanted))
+        progress(f"refitting {entry.candidate.name}", first + (last - first) * k / len(wanted))
         starts = starts_of(entry, found.scores)
         own = begins[:1] if is_heavy else begins
         fits = from_starts(own, entry.candidate, starts, most)

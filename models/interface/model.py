@@ -46,6 +46,7 @@ class Interface(Model[LayeredWall]):
     bodies = 2
     call_time = 2e-2
     not_placed = ("wall_flexibility",)
+    steps_chosen = True
     turns_base: tuple[str, ...] = ("table_pitch",)
     vertical_by_default = True
     resumes_with: tuple[str, ...] | None = (

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from models.base import FloatArray, Values
+from models.base import FloatArray
 from models.interface import modes, standing
 from models.interface.layered import LayeredWall
 from models.interface.model import Interface
@@ -35,6 +35,7 @@ class InterfaceLinear(Interface):
     identification = IDENTIFICATION
     bodies = 2
     turns_base = ()
+    steps_chosen = False
     resumes_with = ("vertical_acceleration", "pivot_inset", "tilt")
 
     def resolve_options(self, options: Mapping[str, str] | None) -> dict[str, str]:
@@ -46,10 +47,6 @@ class InterfaceLinear(Interface):
 
     def rest(self, wall: LayeredWall) -> FloatArray:
         return equation.rest(wall)
-
-    def steps_a_sample(self, values: Values, time_step: float, options: Mapping[str, str] | None = None) -> int:
-        """None of them is prescribed: they are exact."""
-        return 0
 
     def cannot_stand(self, coefficients: LayeredWall) -> list[standing.Unable]:
         leaning = bool(np.any(coefficients.offset))

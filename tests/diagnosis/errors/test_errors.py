@@ -105,6 +105,18 @@ def test_hum_is_sought_up_to_half_the_sampling_rate(rate: float, share: float) -
     assert found[0] == pytest.approx(hum, abs=0.1) and max(found) < 0.5 * rate + 1e-9
 
 
+def test_where_no_band_is_left_around_a_line_it_is_told_by_itself() -> None:
+    """A slow sensor: from 6 to 7 Hz nothing is far enough from a line to be held against it."""
+    time = np.arange(80) / 14.0
+    for amplitude, expected in ((0.0, []), (1.0, [pytest.approx(6.6, abs=0.1)])):
+        rng = np.random.default_rng(4)
+        residual = amplitude * np.cos(2.0 * np.pi * 6.6 * time) + 0.1 * rng.normal(size=80)
+        piece = Piece(
+            time, np.zeros(80, int), residual, np.ones((80, 1)), np.zeros((80, 1)), 0.01 * np.eye(80), (),
+        )  # fmt: skip
+        assert [one.scale for one in lines([piece] * 3, 1, np.zeros(0), np.ones(3))] == expected
+
+
 @pytest.mark.parametrize("amplitude", [0.0, 0.3])
 def test_noise_that_is_denser_over_a_band_is_no_hum_but_a_line_in_it_is(amplitude: float) -> None:
     """Behind a steep filter errors are denser, up to its corner, than the estimated components have them."""
