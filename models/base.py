@@ -112,7 +112,7 @@ class Mechanism:
     at_joints: tuple[str, ...] = ()
     """Models on which ``parameter_base`` and ``parameter_top`` address one joint alone."""
     sentences: Mapping[str, str] = field(default_factory=dict)
-    """By parameter: the sentence where the mechanism acts through that one alone, instead of its first."""
+    """By parameter, or parameters with commas between: the sentence where the mechanism acts through these."""
     tabulated: Tables | None = None
     """The tables whose values its parameters are: files name the table, and a diagnosis does not switch it on."""
     static_test: str = ""
@@ -140,11 +140,11 @@ class Mechanism:
 
     def sentence_for(self, given: Mapping[str, float]) -> str:
         """The sentence, still with its braces, for the parameters that are ``given`` a value off their null."""
-        nulls = self.nulls
-        off = [name for name, value in given.items() if value != nulls.get(name)]
-        if self.parameters[0].name in off:
-            return self.sentence
-        return next((self.sentences[name] for name in off if name in self.sentences), self.sentence)
+        nulls, first = self.nulls, self.parameters[0].name
+        off = {name for name, value in given.items() if value != nulls.get(name)}
+        through = {key: set(key.split(", ")) for key in self.sentences}
+        fitting = [key for key, names in through.items() if names <= off and (first in names or first not in off)]
+        return self.sentences[max(fitting, key=lambda key: len(through[key]))] if fitting else self.sentence
 
     def says(self, given: Mapping[str, float]) -> str:
         """The sentence with the values in place, those not given at their null; a joint is named."""

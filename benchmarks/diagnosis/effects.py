@@ -62,7 +62,7 @@ def _floor(rng: np.random.Generator, peak: float) -> dict[str, float]:
 
 
 def _order(rng: np.random.Generator, peak: float) -> dict[str, float]:
-    return {"order": float(rng.integers(1, 5))}
+    return {"order": float(rng.integers(1, 5)), "zero_phase": float(rng.integers(2))}
 
 
 _GEOMETRY = "contact_geometry"

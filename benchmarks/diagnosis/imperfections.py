@@ -10,8 +10,8 @@ deviation ``noise`` (a share of the peak) whatever its colour:
     drift          .2 to .5 % of the peak over a recording, linear or half a cosine, other in each
 
 ``scatter_x``: theta'_after of every impact off its law by x % of theta'_before, Gaussian. ``ac_coupling``: the base
-accelerometer has a first-order high-pass; ``filter``: a causal second-order low-pass of the rotation, or of every
-channel.
+accelerometer has a first-order high-pass; ``filter``: a second-order low-pass of the rotation, causal or run both
+ways (zero phase), or a causal one of every channel.
 """
 
 from __future__ import annotations
@@ -124,7 +124,9 @@ def _drawn(name: str, sensors: Sensors, sampling_hz: float, rng: np.random.Gener
     if name == "filter":
         corner = between(CORNER_HZ)
         of_base = {"base_filter": {"low_pass_hz": corner}} if rng.uniform() < 0.5 else {}
-        return {"sensors": {**sensors, "filter": {"corner_hz": corner, "order": 2.0}, **of_base}}
+        both_ways = 0.0 if of_base else float(rng.integers(2))
+        own = {"corner_hz": corner, "order": 2.0, "zero_phase": both_ways}
+        return {"sensors": {**sensors, "filter": own, **of_base}}
     return {name: between({"proportional": PROPORTIONAL, "drift": DRIFT}[name])}
 
 

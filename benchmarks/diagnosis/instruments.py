@@ -2,9 +2,9 @@
 
 A recorded rotation is, in this order:
 
-    theta(t) + rotation_per_acceleration a(t), times (1 + gain), through a causal Butterworth low-pass,
-    read at (1 + rate) t - delay, plus an offset, plus a drift, through the logger's anti-alias filter (no phase
-    shift), sampled, clipped at the saturation level, plus noise.
+    theta(t) + rotation_per_acceleration a(t), times (1 + gain), through a Butterworth low-pass, causal or run both
+    ways (zero phase), read at (1 + rate) t - delay, plus an offset, plus a drift, through the logger's anti-alias
+    filter (no phase shift), sampled, clipped at the saturation level, plus noise.
 
 The recorded base acceleration is a / (1 + base_gain), through a causal first-order high-pass and a causal
 second-order Butterworth low-pass, plus accelerometer_offset, through the same logger.
@@ -42,6 +42,11 @@ def causal(signal: FloatArray, time_step: float, order: int, corner_hz: float, k
     return np.asarray(sosfilt(butter(order, corner_hz, kind, fs=1.0 / time_step, output="sos"), signal))
 
 
+def both_ways(signal: FloatArray, time_step: float, order: int, corner_hz: float, kind: str) -> FloatArray:
+    """Through a Butterworth filter forwards and backwards."""
+    return np.asarray(sosfiltfilt(butter(order, corner_hz, kind, fs=1.0 / time_step, output="sos"), signal))
+
+
 def response(
     rotation: FloatArray, acceleration: FloatArray, time_step: float, sensors: Sensors, peak: float
 ) -> FloatArray:
@@ -53,7 +58,8 @@ def response(
     signal = rotation + of("cross_axis", "rotation_per_acceleration") * acceleration
     signal = signal * (1.0 + of("gain", "gain"))
     if np.isfinite(corner := of("filter", "corner_hz", np.inf)):
-        signal = causal(signal, time_step, round(of("filter", "order", 2.0)), corner, "lowpass")
+        through = both_ways if of("filter", "zero_phase") else causal
+        signal = through(signal, time_step, round(of("filter", "order", 2.0)), corner, "lowpass")
     rate, delay = of("clock", "rate"), of("delay", "delay")
     if rate != 0.0 or delay != 0.0:
         time = time_step * np.arange(signal.size)
@@ -72,7 +78,6 @@ def clip(signal: FloatArray, sensors: Sensors, peak: float) -> FloatArray:
 
 def logged(signal: FloatArray, time_step: float, sampling_hz: float, duration: float) -> FloatArray:
     """Anti-alias filtered without phase shift and sampled at ``sampling_hz`` over ``duration`` (s)."""
-    sections = butter(4, PASS_BAND * sampling_hz, fs=1.0 / time_step, output="sos")
-    smooth = sosfiltfilt(sections, signal)
+    smooth = both_ways(signal, time_step, 4, PASS_BAND * sampling_hz, "lowpass")
     time = time_step * np.arange(signal.size)
     return np.asarray(CubicSpline(time, smooth)(np.arange(round(duration * sampling_hz)) / sampling_hz))

@@ -30,7 +30,8 @@ class Candidate:
     """One mechanism, or one variant of it with some parameters held.
 
     ``unknowns``: the effect's parameter first, then those that shape it; ``held``: the others. ``spell``: when it acts,
-    None for always; ``price``: what the choice of the spell costs, in 2 log likelihood.
+    None for always; ``price``: what the choice of the spell costs, in 2 log likelihood. ``steep``: the effect sets in
+    within a small part of its range, with no slope at its null.
     """
 
     mechanism: Mechanism
@@ -38,6 +39,7 @@ class Candidate:
     held: dict[str, float]
     spell: When | None = None
     price: float = 0.0
+    steep: bool = False
 
     @property
     def name(self) -> str:
@@ -74,8 +76,8 @@ class Candidate:
             if not np.array_equal(rest, self.null[1:]):
                 yield np.array([self.null[0], *rest])
 
-    def grid(self, by_threshold: bool = False) -> Iterator[FloatArray]:
-        """Coordinates (d,) spread over the range, on both sides of the null; finely for a ``by_threshold`` effect."""
+    def grid(self, finely: bool = False) -> Iterator[FloatArray]:
+        """Coordinates (d,) spread over the range, on both sides of the null, ``finely`` or not."""
         null = self.null
         shapes = [_spread(u) for u in self.unknowns[1:]]
         low, high = self.unknowns[0].bounds
@@ -84,7 +86,7 @@ class Candidate:
             reach = bound - inner
             if reach == 0.0:
                 continue
-            for share in FINE_GRID if by_threshold else GRID:
+            for share in FINE_GRID if finely else GRID:
                 for rest in product(*shapes):
                     yield np.array([inner + share * reach, *rest])
 
@@ -170,13 +172,16 @@ def _unknown(mechanism: Mechanism, parameter: MechanismParameter, measured: Meas
 
 
 def _filters(mechanism: Mechanism) -> list[Candidate]:
-    """A low-pass and a high-pass, each of every order: the order is no continuous unknown."""
-    ordered = "order" in mechanism.nulls
-    found = []
+    """A low-pass and a high-pass, each of every order, the one run both ways too: these are no continuous unknowns."""
+    found, both_ways = [], f"{mechanism.name}.zero_phase"
     for parameter in mechanism.parameters:
         if parameter.unit != "Hz":
             continue
-        orders = ORDERS if parameter.fit_inverse else ORDERS[:2]
-        held = [{f"{mechanism.name}.order": order} for order in orders] if ordered else [{}]
-        found += [Candidate(mechanism, (of_parameter(mechanism, parameter),), one) for one in held]
+        choices = {"order": ORDERS, "zero_phase": (0.0, 1.0)} if parameter.fit_inverse else {"order": ORDERS[:2]}
+        own = {f"{mechanism.name}.{name}": each for name, each in choices.items() if name in mechanism.nulls}
+        held = [dict(zip(own, chosen, strict=True)) for chosen in product(*own.values())]
+        found += [
+            Candidate(mechanism, (of_parameter(mechanism, parameter),), one, steep=one.get(both_ways) == 1.0)
+            for one in held
+        ]
     return found

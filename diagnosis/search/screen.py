@@ -8,9 +8,9 @@ base parameters (weights and priors included), the score (Lagrange multiplier) s
 Where what shapes the effect keeps it from acting (a permanent set that begins beyond a strain that is not reached) the
 derivative is taken at other values of the shape.
 
-A null at infinity or with a threshold (sliding, flight) has no usable derivative at all: there the
-model is run on a grid of values and the statistic is the largest gain over the grid, the base
-parameters and states answering linearly.
+A null at infinity or with a threshold (sliding, flight, a filter without lag) has no usable derivative at all: there
+the model is run on a grid of values and the statistic is the largest gain over the grid, the base parameters and states
+answering linearly.
 """
 
 from __future__ import annotations
@@ -118,7 +118,7 @@ def _by_slopes(screen: Linearisation, candidate: Candidate, reduced: Reduced) ->
 
 def _by_values(screen: Linearisation, candidate: Candidate, reduced: Reduced) -> Score:
     """The larger of the score and of the largest gain at values over the range of an effect and of its shapes."""
-    null, trials = candidate.null, list(candidate.grid())
+    null, trials = candidate.null, [] if candidate.steep else list(candidate.grid())
     low, high = candidate.unknowns[0].bounds
     near, begin = _near(null, low, high), DONE.steps
     off = reduced([*near, *trials])
@@ -131,9 +131,10 @@ def _by_values(screen: Linearisation, candidate: Candidate, reduced: Reduced) ->
         most = int(np.argmax([screen.product(slope, slope) for slope in slopes]))
         null, derivative = nulls[most], slopes[most]
         information = screen.product(derivative, derivative)
-    best, start = _step(screen, derivative, information, null, low, high)
-    if information <= NO_SLOPE:
-        trials = list(candidate.grid(by_threshold=True))
+    slope = information > NO_SLOPE and not candidate.steep
+    best, start = _step(screen, derivative, information, null, low, high) if slope else (0.0, null)
+    if not slope:
+        trials = list(candidate.grid(finely=True))
         off = reduced(trials)
     gains = np.array([_gain(screen, column) for column in off])
     order = np.argsort(-gains)[:2]
@@ -141,7 +142,7 @@ def _by_values(screen: Linearisation, candidate: Candidate, reduced: Reduced) ->
     if best > 0.0:
         starts.insert(0 if not gains.size or best * 0.8 > gains[order[0]] else 1, start)
     statistic = max(best, float(gains.max(initial=0.0)))
-    if information > NO_SLOPE or not order.size:
+    if slope or not order.size:
         return Score(candidate, statistic, tuple(starts[:2]), derivative, True, _side(candidate), work, null)
     first = int(order[0])
     return Score(candidate, statistic, tuple(starts[:2]), off[first] - screen.residual, False, 1, work, trials[first])

@@ -73,7 +73,7 @@ def _from_measured(explanation: Explanation) -> Explanation:
 
 def _sets_in(begins: Explanation, candidate: Candidate) -> FloatArray | None:
     """Coordinates at which a mechanism first changes the prediction, its shapes as first in its grid."""
-    trials = list(candidate.grid(by_threshold=True))
+    trials = list(candidate.grid(finely=True))
     trials = [u for u in trials if np.array_equal(u[1:], trials[0][1:])]
     first = _first(begins, candidate, trials)
     if first is None:

@@ -6,8 +6,8 @@
 * ``clock``: values -> (rate, lag); recorded(t) = true((1 + rate) t - lag) for every response;
 * ``response``: (channels, values, surroundings) -> channels as the instrument records them;
 * ``lag`` and ``windowed``, for an instrument with a memory: values -> s by which it lags, and its
-  response advanced by this lag, as windows use it (they then need the motion for ``lag`` longer); ``reach``: values
-  -> samples beyond that which its response at one depends on;
+  response advanced by this lag, as windows use it (they then need the motion for ``lag`` longer); ``ahead``: values
+  -> s after a sample that its response there depends on; ``reach``: values -> samples beyond these;
 * ``whole`` in place of ``response``: the same of an instrument that looks at all of a recording, and cannot be
   applied to a window.
 """

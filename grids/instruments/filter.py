@@ -1,11 +1,12 @@
-"""A causal Butterworth filter in the response channels.
+"""A Butterworth filter in the response channels: causal, or its low-pass run forwards and backwards (zero phase).
 
 The filter acts on the signal between its samples, where it is the polynomial of fifth degree through the six nearest
 ones, so that a corner above the Nyquist frequency of the recording keeps its meaning: straight lines would take 3 % of
 what moves at a tenth of the sampling rate and 7 % at .15 of it, these take .02 % and .2 %. In windows it is applied in
 two parts: its delay of slow signals, as a clock error, and the filter read that much later, between samples too. So a
 window that starts at a recorded peak starts at the peak of the motion too. What came before its first sample and comes
-after its last one are parabolas through the samples there.
+after its last one are parabolas through the samples there. A low-pass of zero phase has no delay, but depends on what
+comes after: windows are run `MEMORY` of its delays longer.
 """
 
 from __future__ import annotations
@@ -123,13 +124,37 @@ def run(system: Discrete, signal: FloatArray, time_step: float, later: int = 0, 
     return np.asarray(passed)[..., count + later : count + later + samples]
 
 
+def both_ways(system: Discrete, signal: FloatArray, time_step: float, fitted: int) -> FloatArray:
+    """The filter's output run forwards, then backwards: the square of its gain, and no phase.
+
+    What is not finite from a sample on (a wall that falls) stays so, and holds its last value for what came before.
+    """
+    known = np.logical_and.accumulate(np.isfinite(signal), axis=-1)
+    if not known.all():
+        last = np.maximum(known.sum(axis=-1, keepdims=True) - 1, 0)
+        signal = np.where(known, signal, np.take_along_axis(signal, last, axis=-1))
+    forwards = run(system, signal, time_step, fitted=fitted)
+    found = run(system, forwards[..., ::-1], time_step, fitted=fitted)[..., ::-1]
+    return found if known.all() else np.where(known, found, np.nan)
+
+
 def reach(values: Values) -> int:
     """Samples after one that tell the signal around it."""
     return REACH
 
 
+def lag(values: Values) -> float:
+    """Delay (s) of slow signals: none of a low-pass that is run both ways."""
+    return 0.0 if values["zero_phase"] else delay(values)
+
+
+def ahead(values: Values) -> float:
+    """s after a sample that its output depends on."""
+    return MEMORY * delay(values) if values["zero_phase"] else 0.0
+
+
 def delay(values: Values) -> float:
-    """Delay (s) of slow signals: b_1/omega_c with b_1 the linear coefficient of the Butterworth polynomial."""
+    """Delay (s) of slow signals in one run: b_1/omega_c, b_1 the linear coefficient of the Butterworth polynomial."""
     found = 0.0
     for corner, order, kind in stages(values):
         if kind == "lowpass":
@@ -144,7 +169,7 @@ def respond(channels: Channels, values: Values, around: Surroundings) -> Channel
 
 
 def respond_in_windows(channels: Channels, values: Values, around: Surroundings) -> Channels:
-    return _read(channels, values, around, delay(values) / around.time_step)
+    return _read(channels, values, around, lag(values) / around.time_step)
 
 
 def _read(channels: Channels, values: Values, around: Surroundings, later: float) -> Channels:
@@ -154,7 +179,10 @@ def _read(channels: Channels, values: Values, around: Surroundings, later: float
         low = kind == "lowpass"
         whole, share = divmod(later, 1.0) if low else (0.0, 0.0)
         system, fitted = discrete(corner, order, kind, around.time_step, share), remembered if low else MOST
-        channels = {name: run(system, x, around.time_step, int(whole), fitted) for name, x in channels.items()}
+        if low and values["zero_phase"]:
+            channels = {name: both_ways(system, x, around.time_step, fitted) for name, x in channels.items()}
+        else:
+            channels = {name: run(system, x, around.time_step, int(whole), fitted) for name, x in channels.items()}
     return channels
 
 
@@ -170,15 +198,22 @@ MECHANISM = Mechanism(
         MechanismParameter(
             "high_pass_hz", "f_h", "Hz", "corner of a high-pass of the response channels", 0.0, 5.0, shape=True
         ),
+        Whole(
+            "zero_phase", "", "1", "1: the low-pass was run forwards and backwards, which squares its gain and leaves "
+            "no lag; 0: causal", 0.0, 1.0, null=0.0, shape=True,
+        ),
     ),
-    equation="recorded = causal Butterworth low-pass (corner_hz, order) of true, every response channel",
-    signature="at impacts and above the corner; a lag of all channels",
+    equation="recorded = Butterworth low-pass (corner_hz, order) of true, every response channel: causal, or of zero "
+    "phase",
+    signature="at impacts and above the corner; a lag of all channels where it is causal",
     sentence="the response channels went through a causal low-pass of order {order:.0f} at {corner_hz:.3g} Hz",
     sentences={
+        "corner_hz, zero_phase": "the response channels went forwards and backwards through a low-pass of order "
+        "{order:.0f} at {corner_hz:.3g} Hz",
         "high_pass_hz": "the response channels went through a causal high-pass of order {order:.0f} at "
         "{high_pass_hz:.3g} Hz"
     },
-    acts={"response": respond, "lag": delay, "reach": reach, "windowed": respond_in_windows},
+    acts={"response": respond, "lag": lag, "ahead": ahead, "reach": reach, "windowed": respond_in_windows},
     static_test="look up the filter settings of the logger",
     source="anti-alias and display filters of loggers",
 )  # fmt: skip

@@ -20,18 +20,19 @@ from models.shaking import Shaking
 def samples_ahead(mechanisms: Switched, time_step: float) -> int:
     """Samples beyond a window's end for which the instruments need the motion: it then is the same in any company."""
     on = switched_on(mechanisms)
-    lag = sum(one.acts["lag"](values) for one, values in on if "lag" in one.acts)
+    lag = sum(one.acts[how](values) for one, values in on for how in ("lag", "ahead") if how in one.acts)
     reach = max((one.acts["reach"](values) for one, values in on if "reach" in one.acts), default=0)
     return int(np.ceil(lag / time_step)) + int(reach)
 
 
 def same_base(mechanisms: Switched) -> tuple[object, ...]:
     """What two settings of the instruments must share for one motion of the base."""
-    return tuple(
-        (one.name, tuple(sorted(mechanisms[one.name].items())))
-        for one, _ in switched_on(mechanisms)
-        if not {"base", "clock", "lag"}.isdisjoint(one.acts)
-    )
+    found: list[tuple[object, ...]] = []
+    for one, values in switched_on(mechanisms):
+        if "base" in one.acts:
+            found.append((one.name, *sorted(mechanisms[one.name].items())))
+        found += [(one.name, one.acts[how](values)) for how in ("clock", "lag") if how in one.acts]
+    return tuple(found)
 
 
 def moved_in_windows(shaking: Shaking, mechanisms: Switched) -> Shaking:

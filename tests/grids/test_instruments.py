@@ -12,7 +12,7 @@ from grids.instruments import INSTRUMENTS, moved, recorded
 from grids.instruments.base import Surroundings
 from grids.instruments.filter import REACH, Kind, discrete
 from grids.instruments.staged import recorded_in_stages
-from grids.instruments.windowed import read_at, recorded_in_windows
+from grids.instruments.windowed import read_at, recorded_in_windows, same_base, samples_ahead
 from models.shaking import Shaking
 
 STEP = 0.002
@@ -36,7 +36,8 @@ def test_null_changes_nothing(name: str) -> None:
 def test_declares_what_a_fit_needs(name: str) -> None:
     sensor = INSTRUMENTS[name]
     assert sensor.name == name
-    assert sensor.acts and set(sensor.acts) <= {"base", "clock", "response", "lag", "reach", "windowed", "whole"}
+    known = {"base", "clock", "response", "lag", "ahead", "reach", "windowed", "whole"}
+    assert sensor.acts and set(sensor.acts) <= known
     first = sensor.parameters[0]
     assert first.low < first.high and (np.isinf(first.null) or first.low <= first.null <= first.high)
     assert sensor.sentence.format_map(sensor.nulls)
@@ -158,6 +159,32 @@ def test_filter_is_butterworth(order: int, corner: float) -> None:
     assert np.sqrt(2 * np.mean(out**2)) == pytest.approx(np.sqrt(0.5), rel=5e-3)
 
 
+@pytest.mark.parametrize("order", [1, 2, 4])
+@pytest.mark.parametrize("frequency", [0.7, 5.0, 9.0])
+def test_a_filter_of_zero_phase_has_the_squared_gain_and_no_lag(order: int, frequency: float) -> None:
+    corner, time = 8.0, STEP * np.arange(4000)
+    switched = {"filter": {"corner_hz": corner, "order": float(order), "zero_phase": 1.0}}
+    wave = np.sin(2 * np.pi * frequency * time)
+    out = recorded({"rotation_1": wave}, switched, Surroundings(STEP, np.zeros(time.size)))["rotation_1"]
+    inner = slice(1000, 3000)
+    np.testing.assert_allclose(out[inner], wave[inner] / (1.0 + (frequency / corner) ** (2 * order)), atol=1e-4)
+
+
+@pytest.mark.parametrize("order", [1, 2, 4])
+@pytest.mark.parametrize("corner", [8.0, 25.0])
+def test_a_filter_of_zero_phase_in_windows_is_that_of_the_record(order: int, corner: float) -> None:
+    """From a peak on; a window runs on for what the filter needs of later samples, a knock after its end among them."""
+    values = {**INSTRUMENTS["filter"].nulls, "corner_hz": corner, "order": float(order), "zero_phase": 1.0}
+    motion = 0.1 * np.cos(2 * np.pi * 0.9 * STEP * (np.arange(4000) - 1000))
+    motion[1300:] += 0.2 * STEP * np.arange(2700)  # its rate jumps, as at an impact
+    record = recorded({"rotation_1": motion}, {"filter": values}, Surroundings(STEP, np.zeros(4000)))["rotation_1"]
+    samples = 295 + samples_ahead({"filter": values}, STEP)
+    window = {"rotation_1": motion[1000 : 1000 + samples]}
+    seen = recorded_in_windows(window, {"filter": values}, Surroundings(STEP, np.zeros(samples)))["rotation_1"]
+    np.testing.assert_allclose(seen[:295], record[1000:1295], atol=2e-4)
+    assert same_base({"filter": values}) == same_base({"filter": {**values, "corner_hz": 30.0}})
+
+
 @pytest.mark.parametrize("order", [1, 2, 3, 4])
 @pytest.mark.parametrize("kind", ["lowpass", "highpass"])
 @pytest.mark.parametrize("share", [0.0, 0.25, 0.75])
@@ -221,10 +248,11 @@ def test_a_filter_in_windows_of_few_samples_a_cycle_is_the_filter_of_the_record(
         np.testing.assert_allclose(seen[4:47], wanted[4:47], atol=0.01)
 
 
-def test_a_filter_in_windows_passes_on_what_is_not_finite() -> None:
+@pytest.mark.parametrize("zero_phase", [0.0, 1.0])
+def test_a_filter_in_windows_passes_on_what_is_not_finite(zero_phase: float) -> None:
     """The motion of a wall that falls, or cannot stand, is nan; its window is told as such and others are filtered."""
     sensor, around = INSTRUMENTS["filter"], Surroundings(STEP, np.zeros((2, 400)))
-    values = {**sensor.nulls, "corner_hz": 8.0, "order": 2.0}
+    values = {**sensor.nulls, "corner_hz": 8.0, "order": 2.0, "zero_phase": zero_phase}
     both = np.tile(np.sin(7.0 * STEP * np.arange(400)), (2, 1))
     whole = sensor.acts["windowed"]({"rotation_1": both}, values, around)["rotation_1"]
     both[0, 250:] = np.nan

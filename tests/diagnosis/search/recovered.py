@@ -32,7 +32,7 @@ SENSORS: dict[str, dict[str, float]] = {
     "offset": {"offset_over_peak": 0.04},
     "delay": {"delay": 0.006},
     "clock": {"rate": 0.002},
-    "filter": {"corner_hz": 8.0, "order": 2.0},
+    "filter": {"corner_hz": 8.0, "order": 2.0, "zero_phase": 0.0},
     "base_filter": {"high_pass_hz": 0.2},
     "base_gain": {"gain": 0.06},
     "drift": {"rate": 0.0005},

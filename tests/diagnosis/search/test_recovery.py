@@ -7,9 +7,11 @@ from functools import cache
 import pytest
 
 import models
+from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.setup import base_fit, measure
 from diagnosis.search.candidates import candidates
-from diagnosis.search.refit import Explanation
+from diagnosis.search.refit import Explanation, best_of, extend
+from diagnosis.search.screen import score
 from grids.instruments import INSTRUMENTS
 from grids.instruments.base import Level
 from tests.diagnosis.made import PEAK, SPECIMEN, recording
@@ -37,7 +39,7 @@ EFFECTS: dict[str, dict[str, float]] = {
     "offset": {"offset_over_peak": 0.03},
     "delay": {"delay": 0.006},
     "clock": {"rate": 0.002},
-    "filter": {"corner_hz": 8.0, "order": 2.0},
+    "filter": {"corner_hz": 8.0, "order": 2.0, "zero_phase": 0.0},
     "base_filter": {"high_pass_hz": 0.1},
     "base_gain": {"gain": 0.04},
     "drift": {"rate": 0.0004},
@@ -60,8 +62,11 @@ TOLD_BY_TWO = ("sliding", "eccentricity")
 
 @cache
 def base(name: str) -> Explanation:
-    effect, integrator = {name: EFFECTS[name]}, "reference" if name == BY_THE_REFERENCE else "lanes"
     seeds = (1, 2) if name in TOLD_BY_TWO else (1,)
+    return _base({name: EFFECTS[name]}, seeds, "reference" if name == BY_THE_REFERENCE else "lanes")
+
+
+def _base(effect: dict[str, dict[str, float]], seeds: tuple[int, ...], integrator: str = "lanes") -> Explanation:
     recordings = [recording(f"train_{k}", k, effect, integrator=integrator) for k in seeds]
     return Explanation((), base_fit(SPECIMEN, measure(SPECIMEN, recordings), 0))
 
@@ -76,6 +81,22 @@ def test_a_simulated_effect_is_seen_and_recovered(name: str) -> None:
     before = base(name)
     own = [c for c in candidates(before.measured, SPECIMEN) if c.name == name and c.held.items() <= _held(name).items()]
     assert_recovered(before, own, _truth(name, before))
+
+
+def test_a_low_pass_run_both_ways_is_told_from_a_causal_one() -> None:
+    """It has no lag, so its own fit has to explain what no causal one does."""
+    values = {"corner_hz": 4.0, "order": 2.0, "zero_phase": 1.0}
+    before = _base({"filter": values}, (1,))
+    low = [c for c in candidates(before.measured, SPECIMEN) if c.unknowns[0].name == "filter.corner_hz"]
+    causal, own = ([c for c in low if c.held["filter.zero_phase"] == way] for way in (0.0, 1.0))
+    assert len(causal) == len(own) == 4
+    opened = linearise_about(before.fitted)
+    assert_recovered(before, [c for c in own if c.held["filter.order"] == values["order"]], values["corner_hz"])
+    causal_fits, own_fits = (
+        [extend(before, s.candidate, start) for s in score(opened, some) for start in s.starts]
+        for some in (causal, own)
+    )
+    assert best_of([before, *causal_fits]).loss > best_of(own_fits).loss + 20.0
 
 
 def _held(name: str) -> dict[str, float]:

@@ -26,10 +26,10 @@ def search(corner: float, order: float) -> Search:
     measured = measure(SPECIMEN, [recording(f"run_{seed}", seed, true) for seed in (1, 2)])
     filters = [c for c in candidates(measured, SPECIMEN) if c.unknowns[0].name == "filter.corner_hz"]
     base = Explanation((), base_fit(SPECIMEN, measured))
-    (own,) = [c for c in filters if c.held["filter.order"] == ORDER]
+    (own,) = [c for c in filters if c.held == {"filter.order": ORDER, "filter.zero_phase": 0.0}]
     errors = estimate(extend(base, own, own.null).fitted, disturbance_about(base.fitted))
     found = Search(reweighed(base, errors), tuple(filters), errors)
-    (one,) = [c for c in filters if c.held["filter.order"] == order]
+    (one,) = [c for c in filters if c.held == {"filter.order": order, "filter.zero_phase": 0.0}]
     found.best = extend(found.base, one, np.array([one.unknowns[0].coordinate(corner)]))
     return found
 
@@ -40,7 +40,9 @@ def test_the_likeliest_order_is_taken_and_its_interval_holds_those_that_fit_as_w
     with_other_numbers(found)
     best = found.best
     assert best is not None
-    assert {c.held["filter.order"] for e in [best, *variants(best, found.tried)] for c in e.candidates} == {1, 2, 3, 4}
+    tried = [c.held for e in [best, *variants(best, found.tried)] for c in e.candidates]
+    assert {one["filter.order"] for one in tried} == {1, 2, 3, 4}
+    assert {one["filter.zero_phase"] for one in tried} == {0, 1}
     order = held_numbers(best, found.tried)["filter.order"]
     assert order.low95 <= ORDER <= order.high95
     assert (order.low95 == order.high95) is known
