@@ -67,6 +67,7 @@ def test_a_point_is_predicted_alike_in_any_company() -> None:
         {}, {"filter.corner_hz": 20.0, "filter.order": 2.0}, {"filter.corner_hz": 9.0, "filter.order": 4.0},
         {"filter.high_pass_hz": 0.3, "filter.order": 1.0}, {"clock.rate": 2e-3}, {"delay.delay": 0.007},
         {"filter.corner_hz": 30.0, "filter.order": 2.0, "base_gain.gain": 0.05},
+        {"filter.corner_hz": 12.0, "filter.order": 2.0, "filter.zero_phase": 1.0},
     ]  # fmt: skip
     points = [Point({**TRUE, **one}, measured.states + 1e-4 * k) for k, one in enumerate(sensors)]
     predictor = Predictor(measured)
