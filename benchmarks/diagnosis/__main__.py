@@ -12,12 +12,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.diagnosis", description=__doc__)
     parser.add_argument(
         "what", nargs="?", default="diagnosis",
-        choices=("diagnosis", "laboratory", "beginnings", "walls", "stacks", "bases", "nameless", "power", "methods",
-                 "same"),
-        help="cases with white noise (default), with a laboratory's errors, with effects that begin, of walls on "
-        "rubber, of two stacked blocks or of wrong base models, where single effects are found without a name, what "
-        "estimating the errors costs in power, what other methods say of the first, or whether two runs over them "
-        "agree",
+        choices=("diagnosis", "laboratory", "processed", "beginnings", "walls", "stacks", "bases", "nameless", "power",
+                 "methods", "same"),
+        help="cases with white noise (default), with a laboratory's errors, processed after recording, with effects "
+        "that begin, of walls on rubber, of two stacked blocks or of wrong base models, where single effects are found "
+        "without a name, what estimating the errors costs in power, what other methods say of the first, or whether "
+        "two runs over them agree",
     )  # fmt: skip
     parser.add_argument("--out", type=Path, default=Path("results/bench"), help="folder of the results")
     parser.add_argument("--jobs", type=int, default=2, help="processes")

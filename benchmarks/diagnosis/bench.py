@@ -1,5 +1,7 @@
-"""The benchmark of the diagnosis on concealed cases of our own: with white noise, with a
-laboratory's errors, with effects that begin, of walls on rubber, of stacks, or of wrong base models.
+"""The benchmark of the diagnosis on concealed cases of our own.
+
+With white noise, with a laboratory's errors, with recordings that were processed, with effects that begin, of walls on
+rubber, of stacks, or of wrong base models.
 """
 
 from __future__ import annotations
@@ -34,6 +36,7 @@ OF_STACKS = ("stacks.py", *OF_TWO_BODIES, "rigid_stack.py", "bases.py")
 BENCHES = {
     "diagnosis": Bench(suite.suite, report.grouped),
     "laboratory": Bench(laboratory.suite, report.by_imperfection),
+    "processed": Bench(laboratory.processed, report.by_imperfection),
     "beginnings": Bench(beginnings.suite, report.by_beginning),
     "walls": Bench(walls.designs, report.of_all, ("walls.py", *OF_TWO_BODIES, "fibre_wall.py"), "interface"),
     "stacks": Bench(stacks.designs, report.of_all, OF_STACKS, "stacked"),

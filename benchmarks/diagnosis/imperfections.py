@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 from scipy.signal import lfilter
 
 from benchmarks.diagnosis.instruments import Sensors
+from benchmarks.diagnosis.processing import PROCESSED
 
 FloatArray = NDArray[np.float64]
 
@@ -46,7 +47,10 @@ CORNER_HZ = (30.0, 60.0)
 
 @dataclass(frozen=True)
 class Imperfections:
-    """Of one case. Shares: of the variance for the colours, of the peak for hum and drift."""
+    """Of one case. Shares: of the variance for the colours, of the peak for hum and drift.
+
+    ``processing``: what is done to the recordings afterwards (`processing.PROCESSED`).
+    """
 
     names: tuple[str, ...] = ()
     scatter: float = 0.0
@@ -58,11 +62,13 @@ class Imperfections:
     proportional: float = 0.0
     drift: float = 0.0
     sensors: Sensors = field(default_factory=dict)
+    processing: str = ""
 
     @property
     def named_rightly(self) -> list[str]:
         """Names of instruments that an answer may hold beside the hidden effects."""
-        return sorted({name for one in self.names for name in NAMED_RIGHTLY.get(one, ()) if name in self._acting})
+        found = {name for one in self.names for name in NAMED_RIGHTLY.get(one, ()) if name in self._acting}
+        return sorted(found.union(PROCESSED[self.processing].named_rightly) if self.processing else found)
 
     @property
     def _acting(self) -> set[str]:
@@ -111,6 +117,8 @@ def _drawn(name: str, sensors: Sensors, sampling_hz: float, rng: np.random.Gener
     def between(ends: tuple[float, float]) -> float:
         return float(rng.uniform(*ends))
 
+    if name in PROCESSED:
+        return {"processing": name}
     if name in SCATTER:
         return {"scatter": SCATTER[name]}
     if name == "ar1":

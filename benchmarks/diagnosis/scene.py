@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from benchmarks.diagnosis import instruments, shakings, size, specimens, truth
 from benchmarks.diagnosis.imperfections import Imperfections
+from benchmarks.diagnosis.processing import PROCESSED
 from models.housner.lanes import run as lanes
 from models.housner.model import MODEL
 from models.housner.reference import run as reference
@@ -163,4 +164,6 @@ class Scene:
                 channels[name] = sampled + errors.noise(sampled, 1.0 / self.sampling_hz, share, largest, rng)
             else:
                 channels[name] = sampled + noise[name] * rng.normal(size=sampled.size)
+        if errors.processing:
+            channels = PROCESSED[errors.processing](channels, self.sampling_hz, rng)
         return channels, noise

@@ -30,7 +30,8 @@ NOT_HALVED = ("sliding",)
 class CaseDesign:
     """What case ``number`` is to hold: catalogue names (or one law's), at which noise and size.
 
-    ``imperfection``: one of `imperfections.NAMES`, or none; ``beginning``: one of `beginnings.BEGINNINGS`, or none.
+    ``imperfection``: one of `imperfections.NAMES` or `processing.PROCESSED`; ``beginning``: one of
+    `beginnings.BEGINNINGS`; empty: none.
     """
 
     number: int
@@ -63,8 +64,8 @@ GROUPS = (
 
 
 MAKERS = (
-    "beginnings", "cases", "effects", "imperfections", "instruments", "laboratory", "open_laws", "scene", "shakings",
-    "size", "specimens", "suite", "truth", "unseen_laws",
+    "beginnings", "cases", "effects", "imperfections", "instruments", "laboratory", "open_laws", "processing", "scene",
+    "shakings", "size", "specimens", "suite", "truth", "unseen_laws",
 )  # fmt: skip
 """Files that the cases of a seed depend on."""
 
