@@ -10,7 +10,7 @@ import numpy as np
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.unknowns import clip
 from diagnosis.search.candidates import Candidate
-from diagnosis.search.found import MISSING, Search, adjusted, enough, explains_all, within_reach
+from diagnosis.search.found import MISSING, Search, adjusted, enough, explains_all, lost_in_a_window, within_reach
 from diagnosis.search.refit import QUICK, Explanation, again, best_of, extend, from_starts, joined
 from diagnosis.search.screen import Score, score
 from models.base import FloatArray
@@ -119,7 +119,10 @@ def extended(
         except InputError as refusal:  # it does not act together with an effect of the explanation
             found.not_tried.setdefault(single.names[0], str(refusal))
     fits.sort(key=adjusted)
-    return [again(e) if k < THOROUGH and within_reach(e, fits[0]) else e for k, e in enumerate(fits)]
+    return [
+        again(e) if (k < THOROUGH and within_reach(e, fits[0])) or lost_in_a_window(e, fits[0]) else e
+        for k, e in enumerate(fits)
+    ]
 
 
 def _second_elements(scores: Sequence[Score]) -> list[Candidate]:

@@ -285,6 +285,17 @@ def within_reach(explanation: Explanation, leader: Explanation) -> bool:
     return loss < adjusted(leader) + BEHIND or loss < enough([leader])
 
 
+def lost_in_a_window(explanation: Explanation, leader: Explanation) -> bool:
+    """Whether it is out of reach of a ``leader`` that explains everything by one window alone.
+
+    The motion of a window may have lost its way, to one with other events, and the parameters with it.
+    """
+    if within_reach(explanation, leader):
+        return False
+    furthest = float(np.max(gain_by_window(explanation, leader)))
+    return adjusted(explanation) - furthest < enough([leader])
+
+
 class Near(NamedTuple):
     """An explanation with one effect exchanged, within the gap: ``candidate`` in the place of those ``replaced``."""
 

@@ -23,6 +23,7 @@ from diagnosis.search.found import (
     adjusted,
     enough,
     explains_all,
+    lost_in_a_window,
     passes_for_white,
     within_reach,
 )
@@ -106,10 +107,12 @@ def refit_singles(found: Search, progress: Progress) -> None:
     leader = found.singles[0]
     near = NEAR_ADEQUATE if adequate(leader) else NEAR
     for k, single in enumerate(found.singles[1:], start=1):
-        if found.gain(single) <= near * found.gain(leader) or not found.affordable(single.names[0]):
+        lost = lost_in_a_window(single, leader)
+        if (found.gain(single) <= near * found.gain(leader) and not lost) or not found.affordable(single.names[0]):
             continue
         single = from_other(single, leader, enough([leader]))
-        found.singles[k] = again(single) if k < THOROUGH and within_reach(single, leader) else single
+        thoroughly = (k < THOROUGH and within_reach(single, leader)) or lost_in_a_window(single, leader)
+        found.singles[k] = again(single) if thoroughly else single
     least = NEAR * found.gain(leader)  # of a law with a memory counts along its own motion may add much
     found.singles = [
         with_memory(single) if found.gain(single) > least and within_reach(single, leader) else single

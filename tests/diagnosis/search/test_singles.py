@@ -17,7 +17,7 @@ from diagnosis.fit.starts import nominal
 from diagnosis.progress import silent
 from diagnosis.search import refit, singles, weighing
 from diagnosis.search.candidates import Candidate, candidates
-from diagnosis.search.found import BEHIND, Search, adjusted, enough, explains_all, within_reach
+from diagnosis.search.found import BEHIND, Search, adjusted, enough, explains_all, lost_in_a_window, within_reach
 from diagnosis.search.refit import Explanation, extend, from_states_of, with_memory
 from diagnosis.search.singles import COSTLY, THRESHOLD, in_turn, led_by, refit_singles
 from diagnosis.search.weighing import Judged, evidence, led_by_each_other, reweighed
@@ -84,6 +84,43 @@ def test_what_explains_more_is_told_though_its_fit_was_stuck(free: Search) -> No
     assert led[0].loss < judged[1].loss - 15.0 and led[0].explanation.names == ("delay",)
     hopeless = judged[0]._replace(loss=judged[0].loss + 1e6)
     assert led_by_each_other([hopeless, judged[1]], free)[0] is hopeless
+
+
+def worse_in(explanation: Explanation, by: dict[int, float]) -> Explanation:
+    f = explanation.fitted
+    losses = f.window_losses.copy()
+    for window, loss in by.items():
+        losses[window] += loss
+    return replace(explanation, fitted=replace(f, window_losses=losses, loss=f.loss + sum(by.values())))
+
+
+def test_what_is_out_of_reach_by_one_window_may_have_lost_its_way_there(free: Search) -> None:
+    (late,) = (e for e in free.singles if e.names == ("delay",))
+    assert explains_all(late)
+    assert lost_in_a_window(worse_in(late, {2: 10.0 * BEHIND}), late)
+    assert lost_in_a_window(worse_in(late, {2: 10.0 * BEHIND, 0: 0.8 * BEHIND}), late)
+    assert not lost_in_a_window(worse_in(late, {2: 10.0 * BEHIND, 0: 1.2 * BEHIND}), late)
+    assert not lost_in_a_window(worse_in(late, {2: 0.9 * BEHIND}), late)  # it is within reach
+
+
+def test_a_single_that_lost_its_way_in_one_window_is_fitted_again(
+    monkeypatch: pytest.MonkeyPatch, free: Search
+) -> None:
+    """Though it explains less than what is taken from the leader's optimum: that window decides nothing."""
+    late, gain = sorted(free.singles, key=lambda e: e.names[0] == "gain")
+    lost = worse_in(replace(late, candidates=gain.candidates), {2: 10.0 * BEHIND})
+    monkeypatch.setattr(singles, "over_ranges", lambda one: one)
+    monkeypatch.setattr(singles, "reshaped", lambda one: one)
+    for name in ("at_other_joints", "_may_hide"):
+        monkeypatch.setattr(singles, name, lambda _: False)
+    monkeypatch.setattr(singles, "led_by", lambda *_: False)
+    monkeypatch.setattr(singles, "in_its_place", lambda *_: None)
+    monkeypatch.setattr(singles, "from_other", lambda one, *_: one)
+    monkeypatch.setattr(singles, "_refit_in_turn", lambda found, *_: found.singles.extend([late, lost]) or [])
+    taken: list[Explanation] = []
+    monkeypatch.setattr(singles, "again", lambda one: taken.append(one) or one)
+    refit_singles(replace(free, singles=[]), silent)
+    assert [one is late for one in taken] == [True, False] and taken[1] is lost
 
 
 def without_restarts(monkeypatch: pytest.MonkeyPatch) -> None:
