@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.data.noise import response_noise
+from diagnosis.data.noise import response_levels, response_noise
 from diagnosis.data.smoothing import smooth
 from diagnosis.data.windows import Window
 from grids.recordings.base import REQUIRED, FloatArray, Recording
@@ -24,7 +24,7 @@ def gather(recordings: Sequence[Recording], windows: Sequence[Window], channels:
     shape = (len(windows), len(channels), longest)
     values, mask = np.zeros(shape), np.zeros(shape, bool)
     sigma, base = np.ones(shape[:2]), np.zeros((shape[0], longest))
-    noise = {(k, c): response_noise(r, c) for k, r in enumerate(recordings) for c in channels}
+    noise = {(k, c): response_levels(r, c) for k, r in enumerate(recordings) for c in channels}
     for w, window in enumerate(windows):
         recording = recordings[window.recording]
         part = slice(window.first, window.first + window.samples)
@@ -36,7 +36,7 @@ def gather(recordings: Sequence[Recording], windows: Sequence[Window], channels:
             if name in recording.places and recording.places[name].order:  # a difference over both neighbours
                 mask[w, c, 0] = False
                 mask[w, c, window.samples - 1] &= window.first + window.samples < recording.time.size
-            sigma[w, c] = noise[window.recording, name]
+            sigma[w, c] = noise[window.recording, name][window.first + window.samples // 2]
         last = min(window.first + longest, recording.time.size)
         base[w, : last - window.first] = recording.channels[REQUIRED][window.first : last]
     return {"values": values, "mask": mask, "sigma": sigma, "base": base}

@@ -15,7 +15,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from grids.recordings.base import REQUIRED, FloatArray, Recording
-from grids.recordings.noise import noise_of
+from grids.recordings.noise import louder, noise_of
 
 BLOCK = 40
 QUIET_SHARE = 0.1
@@ -47,6 +47,19 @@ def response_noise(recording: Recording, channel: str) -> float:
         stretches = calm(stretches, recording)
     density = density_level(values, recording.time_step, stretches)
     return max(level, density) if density < MOST * noise.sigma else level
+
+
+def response_levels(recording: Recording, channel: str) -> FloatArray:
+    """The same at every sample (n_times,): the level may change within a recording (`louder`)."""
+    values = recording.channels[channel]
+    found = np.full(values.size, response_noise(recording, channel))
+    change = louder(values)
+    if change is None:
+        return found
+    whole = noise_of(values).sigma
+    found[: change.sample] *= change.before / whole
+    found[change.sample :] *= change.after / whole
+    return found
 
 
 def density_level(values: FloatArray, time_step: float, stretches: Sequence[slice]) -> float:

@@ -13,7 +13,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.data.noise import calm, still
+from diagnosis.data.measured import Measured
+from diagnosis.data.noise import calm, response_levels, still
 from diagnosis.errors.components import Component
 from diagnosis.errors.drifts import knots_of
 from diagnosis.errors.likelihood import Piece
@@ -41,23 +42,29 @@ def stills(scene: Scene, components: Sequence[Component]) -> list[Piece]:
         begins = _beginning(scene.fitted, r) if m.identification.elastic else None
         size = int(m.strides[own[0]])
         for c, name in enumerate(m.channels):
-            unit = float(m.units[own[0], c])
-            after = 0
+            unit, after = _units(m, r, c, own, size), 0
             if begins is not None:
                 after = begins.shape[1]
                 rest = _means(begins[c] - recording.channels[name][:after], size)
                 latest = np.arange(rest.size)[-LONGEST_STILL:]
-                found += _still(scene, components, r, c, latest, rest[latest] / unit)
+                found += _still(scene, components, r, c, latest, rest[latest] / unit[latest])
             values = recording.channels[name]
-            quiet = [s for s in still(values, recording.time_step) if np.std(values[s]) < MOVES * unit]
+            quiet = [s for s in still(values, recording.time_step) if np.std(values[s]) < MOVES * unit[s.start // size]]
             if m.identification.elastic or (name in m.places and m.places[name].absolute):
                 quiet = calm(quiet, recording)
             means = _means(values, size)
             at = np.array([i for s in quiet for i in range(-(-max(s.start, after) // size), s.stop // size)], np.int64)
             if at.size > LONGEST_STILL:
                 at = np.concatenate([at[: LONGEST_STILL // 2], at[-LONGEST_STILL // 2 :]])
-            found += _still(scene, components, r, c, at, -means[at] / unit)
+            found += _still(scene, components, r, c, at, -means[at] / unit[at])
     return found
+
+
+def _units(m: Measured, r: int, c: int, own: NDArray[np.intp], size: int) -> FloatArray:
+    """The units of a channel's errors at every average of a recording (n,), as in its windows ``own``."""
+    levels = response_levels(m.recordings[r], m.channels[c])
+    ratio = float(m.units[own[0], c]) / levels[m.first[own[0]] + m.windows[own[0]].samples // 2]
+    return np.asarray(ratio * levels[: levels.size // size * size : size])
 
 
 def _still(

@@ -27,6 +27,10 @@ MAD_TO_SIGMA = 1.482602218505602
 PASSED = 0.16
 """Cycles a sample, from which on more than a hundredth of a power is left; what is left of a motion lies below."""
 OUTLIER = 4.0
+PARTS, LEAST_PART = 20, 60
+"""Part of a channel at either end that is compared with the other, and the fewest samples of it."""
+CHANGED = 2.0
+"""Ratio of two levels of noise from which on one is another; of `LEAST_PART` samples they scatter by a seventh."""
 LAG_TOLERANCE = 0.1
 """Departure of the lag-one correlation that still counts as white, beside its own scatter 4/sqrt(n)."""
 
@@ -75,6 +79,47 @@ def noise_of(values: FloatArray) -> Noise:
     lag_one = float(before @ after) / size
     tolerance = max(LAG_TOLERANCE, 4.0 / np.sqrt(pairs.sum()))
     return Noise(spread / np.sqrt(energy), lag_one, if_white, abs(lag_one - if_white) < tolerance)
+
+
+@dataclass(frozen=True)
+class Louder:
+    """White noise whose level changes at a ``sample``: standard deviations ``before`` and ``after``."""
+
+    sample: int
+    before: float
+    after: float
+
+
+def louder(values: FloatArray) -> Louder | None:
+    """Where a channel's white noise becomes another for good; None where it does not.
+
+    The likeliest sample at which the variance of the residual r changes, min_k k log v_k + (n - k) log v'_k with v_k
+    the mean square of the first k and v'_k of the others. It counts where the first and the last part of the channel,
+    in which nothing moves as a rule, differ alike: noise that grows with the motion is the same there.
+    """
+    kernel = _high_pass()
+    part = max(LEAST_PART, values.size // PARTS)
+    if values.size < 4 * part:
+        return None
+    residual = without_lines(np.convolve(values, kernel, mode="valid"), PASSED)
+    spread = MAD_TO_SIGMA * float(np.median(np.abs(residual - np.median(residual))))
+    if spread <= 1e-12 * float(np.max(np.abs(values))):
+        return None
+    squares = np.minimum(np.abs(residual), OUTLIER * spread) ** 2
+    sums, n = np.cumsum(squares), squares.size
+    k = np.arange(part, n - part)
+    first, last = sums[k - 1] / k, (sums[-1] - sums[k - 1]) / (n - k)
+    least = 1e-6 * spread**2
+    split = int(k[np.argmin(k * np.log(first + least) + (n - k) * np.log(last + least))])
+    at = split + WINDOW // 2
+    sides = [noise_of(side) for side in (values[:at], values[at:], values[:part], values[-part:])]
+    if not (sides[0].white and sides[1].white and min(side.sigma for side in sides) > 0.0):
+        return None
+    before, after, start, end = (side.sigma for side in sides)
+    changes = np.log([after / before, end / start])
+    if not (np.all(changes > np.log(CHANGED)) or np.all(changes < -np.log(CHANGED))):
+        return None
+    return Louder(at, before, after)
 
 
 def noise_levels(recording: Recording) -> Mapping[str, tuple[Noise, ...]]:

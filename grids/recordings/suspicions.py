@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from grids.recordings import flat_tops
 from grids.recordings.base import REQUIRED, FloatArray, Recording
-from grids.recordings.noise import noise_of
+from grids.recordings.noise import louder, noise_of
 from grids.recordings.zero import zeros
 from grids.units import STANDARD_GRAVITY as GRAVITY
 
@@ -74,6 +74,7 @@ class Rocking:
 def suspicions_of(recording: Recording) -> tuple[str, ...]:
     """The sentences about a recording, possibly none."""
     found = [*_of_samples(recording), *_of_base(recording), *_of_levels(recording), *flat_tops.suspected(recording)]
+    found += _of_noise(recording)
     for name in ("rotation_1", "rotation_2"):
         if name in recording.channels:
             found += _of_rotation(name, recording)
@@ -93,6 +94,15 @@ def _of_samples(recording: Recording) -> Iterator[str]:
             first = seen.setdefault(row.tobytes(), called)
             if first != called:
                 yield f"{called} holds the samples of {first}: is one column named twice?"
+
+
+def _of_noise(recording: Recording) -> Iterator[str]:
+    """Responses whose noise becomes another within the recording."""
+    for name, values in recording.channels.items():
+        if name.startswith("base_") or values.ndim > 1 or (change := louder(values)) is None:
+            continue
+        ratio, at = change.after / change.before, recording.time_step * change.sample
+        yield f"{name} has {ratio:.2g} times the noise from {at:.1f} s on: is a cable loose, or a range switched?"
 
 
 def _of_base(recording: Recording) -> Iterator[str]:

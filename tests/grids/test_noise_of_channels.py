@@ -6,7 +6,10 @@ import numpy as np
 import pytest
 
 from grids.recordings import noise_of
+from grids.recordings.base import Recording
 from grids.recordings.lines import without_lines
+from grids.recordings.noise import louder
+from grids.recordings.suspicions import suspicions_of
 from models.errors import InputError
 
 
@@ -47,3 +50,44 @@ def test_noise_has_no_lines(samples: int) -> None:
     for seed in range(20):
         values = np.random.default_rng(seed).normal(size=samples)
         assert without_lines(values) is values
+
+
+STEP, COUNT = 0.005, 3000
+TIME = STEP * np.arange(COUNT)
+MOTION = 0.03 * np.sin(6.0 * TIME) * np.exp(-(((TIME - 7.0) / 3.0) ** 2))
+
+
+def white(seed: int) -> np.ndarray:
+    return 1e-4 * np.random.default_rng(seed).normal(size=COUNT)
+
+
+@pytest.mark.parametrize("ratio", [3.0, 6.0, 0.3])
+@pytest.mark.parametrize("at", [900, 2000])
+def test_noise_that_becomes_another_is_found_where_it_does(ratio: float, at: int) -> None:
+    found = louder(MOTION + white(1) * np.where(np.arange(COUNT) < at, 1.0, ratio))
+    assert found is not None and abs(found.sample - at) < 30
+    assert found.before == pytest.approx(1e-4, rel=0.1) and found.after == pytest.approx(ratio * 1e-4, rel=0.1)
+
+
+def test_noise_of_one_level_stays_one_whatever_lies_under_it() -> None:
+    """White, coloured, in proportion to the motion, with hum or with knocks; none at all; too short to tell."""
+    for seed in range(20):
+        noise = white(seed)
+        assert louder(MOTION + noise) is None
+        assert louder(MOTION + noise + 0.03 * np.abs(MOTION) * white(seed + 100) / 1e-4) is None
+        assert louder(MOTION + np.convolve(noise, [0.25, 0.5, 0.25], "same")) is None
+        assert louder(MOTION + noise + 3e-4 * np.sin(2 * np.pi * 50.0 * TIME)) is None
+        knocks = np.zeros(COUNT)
+        knocks[1700::97] = 5e-3
+        assert louder(MOTION + noise + knocks) is None
+        assert louder(noise[:200] * np.where(np.arange(200) < 100, 1.0, 5.0)) is None
+    assert louder(MOTION) is None and louder(np.zeros(COUNT)) is None
+
+
+def test_a_channel_that_becomes_louder_is_suspected() -> None:
+    change = np.where(np.arange(COUNT) < 2000, 1.0, 4.0)
+    channels = {"base_acceleration_x": 1e2 * MOTION, "rotation_1": MOTION + white(2)}
+    assert not any("the noise" in one for one in suspicions_of(Recording("run", STEP, TIME, channels)))
+    channels["rotation_1"] = MOTION + change * white(2)
+    (said,) = (one for one in suspicions_of(Recording("run", STEP, TIME, channels)) if "the noise" in one)
+    assert said.startswith("rotation_1 has 3.8 times the noise from 10.0 s on")

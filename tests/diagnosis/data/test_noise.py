@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -9,7 +11,8 @@ from hypothesis import strategies as st
 from scipy.signal import butter, lfilter
 
 from diagnosis import diagnose
-from diagnosis.data.noise import density_level, response_noise, still
+from diagnosis.data.noise import density_level, response_levels, response_noise, still
+from diagnosis.fit.setup import measure
 from grids.recordings import noise_of
 from grids.recordings.base import Recording
 from tests.diagnosis.made import SPECIMEN, TIME_STEP, recording
@@ -48,6 +51,33 @@ def after_rest(name: str, seed: int) -> Recording:
 def test_coloured_noise_is_no_effect() -> None:
     found = diagnose(SPECIMEN, [after_rest("train_1", 2), after_rest("train_2", 4)])
     assert found.verdict == "nothing_missing", found.statement
+
+
+def test_noise_that_becomes_louder_is_no_effect() -> None:
+    """Four times from the middle of each recording on: what is compared is weighed by the level of its time."""
+
+    def made(name: str, seed: int) -> Recording:
+        one = recording(name, seed)
+        rotation = one.channels["rotation_1"]
+        late = np.arange(rotation.size) >= rotation.size // 2
+        noise = np.sqrt(15.0) * 0.01 * np.max(np.abs(rotation)) * np.random.default_rng(seed).normal(size=rotation.size)
+        return replace(one, channels={**one.channels, "rotation_1": rotation + late * noise})
+
+    recordings = [made("train_1", 2), made("train_2", 4)]
+    for one in recordings:
+        levels = response_levels(one, "rotation_1")
+        assert levels[-1] == pytest.approx(4.0 * levels[0], rel=0.15)
+    measured = measure(SPECIMEN, recordings)
+    ratio = measured.units[-1, 0] / measured.units[0, 0]
+    assert measured.recording_of[-1] == 1 and ratio == pytest.approx(4.0 * _peak(recordings), rel=0.15)
+    found = diagnose(SPECIMEN, recordings)
+    assert found.verdict == "nothing_missing", found.statement
+
+
+def _peak(recordings: list[Recording]) -> float:
+    """Of the levels before, of the second recording over the first."""
+    first, second = (response_levels(one, "rotation_1")[0] for one in recordings)
+    return float(second / first)
 
 
 @pytest.mark.parametrize("corner", [None, 20.0, 30.0, 45.0])
