@@ -9,7 +9,7 @@ OLDEST := .venv-oldest
 STUDY := results/rubber_interface
 HEAVY := --select "top_mass=5 t" --select damping_ratio=0.0544
 
-.PHONY: study quick test proofs lint types bench independent faults long fuzz verify processors audit test-oldest agreement diagnosis-bench laboratory-bench beginnings-bench walls-bench stacks-bench bases-bench bench-refine bench-scale gallery docs clean
+.PHONY: study quick test proofs lint types bench independent faults long fuzz verify processors audit test-oldest agreement diagnosis-bench laboratory-bench processed-bench beginnings-bench walls-bench stacks-bench bases-bench bench-refine bench-scale gallery docs clean
 
 study: $(READY)
 	$(BIN)/rocking run studies/rubber_interface.toml
@@ -80,6 +80,9 @@ diagnosis-bench: $(READY)
 
 laboratory-bench: $(READY)
 	$(BIN)/python -m benchmarks.diagnosis laboratory
+
+processed-bench: $(READY)
+	$(BIN)/python -m benchmarks.diagnosis processed
 
 beginnings-bench: $(READY)
 	$(BIN)/python -m benchmarks.diagnosis beginnings
