@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.data.measured import Measured
-from diagnosis.data.noise import calm, response_levels, still
+from diagnosis.data.noise import calm, still
 from diagnosis.errors.components import Component
 from diagnosis.errors.drifts import knots_of
 from diagnosis.errors.likelihood import Piece
@@ -41,8 +41,9 @@ def stills(scene: Scene, components: Sequence[Component]) -> list[Piece]:
             continue
         begins = _beginning(scene.fitted, r) if m.identification.elastic else None
         size = int(m.strides[own[0]])
+        units = _units(m, own, recording.time.size // size, size)
         for c, name in enumerate(m.channels):
-            unit, after = _units(m, r, c, own, size), 0
+            unit, after = units[:, c], 0
             if begins is not None:
                 after = begins.shape[1]
                 rest = _means(begins[c] - recording.channels[name][:after], size)
@@ -60,11 +61,11 @@ def stills(scene: Scene, components: Sequence[Component]) -> list[Piece]:
     return found
 
 
-def _units(m: Measured, r: int, c: int, own: NDArray[np.intp], size: int) -> FloatArray:
-    """The units of a channel's errors at every average of a recording (n,), as in its windows ``own``."""
-    levels = response_levels(m.recordings[r], m.channels[c])
-    ratio = float(m.units[own[0], c]) / levels[m.first[own[0]] + m.windows[own[0]].samples // 2]
-    return np.asarray(ratio * levels[: levels.size // size * size : size])
+def _units(m: Measured, own: NDArray[np.intp], count: int, size: int) -> FloatArray:
+    """The units (n, C) of the errors of averages over ``size`` samples: those of the nearest of the windows ``own``."""
+    middles = m.first[own] + np.array([m.windows[w].samples for w in own]) // 2
+    nearest = np.argmin(np.abs(size * np.arange(count)[:, None] - middles), axis=1)
+    return np.asarray(m.units[own[nearest]])
 
 
 def _still(
