@@ -77,7 +77,7 @@ def score(
 ) -> list[Score]:
     """Statistics of all candidates, strongest first; why the model refuses the others goes into ``not_tried``.
 
-    ``small``: any effect can only be small, and derivatives are enough where there are any.
+    ``small``: any effect can only be small, and derivatives are enough where there are any at its null.
     """
     base = screen.fitted.misfit.point(screen.fitted.u, screen.fitted.states)
     found = []
@@ -96,7 +96,8 @@ def _score_one(screen: Linearisation, base: Point, candidate: Candidate, small: 
     def reduced(trials: Sequence[FloatArray]) -> FloatArray:
         return screen.reduced(misfit.residuals([at(base, candidate, u) for u in trials]))
 
-    return (_by_slopes(screen, candidate, reduced) if small else None) or _by_values(screen, candidate, reduced)
+    by_slopes = _by_slopes(screen, candidate, reduced) if small and not candidate.steep else None
+    return by_slopes or _by_values(screen, candidate, reduced)
 
 
 def _by_slopes(screen: Linearisation, candidate: Candidate, reduced: Reduced) -> Score | None:
