@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.signal import butter, lfilter
+from scipy.signal import butter, lfilter, sosfiltfilt
 
 from diagnosis import diagnose
 from diagnosis.data.noise import density_level, response_levels, response_noise, still
@@ -51,6 +51,17 @@ def after_rest(name: str, seed: int) -> Recording:
 def test_coloured_noise_is_no_effect() -> None:
     found = diagnose(SPECIMEN, [after_rest("train_1", 2), after_rest("train_2", 4)])
     assert found.verdict == "nothing_missing", found.statement
+
+
+@pytest.mark.parametrize("corner", [15.0, 25.0])
+def test_the_density_is_that_below_a_steep_filter_without_phase(corner: float) -> None:
+    """Next to nothing is left of the noise at the highest frequencies, which says nothing of where effects lie."""
+    plain, density = with_noise(3, None)
+    sections = butter(4, corner, fs=1.0 / TIME_STEP, output="sos")
+    rotation = sosfiltfilt(sections, plain.channels["rotation_1"])
+    made = replace(plain, channels={**plain.channels, "rotation_1": rotation})
+    assert noise_of(rotation).sigma < 0.02 * density
+    assert response_noise(made, "rotation_1") == pytest.approx(density, rel=0.25)
 
 
 def test_noise_that_becomes_louder_is_no_effect() -> None:
