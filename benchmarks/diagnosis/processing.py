@@ -25,7 +25,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
-from scipy.signal import butter, detrend, sosfiltfilt
+from scipy.signal import detrend
+
+from benchmarks.diagnosis.instruments import both_ways
 
 FloatArray = NDArray[np.float64]
 Process = Callable[[FloatArray, float, np.random.Generator], FloatArray]
@@ -59,8 +61,7 @@ class Processing:
 
 def _both_ways(low: float, high: float, kind: str, orders: tuple[int, ...]) -> Process:
     def process(signal: FloatArray, sampling_hz: float, rng: np.random.Generator) -> FloatArray:
-        sections = butter(int(rng.choice(orders)), rng.uniform(low, high), kind, fs=sampling_hz, output="sos")
-        return np.asarray(sosfiltfilt(sections, signal))
+        return both_ways(signal, 1.0 / sampling_hz, int(rng.choice(orders)), rng.uniform(low, high), kind)
 
     return process
 
