@@ -53,14 +53,11 @@ def response_noise(recording: Recording, channel: str) -> float:
 def response_levels(recording: Recording, channel: str) -> FloatArray:
     """The same at every sample (n_times,): the level may change within a recording (`louder`)."""
     values = recording.channels[channel]
-    found = np.full(values.size, response_noise(recording, channel))
     change = louder(values)
     if change is None:
-        return found
-    whole = noise_of(values).sigma
-    found[: change.sample] *= change.before / whole
-    found[change.sample :] *= change.after / whole
-    return found
+        return np.full(values.size, response_noise(recording, channel))
+    levels = np.where(np.arange(values.size) < change.sample, change.before, change.after)
+    return np.maximum(levels, RELATIVE_FLOOR * float(np.max(np.abs(values))))
 
 
 def density_level(values: FloatArray, time_step: float, stretches: Sequence[slice]) -> float:

@@ -69,3 +69,23 @@ def test_a_block_that_rocks_by_little_is_not_still(seed: int, rests: bool) -> No
     nothing = np.zeros((*measured.values.shape, 0))
     found = stills(opened(base_fit(SPECIMEN, measured), nothing, nothing), [Component("white", 0)])
     assert len(found) == rests and all(piece.residual.std() < 1.2 for piece in found)
+
+
+def test_rest_after_noise_became_louder_is_weighed_by_its_level() -> None:
+    """A block that is still at the end alone, four times as loud from the middle on: the noise there is of one unit."""
+    moving, rest = recording("run", 13, noise=0.0), round(3.0 / TIME_STEP)
+    rotation = moving.channels["rotation_1"] * np.linspace(1.0, 0.0, moving.time.size)
+    rotation = np.concatenate([rotation, np.zeros(rest)])
+    level = 2e-4 * np.where(np.arange(rotation.size) < rotation.size // 2, 1.0, 4.0)
+    channels = {
+        "base_acceleration_x": np.concatenate([moving.channels["base_acceleration_x"], np.zeros(rest)]),
+        "rotation_1": rotation + level * np.random.default_rng(3).normal(size=rotation.size),
+    }
+    made = Recording("run", moving.time_step, TIME_STEP * np.arange(rotation.size), channels)
+    measured = measure(SPECIMEN, [made])
+    nothing = np.zeros((*measured.values.shape, 0))
+    found = stills(opened(base_fit(SPECIMEN, measured), nothing, nothing), [Component("white", 0)])
+    late = [piece for piece in found if piece.time.min() > 0.5 * made.time[-1]]
+    assert late
+    for piece in late:
+        assert np.std(piece.residual) * np.sqrt(measured.strides[0]) == pytest.approx(1.0, rel=0.25)
