@@ -92,6 +92,11 @@ def test_a_low_pass_run_both_ways_is_told_from_a_causal_one() -> None:
     assert len(causal) == len(own) == 4
     opened = linearise_about(before.fitted)
     assert_recovered(before, [c for c in own if c.held["filter.order"] == values["order"]], values["corner_hz"])
+    best = score(opened, own)[0]  # its values are near one another: none but those near the true corner show it
+    start = best.candidate.unknowns[0].value(float(best.starts[0][0]))
+    assert best.candidate.held["filter.order"] == values["order"] and start == pytest.approx(
+        values["corner_hz"], rel=0.1
+    )
     causal_fits, own_fits = (
         [extend(before, s.candidate, start) for s in score(opened, some) for start in s.starts]
         for some in (causal, own)
