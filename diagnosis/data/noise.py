@@ -23,10 +23,18 @@ RELATIVE_FLOOR = 1e-4
 """Least noise assumed over the channel's peak, for computed channels."""
 BAND = 15.0
 """Hz, below which the effects of mechanisms lie."""
+BANDS = (BAND, 10.0, 6.0, 4.0)
+"""Hz, below one of which noise is flat that went through a slow filter: looked at where nothing moves the base."""
+LINES = 10
+"""Fewest lines of a spectrum that tell whether it is flat."""
 STILL, FEWEST = 0.35, 3
 """s that nothing moves, and how many such stretches must follow one another."""
 CALM = 10.0
 """Range of the base's acceleration over its noise while nothing shakes it."""
+WEAK = 0.05
+"""Range of the base's acceleration over its peak under which nothing begins to rock."""
+NOISIEST = 0.05
+"""Level over the channel's peak, from which on it is no noise."""
 LIKE = 1.5
 """Range of a still stretch over that of the stillest ones."""
 MOST = 1e4
@@ -47,7 +55,9 @@ def response_noise(recording: Recording, channel: str) -> float:
     if channel in recording.places and recording.places[channel].absolute:  # it holds the motion of the base
         stretches = calm(stretches, recording)
     density = density_level(values, recording.time_step, stretches)
-    return max(level, density) if density < MOST * noise.sigma else level
+    if not 0.0 < density < MOST * noise.sigma:  # a motion, but where nothing moves the base
+        density = density_level(values, recording.time_step, calm(stretches, recording, WEAK), BANDS)
+    return max(level, density) if density < NOISIEST * float(np.max(np.abs(values))) else level
 
 
 def response_levels(recording: Recording, channel: str) -> FloatArray:
@@ -60,23 +70,30 @@ def response_levels(recording: Recording, channel: str) -> FloatArray:
     return np.maximum(levels, RELATIVE_FLOOR * float(np.max(np.abs(values))))
 
 
-def density_level(values: FloatArray, time_step: float, stretches: Sequence[slice]) -> float:
-    """Standard deviation of the white noise as dense below `BAND` as a channel's while it is still; 0 if it never is.
+def density_level(
+    values: FloatArray, time_step: float, stretches: Sequence[slice], bands: Sequence[float] = (BAND,)
+) -> float:
+    """Standard deviation of the white noise as dense as a channel's at low frequencies while it is still; 0 if never.
 
     With the periodogram P(f) = |sum_j (x_j - mean) exp(-2 pi i f t_j)|^2/n of n samples white noise has
-    E P = sigma^2 at every frequency. A spectrum that is not flat is that of a motion.
+    E P = sigma^2 at every frequency. The mean is that below `BAND`, or in the lower half of the widest other of the
+    ``bands`` (Hz) below which the spectrum is flat; one that is flat below none is that of a motion.
     """
-    found = []
+    frequencies: list[FloatArray] = [np.zeros(0)]
+    powers: list[FloatArray] = [np.zeros(0)]
     for stretch in stretches:
         x = values[stretch]
-        frequency = np.fft.rfftfreq(x.size, time_step)
-        inside = (frequency > 0.0) & (frequency < BAND)
-        found.append(np.abs(np.fft.rfft(x - x.mean())[inside]) ** 2 / x.size)
-    power = np.concatenate(found) if found else np.zeros(1)
-    mean = float(np.mean(power))
-    if mean == 0.0 or float(np.exp(np.mean(np.log(np.maximum(power, 1e-30 * mean))))) < FLAT * mean:
-        return 0.0
-    return float(np.sqrt(mean))
+        frequencies.append(np.asarray(np.fft.rfftfreq(x.size, time_step)[1:], np.float64))
+        powers.append(np.abs(np.fft.rfft(x - x.mean())[1:]) ** 2 / x.size)
+    frequency, power = np.concatenate(frequencies), np.concatenate(powers)
+    for band in bands:
+        inside = power[frequency < band]
+        if inside.size < LINES or not np.any(inside):
+            break
+        mean = float(np.mean(inside))
+        if float(np.exp(np.mean(np.log(np.maximum(inside, 1e-30 * mean))))) >= FLAT * mean:
+            return float(np.sqrt(mean if band == BAND else np.mean(power[frequency < 0.5 * band])))
+    return 0.0
 
 
 def _block(time_step: float) -> int:
@@ -84,10 +101,14 @@ def _block(time_step: float) -> int:
     return max(8, round(STILL / time_step))
 
 
-def calm(stretches: Sequence[slice], recording: Recording) -> list[slice]:
-    """The parts of ``stretches`` in which the base, for as long as counts as still, moves by no more than its noise."""
+def calm(stretches: Sequence[slice], recording: Recording, share: float = 0.0) -> list[slice]:
+    """The parts of ``stretches`` in which the base, for as long as counts as still, moves by no more than its noise.
+
+    Or by no more than a ``share`` of its peak.
+    """
     base, size = recording.channels[REQUIRED], _block(recording.time_step)
-    most, reach = CALM * base_noise(recording), FEWEST * size
+    most = max(CALM * base_noise(recording), share * float(np.max(np.abs(base))))
+    reach = FEWEST * size
     found: list[slice] = []
     for stretch in stretches:
         for k in range(stretch.start, stretch.stop - reach + 1, size):

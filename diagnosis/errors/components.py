@@ -22,11 +22,24 @@ from numpy.typing import NDArray
 from models.base import FloatArray
 
 Kind = Literal[
-    "white", "low_pass", "exponential", "slow_drift", "hum", "growing", "scatter", "base_drift", "inadequacy"
+    "white",
+    "low_pass",
+    "filtered",
+    "exponential",
+    "slow_drift",
+    "hum",
+    "growing",
+    "scatter",
+    "base_drift",
+    "inadequacy",
 ]
 
 LOW_PASS = (0.006, 0.012)
 """s, deviation of Gaussian kernels: noise that a filter left, with spectra of 27 and 13 Hz standard deviation."""
+CORNERS = (4.0, 6.0, 9.0, 13.5, 20.0)
+"""Hz, of Butterworth filters of order `ORDER` that noise which is not white may have gone through; a sum of their
+densities is near that of any low-pass."""
+ORDER = 4
 DECAYS = (0.015, 0.05, 0.15, 0.5)
 """s, of exponential kernels: autoregressive and 1/f noise."""
 SLOW_DRIFTS = (3.0, np.inf)
@@ -39,7 +52,7 @@ SMOOTH = (0.05, 0.15)
 
 @dataclass(frozen=True)
 class Component:
-    """One variance. ``channel``: whose noise it is, if one's; ``scale``: s of a kernel, Hz of a hum line."""
+    """One variance. ``channel``: whose noise it is, if one's; ``scale``: s of a kernel, Hz of hum or of a filter."""
 
     kind: Kind
     channel: int | None = None
@@ -65,6 +78,8 @@ class Component:
             return lambda lag: np.exp(-lag / scale)
         if self.kind == "hum":
             return lambda lag: np.cos(2.0 * np.pi * scale * lag)
+        if self.kind == "filtered":
+            return lambda lag: _butterworth(2.0 * np.pi * scale * lag) / _butterworth(np.zeros(1))
         return lambda lag: np.exp(-0.5 * (lag / scale) ** 2)
 
     def density(self, frequency: FloatArray, step: float) -> FloatArray:
@@ -75,10 +90,20 @@ class Component:
             return np.asarray(2.0 / WALK / (2.0 * np.pi * frequency) ** 2)
         if self.kind in ("exponential", "slow_drift"):
             return np.asarray(4.0 * self.scale / (1.0 + (2.0 * np.pi * frequency * self.scale) ** 2))
+        if self.kind == "filtered":
+            whole = self.scale * float(_butterworth(np.zeros(1))[0])
+            return np.asarray(1.0 / (whole * (1.0 + (frequency / self.scale) ** (2 * ORDER))))
         if self.kind in ("low_pass", "inadequacy"):
             wide = 2.0 * np.sqrt(2.0 * np.pi) * self.scale
             return np.asarray(wide * np.exp(-2.0 * (np.pi * frequency * self.scale) ** 2))
         return np.zeros_like(frequency)
+
+
+def _butterworth(lag: FloatArray) -> FloatArray:
+    """int_0^inf cos(w lag)/(1 + w^(2 n)) dw by its residues, n = `ORDER`."""
+    angle = np.pi * (2.0 * np.arange(ORDER) + 1.0) / (2.0 * ORDER)
+    real, imaginary = np.multiply.outer(lag, np.sin(angle)), np.multiply.outer(lag, np.cos(angle))
+    return np.asarray(np.sum(np.exp(-real) * np.sin(angle + imaginary), axis=-1) * (0.5 * np.pi / ORDER))
 
 
 class Part(Protocol):

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis.data.measured import Measured
-from diagnosis.errors.components import DECAYS, LOW_PASS, SLOW_DRIFTS, SMOOTH, Component, Kind
+from diagnosis.errors.components import CORNERS, DECAYS, LOW_PASS, SLOW_DRIFTS, SMOOTH, Component, Kind
 from diagnosis.errors.drifts import columns, knots_of
 from diagnosis.errors.followed import followed
 from diagnosis.errors.kicks import Kicks, kicks
@@ -25,6 +25,7 @@ from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.setup import base_fit
 from diagnosis.fit.solver import Fitted, fit_thoroughly
 from diagnosis.fit.whitening import Whitening, base_columns, responses
+from grids.recordings.noise import noise_of
 from grids.specimen import Specimen
 from models.base import FloatArray
 
@@ -203,8 +204,9 @@ def estimate(fitted: Fitted, base: FloatArray, start: Errors | None = None) -> E
 
 def _components(scene: Scene) -> tuple[Component, ...]:
     found: list[Component] = []
-    stretches = scene.fitted.measured.stretches
-    for c in range(len(scene.fitted.measured.channels)):
+    measured = scene.fitted.measured
+    stretches = measured.stretches
+    for c, name in enumerate(measured.channels):
         found.append(Component("white", c))
         # what is faster than a mean is white among means
         fastest = 0.0 if stretches is None else stretches.mean
@@ -213,6 +215,8 @@ def _components(scene: Scene) -> tuple[Component, ...]:
         found += [Component("slow_drift", c, s) for s in SLOW_DRIFTS]
         found.append(Component("growing", c))
         if stretches is None:
+            if not all(noise_of(recording.channels[name]).white for recording in measured.recordings):
+                found += [Component("filtered", c, hz) for hz in CORNERS]
             found += [Component("inadequacy", c, s) for s in SMOOTH]
     if stretches is not None:
         found += [Component("inadequacy", None, s) for s in (AS_MOTION, *stretches.smooth)]

@@ -22,6 +22,7 @@ from diagnosis.errors.hum import in_the_samples
 from diagnosis.errors.likelihood import whitened
 from diagnosis.errors.model import Errors
 
+FAST = ("white", "low_pass", "filtered")
 SLOW = 0.4
 """s, correlation time from which on noise is called drift."""
 CLEARLY = 0.25
@@ -112,7 +113,7 @@ def summary(errors: Errors, measured: Measured) -> ErrorModel:
 def _channel(errors: Errors, measured: Measured, channel: int, name: str, seconds: float) -> ChannelErrors:
     own = [(c, float(t)) for c, t in zip(errors.components, errors.theta, strict=True) if c.channel == channel]
     scale = float(errors.unit[channel])
-    fast = sum(t for c, t in own if c.kind in ("white", "low_pass") or (c.kind == "exponential" and c.scale < SLOW))
+    fast = sum(t for c, t in own if c.kind in FAST or (c.kind == "exponential" and c.scale < SLOW))
     slow = sum(t for c, t in own if c.kind == "exponential" and c.scale >= SLOW)
     slow += sum(t * (seconds / WALK if np.isinf(c.scale) else 1.0) for c, t in own if c.shared)
     growing = sum(t for c, t in own if c.kind == "growing")
@@ -137,9 +138,13 @@ def _colour(errors: Errors, channel: int) -> str:
     low, middle, high = (
         float(np.mean(density(errors, channel, np.linspace(a, b, 20)))) for a, b in (LOW, MIDDLE, (30.0, 45.0))
     )
-    if min(low, middle) > 0.0 and high / max(low, middle) < COLOURED:
-        return "filtered" if low < middle / COLOURED else "low"
-    return "white"
+    if not (min(low, middle) > 0.0 and high / max(low, middle) < COLOURED):
+        return "white"
+    of_filter, others = (
+        sum(t for c, t in zip(errors.components, errors.theta, strict=True) if c.channel == channel and c.kind in kinds)
+        for kinds in (("filtered",), ("white", "low_pass", "exponential"))
+    )
+    return "filtered" if low < middle / COLOURED or of_filter > others else "low"
 
 
 def _corner(spectrum: Spectrum, hum: list[float]) -> float | None:

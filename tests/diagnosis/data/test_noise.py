@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.signal import butter, lfilter, sosfiltfilt
 
 from diagnosis import diagnose
-from diagnosis.data.noise import density_level, response_levels, response_noise, still
+from diagnosis.data.noise import BANDS, density_level, response_levels, response_noise, still
 from diagnosis.fit.setup import measure
 from grids.recordings import noise_of
 from grids.recordings.base import Recording
@@ -53,15 +53,32 @@ def test_coloured_noise_is_no_effect() -> None:
     assert found.verdict == "nothing_missing", found.statement
 
 
-@pytest.mark.parametrize("corner", [15.0, 25.0])
-def test_the_density_is_that_below_a_steep_filter_without_phase(corner: float) -> None:
+@pytest.mark.parametrize(("order", "corner", "off"), [(4, 15.0, 0.25), (4, 25.0, 0.25), (2, 8.0, 0.4), (2, 5.0, 0.4)])
+def test_the_density_is_that_below_a_filter_without_phase(order: int, corner: float, off: float) -> None:
     """Next to nothing is left of the noise at the highest frequencies, which says nothing of where effects lie."""
     plain, density = with_noise(3, None)
-    sections = butter(4, corner, fs=1.0 / TIME_STEP, output="sos")
+    sections = butter(order, corner, fs=1.0 / TIME_STEP, output="sos")
     rotation = sosfiltfilt(sections, plain.channels["rotation_1"])
     made = replace(plain, channels={**plain.channels, "rotation_1": rotation})
     assert noise_of(rotation).sigma < 0.02 * density
-    assert response_noise(made, "rotation_1") == pytest.approx(density, rel=0.25)
+    assert response_noise(made, "rotation_1") == pytest.approx(density, rel=off)
+
+
+def test_noise_is_what_moves_on_a_base_at_rest() -> None:
+    """At 1000 samples a second 10 Hz forwards and backwards leave nothing of it where a motion has nothing either."""
+    plain, density = with_noise(3, None)
+    step, sections = 0.001, butter(4, 10.0, fs=1000.0, output="sos")
+    time = np.arange(0.0, plain.time[-1], step)
+    noise = density * np.random.default_rng(5).normal(size=time.size)
+    clean = np.where((time < 2.0) | (time > time[-1] - 2.0), 0.0, 0.03 * np.sin(2.0 * np.pi * 1.3 * (time - 2.0)))
+    rotation = sosfiltfilt(sections, clean + noise)
+    base = 2.0 * np.sin(2.0 * np.pi * 2.0 * time) * (clean != 0.0)
+    base = sosfiltfilt(sections, base + 0.004 * np.random.default_rng(6).normal(size=time.size))
+    made = Recording("made", step, time, {"base_acceleration_x": base, "rotation_1": rotation})
+    assert noise_of(rotation).sigma < 1e-4 * density
+    assert response_noise(made, "rotation_1") == pytest.approx(density, rel=0.3)
+    moved = replace(made, channels={**made.channels, "base_acceleration_x": 2.0 * np.sin(2.0 * np.pi * 2.0 * time)})
+    assert response_noise(moved, "rotation_1") <= 1.01e-4 * np.max(np.abs(rotation))
 
 
 def test_noise_that_becomes_louder_is_no_effect() -> None:
@@ -112,8 +129,31 @@ def test_motion_without_noise_is_not_noise(seed: int) -> None:
     assert response_noise(made, "rotation_1") <= 1.01e-4 * peak
 
 
+@pytest.mark.parametrize("seed", [30, 38, 44, 174])
+def test_free_rocking_on_a_base_at_rest_is_not_noise(seed: int) -> None:
+    """Parabolic arcs that shrink by 2 % each, so slowly that they are as still as anything in the recording."""
+    clean = recording("clean", seed, noise=0.0)
+    rotation, base = clean.channels["rotation_1"], clean.channels["base_acceleration_x"]
+    arcs, height = [], 0.02
+    while sum(arc.size for arc in arcs) * TIME_STEP < 6.0:
+        share = np.arange(0.0, 1.0, TIME_STEP / (0.8 * np.sqrt(height / 0.02)))
+        arcs.append((-1.0) ** len(arcs) * height * 4.0 * share * (1.0 - share))
+        height *= 0.98
+    rotation = np.concatenate([rotation, *arcs])
+    base = np.concatenate([base, np.zeros(rotation.size - base.size)])
+    base = base + 0.003 * np.max(np.abs(base)) * np.random.default_rng(seed).normal(size=base.size)
+    channels = {"base_acceleration_x": base, "rotation_1": rotation}
+    made = Recording("made", TIME_STEP, np.arange(rotation.size, dtype=np.float64) * TIME_STEP, channels)
+    assert response_noise(made, "rotation_1") <= 1.01e-4 * np.max(np.abs(rotation))
+
+
 def test_nothing_still_no_level() -> None:
     time = np.arange(2000) * TIME_STEP
     for values in (np.sin(2.0 * np.pi * 1.3 * time), np.zeros(2000)):
         assert density_level(values, TIME_STEP, still(values, TIME_STEP)) == 0.0
     assert still(np.ones(10), TIME_STEP) == []
+
+
+def test_few_lines_tell_of_no_spectrum() -> None:
+    arc = np.linspace(-1.0, 1.0, round(0.75 / TIME_STEP)) ** 2
+    assert density_level(arc, TIME_STEP, [slice(0, arc.size)], BANDS) == 0.0
