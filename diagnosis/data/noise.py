@@ -38,8 +38,8 @@ NOISIEST = 0.05
 LIKE = 1.5
 """Range of a still stretch over that of the stillest ones."""
 MOST = 1e4
-"""Density over what a filter leaves of it at the highest frequencies: beyond, the channel is a motion without noise. Of
-noise through a low-pass of 12 Hz and fourth order, run both ways, 1/700 is left at 200 samples a second."""
+"""Density over what a filter leaves of it at the highest frequencies: beyond, it counts only where nothing moves the
+base. Of noise through a low-pass of 12 Hz and fourth order, run both ways, 1/700 is left at 200 samples a second."""
 FLAT = 0.25
 """Geometric over arithmetic mean of a spectrum that is noise: .56 if white, next to nothing if motion."""
 

@@ -15,6 +15,7 @@ from diagnosis.data.noise import BANDS, density_level, response_levels, response
 from diagnosis.fit.setup import measure
 from grids.recordings import noise_of
 from grids.recordings.base import Recording
+from grids.specimen import with_mechanism
 from tests.diagnosis.made import SPECIMEN, TIME_STEP, recording
 
 SIGMA = 6e-4
@@ -79,6 +80,26 @@ def test_noise_is_what_moves_on_a_base_at_rest() -> None:
     assert response_noise(made, "rotation_1") == pytest.approx(density, rel=0.3)
     moved = replace(made, channels={**made.channels, "base_acceleration_x": 2.0 * np.sin(2.0 * np.pi * 2.0 * time)})
     assert response_noise(moved, "rotation_1") <= 1.01e-4 * np.max(np.abs(rotation))
+
+
+@pytest.mark.parametrize("corner", [8.0, 12.0])
+def test_nothing_is_missing_behind_a_slow_filter_that_is_declared(corner: float) -> None:
+    """Two seconds of rest, 1 % noise, forwards and backwards through a low-pass of the second order."""
+
+    def made(name: str, seed: int) -> Recording:
+        clean, rng = recording(name, seed, noise=0.0), np.random.default_rng(seed)
+        rest = np.zeros(round(2.0 / TIME_STEP))
+        rotation, base = (np.concatenate([rest, clean.channels[c]]) for c in ("rotation_1", "base_acceleration_x"))
+        noisy = rotation + 0.01 * np.max(np.abs(rotation)) * rng.normal(size=rotation.size)
+        channels = {
+            "base_acceleration_x": base + 0.003 * np.max(np.abs(base)) * rng.normal(size=base.size),
+            "rotation_1": sosfiltfilt(butter(2, corner, fs=1.0 / TIME_STEP, output="sos"), noisy),
+        }
+        return Recording(name, TIME_STEP, np.arange(rotation.size, dtype=np.float64) * TIME_STEP, channels)
+
+    declared = with_mechanism(SPECIMEN, "filter", {"corner_hz": corner, "order": 2.0, "zero_phase": 1.0})
+    found = diagnose(declared, [made("train_1", 2), made("train_2", 4)])
+    assert found.verdict == "nothing_missing", found.statement
 
 
 def test_noise_that_becomes_louder_is_no_effect() -> None:
