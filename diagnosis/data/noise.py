@@ -33,8 +33,6 @@ CALM = 10.0
 """Range of the base's acceleration over its noise while nothing shakes it."""
 WEAK = 0.05
 """Range of the base's acceleration over its peak under which nothing begins to rock."""
-SMOOTHED = 4.0
-"""Level at low frequencies over that at the highest, of a channel that was smoothed by polynomials."""
 NOISIEST = 0.05
 """Level over the channel's peak, from which on it is no noise."""
 LIKE = 1.5
@@ -49,28 +47,17 @@ FLAT = 0.25
 def response_noise(recording: Recording, channel: str) -> float:
     """Standard deviation of a response channel's noise, in its unit, of equal density where effects lie."""
     values = recording.channels[channel]
-    noise, level = noise_of(values), _white_level(values)
-    most, stretches = NOISIEST * float(np.max(np.abs(values))), still(values, recording.time_step)
+    noise = noise_of(values)
+    level = max(noise.sigma, RELATIVE_FLOOR * float(np.max(np.abs(values))))
+    if noise.white or noise.lag_one < noise.lag_one_if_white:
+        return level
+    stretches = still(values, recording.time_step)
     if channel in recording.places and recording.places[channel].absolute:  # it holds the motion of the base
         stretches = calm(stretches, recording)
-    if noise.white or noise.lag_one < noise.lag_one_if_white:  # at the highest frequencies: it may have been smoothed
-        density = density_level(values, recording.time_step, calm(stretches, recording, WEAK))
-        return density if SMOOTHED * level < density < most else level
     density = density_level(values, recording.time_step, stretches)
     if not 0.0 < density < MOST * noise.sigma:  # a motion, but where nothing moves the base
         density = density_level(values, recording.time_step, calm(stretches, recording, WEAK), BANDS)
-    return max(level, density) if density < most else level
-
-
-def is_white(recording: Recording, channel: str) -> bool:
-    """Whether a response channel's noise is white: at the highest frequencies, and nowhere much denser."""
-    values = recording.channels[channel]
-    return noise_of(values).white and response_noise(recording, channel) <= SMOOTHED * _white_level(values)
-
-
-def _white_level(values: FloatArray) -> float:
-    """What the local polynomial says, and no less than a computed channel has."""
-    return max(noise_of(values).sigma, RELATIVE_FLOOR * float(np.max(np.abs(values))))
+    return max(level, density) if density < NOISIEST * float(np.max(np.abs(values))) else level
 
 
 def response_levels(recording: Recording, channel: str) -> FloatArray:

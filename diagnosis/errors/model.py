@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis.data.measured import Measured
-from diagnosis.data.noise import is_white
 from diagnosis.errors.components import CORNERS, DECAYS, LOW_PASS, SLOW_DRIFTS, SMOOTH, Component, Kind
 from diagnosis.errors.drifts import columns, knots_of
 from diagnosis.errors.followed import followed
@@ -26,6 +25,7 @@ from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.setup import base_fit
 from diagnosis.fit.solver import Fitted, fit_thoroughly
 from diagnosis.fit.whitening import Whitening, base_columns, responses
+from grids.recordings.noise import noise_of
 from grids.specimen import Specimen
 from models.base import FloatArray
 
@@ -215,7 +215,7 @@ def _components(scene: Scene) -> tuple[Component, ...]:
         found += [Component("slow_drift", c, s) for s in SLOW_DRIFTS]
         found.append(Component("growing", c))
         if stretches is None:
-            if not all(is_white(recording, name) for recording in measured.recordings):
+            if not all(noise_of(recording.channels[name]).white for recording in measured.recordings):
                 found += [Component("filtered", c, hz) for hz in CORNERS]
             found += [Component("inadequacy", c, s) for s in SMOOTH]
     if stretches is not None:

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.signal import butter, lfilter, savgol_filter, sosfiltfilt
+from scipy.signal import butter, lfilter, sosfiltfilt
 
 from diagnosis import diagnose
-from diagnosis.data.noise import BANDS, density_level, is_white, response_levels, response_noise, still
+from diagnosis.data.noise import BANDS, density_level, response_levels, response_noise, still
 from diagnosis.fit.setup import measure
 from grids.recordings import noise_of
 from grids.recordings.base import Recording
@@ -140,18 +140,6 @@ def test_the_density_is_that_below_the_filter(corner: float | None) -> None:
 def test_white_noise_keeps_the_level_of_the_local_polynomial() -> None:
     made, _ = with_noise(4, None)
     assert response_noise(made, "rotation_1") == noise_of(made.channels["rotation_1"]).sigma
-    assert is_white(made, "rotation_1")
-
-
-@pytest.mark.parametrize("samples", [17, 21])
-def test_noise_that_was_smoothed_by_polynomials_is_not_white(samples: int) -> None:
-    """At the highest frequencies it looks white to a shorter polynomial, a twelfth of what it is where effects lie."""
-    plain, density = with_noise(3, None)
-    rotation = savgol_filter(plain.channels["rotation_1"], samples, 3)
-    made = replace(plain, channels={**plain.channels, "rotation_1": rotation})
-    assert noise_of(rotation).white and noise_of(rotation).sigma < 0.2 * density
-    assert not is_white(made, "rotation_1")
-    assert response_noise(made, "rotation_1") == pytest.approx(density, rel=0.4)
 
 
 @settings(max_examples=12, deadline=None)
