@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from os.path import isfile
+from os.path import isfile, realpath
 from pathlib import Path
 
 from grids.writer import WRITER, WRITTEN
@@ -21,9 +21,10 @@ def keep_inputs(outputs: Iterable[Path], inputs: Iterable[Path]) -> None:
 
     A table and the TOML that describes it are one input, whichever of them is named, and so are a specimen and its law.
     """
-    read = [one.resolve() for path in inputs for one in _with_companions(path)]
+    # realpath: resolve raises RuntimeError for a link to itself
+    read = [Path(realpath(one)) for path in inputs for one in _with_companions(path)]
     for output in outputs:
-        written = output.resolve()
+        written = Path(realpath(output))
         for path in read:
             if path == written or path in written.parents:
                 raise InputError(f"{output} would be written over an input of this command; name another place for it.")

@@ -185,3 +185,11 @@ def test_a_law_of_a_calibrated_specimen_lies_beside_it(tmp_path: Path) -> None:
     refused = rocking("calibrate", "lawful.toml", "shake_1.csv", "--out", "other.toml")
     assert refused.exit_code == 2 and "error: other.law.csv is there and was not" in refused.stderr, refused.output
     assert Path("answer/law.csv").read_text() == "kept"
+
+
+def test_a_cube_that_is_a_link_to_itself_is_not_there() -> None:
+    cube = Path("study/cube.nc")
+    cube.unlink()
+    cube.symlink_to(cube.absolute())
+    found = rocking("export", "study", "--out", "cells.csv")
+    assert found.exit_code == 2 and "cube.nc does not exist" in found.output, found.output
