@@ -146,7 +146,7 @@ def test_white_noise_keeps_the_level_of_the_local_polynomial() -> None:
 @given(st.integers(1, 10_000))
 @example(783)
 def test_motion_without_noise_is_not_noise(seed: int) -> None:
-    """It passes for noise of half a thousandth of its peak at most, as one of two hundred such motions does."""
+    """At most of a twentieth of the 1 % of the peak that recordings have."""
     made = recording("clean", seed, noise=0.0)
     peak = float(np.max(np.abs(made.channels["rotation_1"])))
     assert response_noise(made, "rotation_1") <= 5e-4 * peak

@@ -41,7 +41,6 @@ def test_a_line_of_hum_is_no_corner() -> None:
 
 @pytest.mark.parametrize("true", [8.0, 16.0, 30.0])
 def test_noise_that_a_filter_went_over_is_told_with_its_corner(true: float) -> None:
-
     def filtered(rng: np.random.Generator, n: int) -> np.ndarray:
         low_pass = butter(4, true, fs=1.0 / TIME_STEP, output="sos")
         noise = sosfilt(low_pass, rng.normal(size=n + 400))[400:]
@@ -52,3 +51,5 @@ def test_noise_that_a_filter_went_over_is_told_with_its_corner(true: float) -> N
     fitted, errors = refitted(first, disturbance_about(first))
     (found,) = summary(errors, fitted.measured).channels
     assert found.colour == "filtered" and found.corner_hz == pytest.approx(true, abs=2.0)
+    peaks = [np.max(np.abs(recording.channels["rotation_1"])) for recording in measured.recordings]
+    assert found.noise == pytest.approx(0.01 * np.mean(peaks), rel=0.4)
