@@ -119,10 +119,13 @@ def extended(
         except InputError as refusal:  # it does not act together with an effect of the explanation
             found.not_tried.setdefault(single.names[0], str(refusal))
     fits.sort(key=adjusted)
-    return [
-        again(e) if (k < THOROUGH and within_reach(e, fits[0])) or lost_in_a_window(e, fits[0]) else e
-        for k, e in enumerate(fits)
-    ]
+    taken = [(k < THOROUGH and within_reach(e, fits[0])) or lost_in_a_window(e, fits[0]) for k, e in enumerate(fits)]
+    return [again(e) if further and _may_reach(e, most) else e for e, further in zip(fits, taken, strict=True)]
+
+
+def _may_reach(explanation: Explanation, most: float) -> bool:
+    """Whether its loss is less than ``most`` but for the worst window, whose motion may have lost its way."""
+    return explanation.loss - float(explanation.fitted.window_losses.max(initial=0.0)) < most
 
 
 def _second_elements(scores: Sequence[Score]) -> list[Candidate]:

@@ -108,17 +108,20 @@ def _try_others(found: Search, widely: bool) -> None:
     From where the others stand: fitted again without the effect they may move into another valley, as a clock does
     without the filter whose lag it then takes for its own. Where what stands is incomplete, from that valley too.
     First in the place of the effect without which least is lost: it is the least sure, and its refits are the shortest.
-    Refits that do not come near what stands are given up.
+    Refits that do not come near what stands, or the best of those before, are given up.
     """
     if (best := found.best) is None:
         return
-    creeps = best.measured.stretches is not None  # and what is ahead of a fit tells little of where it ends
-    most = np.inf if creeps else best.loss + CLOSE
+    # where whole runs are compared fits creep, and what is ahead of one tells little of where it ends
+    near = np.inf if best.measured.stretches is not None else CLOSE
+    reached = best.loss
     standing = {candidate: without(best, candidate, 0) for candidate in best.removable}
     for candidate, left in sorted(standing.items(), key=lambda entry: entry[1].loss):
         others = frozenset(best.candidates) - {candidate}
         if others not in found.exchanged and found.affordable(f"others in the place of {candidate.name}"):
             for rest in [left, *([without(best, candidate)] if widely else [])]:
-                found.tried += extended(found, rest, seconds(found, rest), widely, candidate, most)
+                fits = extended(found, rest, seconds(found, rest), widely, candidate, reached + near)
+                reached = min([reached, *(one.loss for one in fits)])
+                found.tried += fits
             if not found.spent:  # else the others are tried when there is work left
                 found.exchanged.add(others)

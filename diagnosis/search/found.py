@@ -165,13 +165,17 @@ class Search:
         return not self.spent
 
     @contextmanager
-    def work_of_its_own(self, most: float) -> Iterator[None]:
-        """Within, the budget is ``most`` s; what is spent there is not taken off the budget outside."""
-        outer, self.budget = self.budget, Budget(most)
+    def work_of_its_own(self, most: float, beyond: bool = False) -> Iterator[None]:
+        """Within, the budget is ``most`` s; what is spent there is not taken off the budget outside.
+
+        ``beyond``: even if that of all searches has ended.
+        """
+        outer, whole, own = self.budget, self.whole, Budget(most)
+        self.budget, self.whole = own, own if beyond else whole
         try:
             yield
         finally:
-            self.budget = outer.after(self.budget)
+            self.budget, self.whole = outer.after(own), whole
 
     def pass_over(self, explanation: Explanation) -> None:
         """It does not count, and is not taken later either."""

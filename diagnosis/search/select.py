@@ -10,10 +10,10 @@ from collections.abc import Iterator, Sequence
 from diagnosis.errors.model import estimate
 from diagnosis.progress import Progress
 from diagnosis.search.beside import POOL_SHARE, extended, seconds
-from diagnosis.search.budget import FURTHER, LAST
+from diagnosis.search.budget import FURTHER, LAST, WEIGHING
 from diagnosis.search.details import least
 from diagnosis.search.exchange import drop, exchanged
-from diagnosis.search.found import GAP, MISSING, Search, adequate, adjusted, survives
+from diagnosis.search.found import GAP, MISSING, Search, adequate, adjusted, passes_for_white, survives
 from diagnosis.search.hidden import hidden_beside, take_hidden
 from diagnosis.search.left_out import predicts_worse
 from diagnosis.search.outside import outside
@@ -47,7 +47,7 @@ def first_effect(found: Search, progress: Progress) -> Iterator[Search]:
     else:
         yield found
         progress("estimating the errors with what was found", 0.46)
-        weigh_again(found)
+        weigh_again(found, max(found.spare, WEIGHING))
     yield found
 
 
@@ -62,7 +62,8 @@ def further_effects(found: Search, progress: Progress) -> Iterator[Search]:
             _more(found, progress)
             yield found
     if found.best is not None and len(found.best.candidates) > 1:
-        with found.work_of_its_own(LAST):  # goes on where the budget ended
+        beyond = not passes_for_white(found.best, found.errors)
+        with found.work_of_its_own(LAST, beyond=beyond):  # goes on where the budget ended
             exchanged(found, progress)
     settle_ties(found)
     if found.best is not None:
@@ -120,7 +121,7 @@ def _pairs(found: Search, progress: Progress) -> None:
             if found.affordable(f"a second effect beside {name}"):
                 screened = others if single is found.best else seconds(found, single)
                 pairs += extended(found, single, screened, widely)
-        if any(adequate(e) for e in pairs):  # the others are still tried in its place
+        if any(adequate(e) or explains_most(e, found.best) for e in pairs):  # others are tried in its place later
             break
     if found.outside is not None:
         if not any(adequate(e) for e in pairs):
@@ -135,6 +136,12 @@ def _pairs(found: Search, progress: Progress) -> None:
         progress("looking for a second effect that the errors hide", 0.77)
         take_hidden(found, found.best, [*pairs, *hidden_beside(found, found.best, pairs)])
     exchanged(found, progress)  # before a third: what stands in for another effect leaves traces of its own
+
+
+def explains_most(pair: Explanation, alone: Explanation) -> bool:
+    """Whether a pair leaves little of what the best mechanism leaves ``alone`` beyond noise."""
+    missing = alone.loss - alone.fitted.misfit.of_noise
+    return adjusted(alone) - adjusted(pair) > (1.0 - LITTLE) * max(missing, 0.0)
 
 
 def _pair_that_counts(found: Search, best: Explanation, pairs: Sequence[Explanation]) -> Explanation | None:

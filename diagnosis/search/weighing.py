@@ -11,16 +11,22 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
+import numpy as np
+
+from diagnosis.errors.adequacy import errs
 from diagnosis.errors.model import Errors, estimate, fit_under, refitted
 from diagnosis.fit.solver import Fitted, fit
 from diagnosis.fit.whitening import sensor_noise_only
-from diagnosis.search.budget import ENDED
+from diagnosis.search.budget import ENDED, Budget
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.found import STUCK, Search, adjusted, enough, passes_for_white, within_reach
 from diagnosis.search.refit import Explanation, best_of, from_states_of, further, resized, ways, without
+from models.base import FloatArray
 
 NEAR, OWN = 0.3, 0.4
 """Share of the leader's gain from which an explanation is taken along, and from which its own errors are estimated."""
+ASTRAY = 0.2
+"""Share of the best gain so far from which a mechanism alone is fitted against white noise too."""
 MOST, MOST_OWN, ALIKE = 6, 4, 2
 """Explanations weighed, those of them with errors of their own, and of these that differ in joints or orders only."""
 TURNS = 2
@@ -60,10 +66,12 @@ def by_white_noise(explanation: Explanation, errors: Errors) -> Explanation:
 def add_single(found: Search, fits: Sequence[Explanation], most: float) -> float:
     """Add the best of some fits to the singles, `by_white_noise` too where its loss is less than ``most``.
 
-    The loss that the next must promise.
+    Not where it explains little beside the best of them: what is lost explains nothing. The loss that the next must
+    promise.
     """
     single = best_of(fits)
-    if single.loss < most:
+    gain, best = found.base.loss - single.loss, found.base.loss - min((e.loss for e in found.singles), default=np.inf)
+    if single.loss < most and not 0.0 < gain < ASTRAY * best:
         single = by_white_noise(single, found.errors)
     found.singles.append(single)
     return min(most, enough([single]))
@@ -91,7 +99,7 @@ class Judged(NamedTuple):
         return Judged(self.loss - self.errors.loss + errors.loss, replace(self.explanation, fitted=fitted), errors)
 
 
-def led_by_each_other(judged: Sequence[Judged], found: Search) -> list[Judged]:
+def led_by_each_other(judged: Sequence[Judged], base: FloatArray, budget: Budget) -> list[Judged]:
     """The same, each from the states of the others where some windows fit better from there, and once more from those.
 
     Two models of which one is stuck in windows would else be told apart by that.
@@ -100,14 +108,14 @@ def led_by_each_other(judged: Sequence[Judged], found: Search) -> list[Judged]:
     for _ in range(TURNS):
         moved, least = False, min(one.loss for one in led)
         for k, one in enumerate(led):
-            if found.whole.spent:
+            if budget.spent:
                 return led
             others = [other.explanation for i, other in enumerate(led) if i != k]
             explanation = from_states_of(one.explanation, others)
             gain = one.explanation.loss - explanation.loss
             if gain <= STUCK or one.loss - AHEAD * gain > least + CLOSE:
                 continue
-            fitted, errors = refitted(explanation.fitted, found.errors.base, one.errors)
+            fitted, errors = refitted(explanation.fitted, base, one.errors)
             if (loss := one.loss - one.errors.loss + errors.loss) < one.loss:
                 led[k], moved = Judged(loss, replace(explanation, fitted=fitted), errors), True
         if not moved:
@@ -115,20 +123,24 @@ def led_by_each_other(judged: Sequence[Judged], found: Search) -> list[Judged]:
     return led
 
 
-def weigh_again(found: Search) -> None:
+def weigh_again(found: Search, most: float = np.inf) -> None:
     """Estimate the errors with each of the leading explanations in, and refit the others under those of the best.
 
-    Which is best is told by their likelihoods, each under its own errors.
+    Which is best is told by their likelihoods, each under its own errors. ``most``: s of work that this is worth.
     """
     if found.best is None:
         return
+    budget = Budget(min(most, found.whole.left))
     if found.at_null is None:
         found.at_null = replace(found)
     size = len(found.best.candidates)
-    least = NEAR * found.gain(found.best)
+    fewer = [adjusted(e) for e in (*found.singles, *found.tried) if len(e.candidates) == size - 1]
+    before = min(fewer, default=found.base.loss)
+    least = NEAR * (before - adjusted(found.best))
+    holds = errs(found.errors)  # part of what is missing: under such errors nothing explains everything
     leading: dict[frozenset[Candidate], Explanation] = {}
     for explanation in sorted([found.best, *found.tried], key=adjusted):
-        near_enough = found.gain(explanation) > least and within_reach(explanation, found.best)
+        near_enough = before - adjusted(explanation) > least and (holds or within_reach(explanation, found.best))
         if len(explanation.candidates) == size and near_enough:
             leading.setdefault(frozenset(explanation.candidates), explanation)
     first: dict[frozenset[str], Explanation] = {}  # other orders, or other joints, of the same laws come last
@@ -137,14 +149,15 @@ def weigh_again(found: Search) -> None:
     near = list({id(e): e for e in (*first.values(), *leading.values())}.values())[:MOST]
     if all(set(e.candidates) != set(found.best.candidates) for e in near):
         near.append(found.best)
-    judged = led_by_each_other(_judged(near, found.best, found), found)
+    judged = _judged(near, before, found, budget)
+    judged = led_by_each_other(judged, found.errors.base, budget)
     _, found.best, found.errors = min(judged, key=lambda one: one.loss)
     found.weighed = found.best
     found.base = reweighed(found.base, found.errors)
     others = [reweighed(e, found.errors) for e in near if e.candidates != found.best.candidates]
     others = [from_states_of(e, [found.best]) for e in others]
     close = [e for e in others if adjusted(e) - adjusted(found.best) < CLOSE]
-    if close and found.whole.spent:
+    if close and budget.spent:
         found.not_tried.setdefault("other sizes of what was found", ENDED)
         close = []
     found.tried = [found.best, *(resized(e) if any(e is one for one in close) else e for e in others)]
@@ -154,17 +167,21 @@ def weigh_again(found: Search) -> None:
     found.singles = sorted((e for e in found.tried if len(e.candidates) == 1), key=adjusted)
 
 
-def _judged(near: Sequence[Explanation], best: Explanation, found: Search) -> list[Judged]:
-    """The nearest under errors of their own; only those that come close to the best of them are fitted under these."""
+def _judged(near: Sequence[Explanation], before: float, found: Search, budget: Budget) -> list[Judged]:
+    """The nearest under errors of their own; only those that come close to the best of them are fitted under these.
+
+    ``before``: loss of the best with one effect less.
+    """
+    best = found.chosen
     judged: list[Judged] = []
     for explanation in near:
-        if judged and found.whole.spent:
+        if judged and budget.spent:
             break
         is_best = set(explanation.candidates) == set(best.candidates)
         alike = sum(set(one.explanation.names) == set(explanation.names) for one in judged)
         if len(judged) == MOST_OWN or not (is_best or (alike < ALIKE and found.eligible(explanation))):
             continue
-        if found.gain(explanation) > OWN * found.gain(best):
+        if before - adjusted(explanation) > OWN * (before - adjusted(best)):
             judged.append(Judged.of(explanation, found.errors))
     fitted: set[int] = set()
     while close := [k for k in range(len(judged)) if k not in fitted and _is_close(judged[k], judged)]:

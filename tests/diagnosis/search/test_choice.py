@@ -100,7 +100,8 @@ def made_up(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(module, "explains_all", lambda _: False)
     for module in (select, details, counting):
         monkeypatch.setattr(module, "adequate", lambda _: True)
-    monkeypatch.setattr(counting, "errs", lambda _: False)
+    for module in (counting, weighing):
+        monkeypatch.setattr(module, "errs", lambda _: False)
     monkeypatch.setattr(counting, "settles", lambda *_: False)
 
 

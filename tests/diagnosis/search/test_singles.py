@@ -16,6 +16,7 @@ from diagnosis.fit.solver import Fitted, fit
 from diagnosis.fit.starts import nominal
 from diagnosis.progress import silent
 from diagnosis.search import refit, singles, weighing
+from diagnosis.search.budget import Budget
 from diagnosis.search.candidates import Candidate, candidates
 from diagnosis.search.found import BEHIND, Search, adjusted, enough, explains_all, lost_in_a_window, within_reach
 from diagnosis.search.refit import Explanation, extend, from_states_of, with_memory
@@ -80,10 +81,10 @@ def test_what_explains_more_is_told_though_its_fit_was_stuck(free: Search) -> No
     own = [(e, estimate(e.fitted, free.errors.base, free.errors)) for e in (stuck(late), gain)]
     judged = [Judged(errors.loss, e, errors) for e, errors in own]
     assert judged[0].loss > judged[1].loss
-    led = led_by_each_other(judged, free)
+    led = led_by_each_other(judged, free.errors.base, Budget())
     assert led[0].loss < judged[1].loss - 15.0 and led[0].explanation.names == ("delay",)
     hopeless = judged[0]._replace(loss=judged[0].loss + 1e6)
-    assert led_by_each_other([hopeless, judged[1]], free)[0] is hopeless
+    assert led_by_each_other([hopeless, judged[1]], free.errors.base, Budget())[0] is hopeless
 
 
 def worse_in(explanation: Explanation, by: dict[int, float]) -> Explanation:
