@@ -134,12 +134,15 @@ def test_own_errors_are_those_of_two_of_a_name_and_fits_under_them_go_on_where_t
     assert sorted(fits) == [100.0, 100.0, 101.0, 101.0, 200.0]
 
 
-@pytest.mark.parametrize(("stretches", "kept"), [(None, [TILT]), (object(), [TILT, B])])
-def test_far_behind_an_explanation_of_everything_nothing_is_weighed_but_where_whole_runs_are_compared(
-    monkeypatch: pytest.MonkeyPatch, stretches: object, kept: list[Effect]
+@pytest.mark.parametrize(
+    ("stretches", "held", "kept"), [(None, False, [TILT]), (None, True, [TILT, B]), (object(), False, [TILT, B])]
+)
+def test_far_behind_an_explanation_of_everything_nothing_is_weighed(
+    monkeypatch: pytest.MonkeyPatch, stretches: object, held: bool, kept: list[Effect]
 ) -> None:
-    """Of these fits creep, and what stands tells little of where they end."""
+    """But under errors that hold part of what is missing, and of whole runs, whose fits creep."""
     monkeypatch.setattr(counting, "explains_all", lambda _: True)
+    monkeypatch.setattr(weighing, "errs", lambda _: held)
     known = [fit(one, loss=loss) for one, loss in ((TILT, 100.0), (B, 100.0 + counting.BEHIND + 1.0))]
     for one in known:
         one.measured.stretches = stretches
@@ -147,6 +150,34 @@ def test_far_behind_an_explanation_of_everything_nothing_is_weighed_but_where_wh
     found.best = known[0]
     weighing.weigh_again(found)
     assert [one.candidates[0] for one in found.tried] == kept
+
+
+def test_pairs_are_weighed_by_what_they_explain_beyond_one_effect() -> None:
+    """The first of them explains most of what any pair does."""
+    pairs = [fit(A, other, loss=loss) for other, loss in ((TILT, 100.0), (B, 265.0), (C, 275.0))]
+    found = search(fit(loss=10000.0), *pairs, fit(A, loss=350.0))
+    found.best = pairs[0]
+    weighing.weigh_again(found)
+    assert [one.candidates[1] for one in found.tried] == [TILT, B]
+
+
+@pytest.mark.parametrize(("most", "asked"), [(np.inf, [100.0, 110.0, 120.0]), (30.0, [100.0, 110.0])])
+def test_mechanisms_are_weighed_as_long_as_it_is_worth_it(
+    monkeypatch: pytest.MonkeyPatch, most: float, asked: list[float]
+) -> None:
+    own: list[float] = []
+
+    def judged(explanation: Any, errors: Any) -> weighing.Judged:
+        own.append(explanation.loss)
+        DONE.call(0, 20.0)
+        return weighing.Judged(explanation.loss, explanation, NOTHING)
+
+    monkeypatch.setattr(weighing.Judged, "of", judged)
+    singles = [fit(one, loss=100.0 + 10.0 * k) for k, one in enumerate((A, B, TILT))]
+    found = search(fit(loss=1000.0), *singles)
+    found.best = singles[0]
+    weighing.weigh_again(found, most)
+    assert own == asked and found.best.candidates == (A,)
 
 
 def test_a_detail_of_a_law_does_not_take_the_place_of_a_second_effect(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -265,3 +296,54 @@ def test_what_the_budget_broke_off_is_tried_when_there_is_work_again(monkeypatch
     with found.work_of_its_own(1000.0):
         exchange._try_others(found, False)
     assert len(found.exchanged) == 2 and len(asked) == 3
+    found.exchanged.clear()
+    found.whole = Budget(-1.0)
+    with found.work_of_its_own(1000.0):
+        exchange._try_others(found, False)
+    assert len(asked) == 3
+    with found.work_of_its_own(1000.0, beyond=True):
+        exchange._try_others(found, False)
+    assert len(asked) == 5 and found.whole.spent
+
+
+def test_refits_that_do_not_come_near_the_best_exchange_before_are_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    bounds: list[float] = []
+
+    def extended(found: Search, rest: Any, scores: Any, widely: bool, but: Any, most: float) -> list[Any]:
+        bounds.append(most)
+        return [fit(A, C, loss=500.0), fit(A, B, loss=600.0)]
+
+    monkeypatch.setattr(exchange, "extended", extended)
+    monkeypatch.setattr(exchange, "without", lambda best, candidate, _=0: fit(*best.candidates[:1], loss=1000.0))
+    found = search(fit(loss=2000.0))
+    found.best = fit(A, TILT, loss=900.0)
+    found.best.measured.stretches = None
+    exchange._try_others(found, False)
+    assert bounds == [900.0 + weighing.CLOSE, 500.0 + weighing.CLOSE]
+
+
+def test_what_cannot_reach_the_best_exchange_is_not_taken_further(monkeypatch: pytest.MonkeyPatch) -> None:
+    """But for a window whose motion may have lost its way."""
+    pairs = [fit(A, B, loss=900.0, first=450.0), fit(A, C, loss=950.0, first=475.0)]
+    further: list[Any] = []
+    monkeypatch.setattr(beside, "worth_a_refit", lambda *_: [])
+    monkeypatch.setattr(beside, "_strong_alone", lambda *_: pairs)
+    monkeypatch.setattr(beside, "joined", lambda _, single, most: single)
+    monkeypatch.setattr(beside, "again", lambda one: further.append(one) or one)
+    for most, expected in ((np.inf, pairs), (460.0, pairs[:1]), (440.0, [])):
+        further.clear()
+        beside.extended(search(fit(loss=2000.0)), fit(A, loss=1500.0), [], widely=True, most=most)
+        assert further == expected
+
+
+def test_what_explains_little_beside_the_best_is_not_fitted_against_white_noise(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """What explains nothing may have lost its way, and is."""
+    asked: list[float] = []
+    monkeypatch.setattr(weighing, "by_white_noise", lambda one, _: asked.append(one.loss) or one)
+    found = search(fit(loss=1000.0))
+    for loss in (990.0, 500.0, 950.0, 850.0, 1100.0):
+        weighing.add_single(found, [fit(A, loss=loss)], np.inf)
+    assert asked == [990.0, 500.0, 850.0, 1100.0]
+    assert [one.loss for one in found.singles] == [990.0, 500.0, 950.0, 850.0, 1100.0]
