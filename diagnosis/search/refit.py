@@ -165,15 +165,36 @@ def from_other(explanation: Explanation, other: Explanation, most: float = np.in
 
     Given up where that promises no loss of ``most``.
     """
-    mine, theirs = explanation.fitted, other.fitted.values
-    u = np.array(
-        [
-            x.coordinate(theirs[x.name]) if x.name in theirs else c
-            for x, c in zip(mine.misfit.unknowns, mine.u, strict=True)
-        ]
-    )
-    tried = Explanation(explanation.candidates, fit(mine.misfit, u, other.fitted.states, most=most))
+    misfit, u = explanation.fitted.misfit, _at_values_of(explanation, other)
+    tried = Explanation(explanation.candidates, fit(misfit, u, other.fitted.states, most=most))
     return min((explanation, tried), key=lambda e: e.loss)
+
+
+def in_the_place_of(single: Explanation, other: Explanation, most: float = np.inf) -> Explanation:
+    """The same from the size of its effect, over its range, that fits best where another one ended.
+
+    A fit that begins where its effect is small may lose its way to where it is large; what does nearly the same as
+    another effect has its place where that ended.
+    """
+    (candidate,) = single.candidates
+    misfit = single.fitted.misfit
+    names = [x.name for x in misfit.unknowns]
+    own = [names.index(x.name) for x in candidate.unknowns]
+    trials = []
+    for size in candidate.grid():
+        trials.append(_at_values_of(single, other))
+        trials[-1][own] = size
+    residuals = misfit.residuals([misfit.point(u, other.fitted.states) for u in trials])
+    best = trials[int(np.argmin(misfit.losses(residuals).sum(axis=-1)))]
+    tried = replace(single, fitted=fit(misfit, best, other.fitted.states, most=most))
+    return min((single, tried), key=lambda e: e.loss)
+
+
+def _at_values_of(explanation: Explanation, other: Explanation) -> FloatArray:
+    """Coordinates of an explanation at another one's values of the parameters that both have."""
+    mine, theirs = explanation.fitted, other.fitted.values
+    each = zip(mine.misfit.unknowns, mine.u, strict=True)
+    return np.array([x.coordinate(theirs[x.name]) if x.name in theirs else c for x, c in each])
 
 
 def from_states_of(explanation: Explanation, others: Sequence[Explanation]) -> Explanation:

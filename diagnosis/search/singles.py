@@ -38,6 +38,7 @@ from diagnosis.search.refit import (
     from_other,
     from_starts,
     further,
+    in_the_place_of,
     over_ranges,
     reshaped,
     ways,
@@ -58,6 +59,8 @@ NEAR, NEAR_ADEQUATE = 0.2, 0.6
 """Share of the leader's gain from which a single is refitted from the leader's optimum too."""
 NEAR_HEAVY = 0.3
 """Share of the largest statistic that a mechanism of many short steps must reach where another explains everything."""
+PROMISING = 0.5
+"""Share of the leader's gain that a fit in its place may promise to lack and goes on."""
 COSTLY = "not alone: another explains everything, the screen gives it much less, and its fits take long"
 THRESHOLD = "not alone: it sets in at a threshold, and another explains everything without it"
 NEAR_FIRST, MOST_FIRST = 0.3, 4
@@ -106,11 +109,15 @@ def refit_singles(found: Search, progress: Progress) -> None:
         in_its_place(found, left)
     leader = found.singles[0]
     near = NEAR_ADEQUATE if adequate(leader) else NEAR
+    replaceable = _replaceable(found, leader)
     for k, single in enumerate(found.singles[1:], start=1):
-        lost = lost_in_a_window(single, leader)
-        if (found.gain(single) <= near * found.gain(leader) and not lost) or not found.affordable(single.names[0]):
+        far = found.gain(single) <= near * found.gain(leader) and not lost_in_a_window(single, leader)
+        if (far and single.candidates[0] not in replaceable) or not found.affordable(single.names[0]):
             continue
-        single = from_other(single, leader, enough([leader]))
+        if far:
+            single = in_the_place_of(single, leader, leader.loss + PROMISING * found.gain(leader))
+        else:
+            single = from_other(single, leader, enough([leader]))
         thoroughly = (k < THOROUGH and within_reach(single, leader)) or lost_in_a_window(single, leader)
         found.singles[k] = again(single) if thoroughly else single
     least = NEAR * found.gain(leader)  # of a law with a memory counts along its own motion may add much
@@ -120,6 +127,13 @@ def refit_singles(found: Search, progress: Progress) -> None:
     ]
     found.singles.sort(key=adjusted)
     found.tried += found.singles
+
+
+def _replaceable(found: Search, leader: Explanation) -> set[Candidate]:
+    """Which may explain as much as a leader that explains everything, however little their fits do; not the costly."""
+    if found.measured.stretches is not None or not explains_all(leader):
+        return set()
+    return {entry.candidate for entry in found.scores if not heavy(entry, found.scores)}
 
 
 def _may_hide(found: Search) -> bool:
