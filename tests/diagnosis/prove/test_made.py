@@ -163,6 +163,7 @@ def only(monkeypatch: pytest.MonkeyPatch, *names: str) -> None:
 def test_effects_of_a_pair_are_of_two_classes(monkeypatch: pytest.MonkeyPatch, scene: Scene) -> None:
     only(monkeypatch, "tilt", "accelerometer_offset")
     monkeypatch.setattr(drawn, "CHANGES", (0.0, np.inf))
+    monkeypatch.setattr(drawn, "DRAWS", 15)
     with pytest.raises(InputError, match=r"no case \(pair\) could be drawn"):
         draw(scene, "pair", made.RUNS, np.random.default_rng(1))
 
