@@ -165,7 +165,8 @@ def _peak(history: xr.Dataset) -> float:
 def _recording(history: xr.Dataset, name: str) -> Recording:
     time = np.asarray(history["time"])
     channels = {str(n): np.asarray(x) for n, x in history.data_vars.items() if n in CHANNELS}
-    return Recording(name, float(time[1] - time[0]), time, channels)
+    levels = tuple(str(level) for level in range(history.sizes.get("level", 0)))
+    return Recording(name, float(time[1] - time[0]), time, channels, levels)
 
 
 def _tells(specimen: Specimen, history: xr.Dataset) -> bool:

@@ -46,7 +46,7 @@ def make(
     """
     settings = {
         "specimen": specimen_text(specimen),
-        "motions": {motion.name: motion.fingerprint for motion in motions},
+        "motions": [[motion.name, motion.fingerprint] for motion in motions],
         "seed": seed,
         "noise": noise,
     }

@@ -18,6 +18,7 @@ from diagnosis.prove import drawn, made
 from diagnosis.prove.chain import KEY, prove
 from diagnosis.prove.drawn import BASE_NOISE, CHANGES, REST, SCALES, Scene, draw
 from grids.motions import Motion, read_motion
+from grids.recordings import read_recording
 from grids.specimen import Specimen, parse_specimen, read_specimen, with_mechanism, with_values
 from models.errors import InputError
 from rocking.commands import app
@@ -34,6 +35,17 @@ mass = "500 kg"
 width = 0.003
 [calibrate]
 restitution = [0.75, 0.97]
+"""
+BUILDING = """
+title = "Rigid building"
+model = "isolated"
+[parameters]
+levels = 1
+total_mass = "1 kg"
+rubber_thickness = "0.2 m"
+[calibrate]
+bearing_stiffness = [1, 60]
+bearing_damping = [0.05, 5]
 """
 NOISE, SEED, CASES = 0.01, 3, 6
 
@@ -188,6 +200,14 @@ def test_what_is_over_the_peak_is_over_that_of_the_specimen(
         assert case.specimen.reference_peak is not None
         error = 4.0 * NOISE * float(np.abs(read["rotation_1"]).max()) / np.sqrt(rest.size)
         assert rest.mean() == pytest.approx(share * case.specimen.reference_peak, abs=error)
+
+
+def test_a_building_is_recorded_level_by_level(motion: Motion, tmp_path: Path) -> None:
+    building = parse_specimen(BUILDING)
+    made.make(tmp_path / "cases", building, [motion], cases=1, seed=SEED, noise=NOISE, say=lambda _: None)
+    for run in made.RUNS:
+        read = read_recording(tmp_path / "cases" / "case_01" / f"{run}.nc")
+        assert read.responses == ("level_displacement_x",) and read.channels["level_displacement_x"].shape[0] == 1
 
 
 def test_made_cases_are_proved(folder: Path, tmp_path: Path) -> None:
