@@ -25,6 +25,9 @@ def main() -> None:
     parser.add_argument("--run", default="answers", help="name of this run: another one answers anew")
     parser.add_argument("--against", default="before", help="of same: the run that --run is compared with")
     parser.add_argument("--cases", type=int, help="only the first so many of our own cases")
+    parser.add_argument(
+        "--kind", choices=("null", "mismatch", "single", "pair", "open"), help="only cases of this kind of a benchmark"
+    )
     parser.add_argument("--seed", type=int, default=EVALUATION_SEED, help="of our own cases")
     given = parser.parse_args()
     common = {"jobs": given.jobs, "minutes": given.minutes, "run": given.run, "say": say}
@@ -46,7 +49,7 @@ def main() -> None:
     else:
         from benchmarks.diagnosis.bench import bench
 
-        bench(given.what, given.out, seed=given.seed, cases=given.cases, **common)
+        bench(given.what, given.out, seed=given.seed, cases=given.cases, kind=given.kind, **common)
 
 
 def say(text: str) -> None:

@@ -50,13 +50,14 @@ def bench(
     *,
     seed: int,
     cases: int | None,
+    kind: str | None = None,
     minutes: float,
     jobs: int,
     run: str,
     say: Callable[[str], None],
     answering: Answering = diagnosed,
 ) -> dict[str, Any]:
-    """Run the first ``cases`` of bench ``name`` at ``seed`` (default: all), score what is answered, write it.
+    """Run the first ``cases`` of bench ``name`` at ``seed``, of one ``kind`` (default: all), score those answered.
 
     Cases lie in ``folder``/``name``/<seed>-<hash of their makers>/cases, answers in .../<run>; another ``run``
     answers the same cases anew. Every answer is on disk before a key is opened. Returns the figures, written to
@@ -64,7 +65,7 @@ def bench(
     and a list of wrong answers, beside the answers.
     """
     chosen = BENCHES[name]
-    designs = chosen.designs(seed)[:cases]
+    designs = [design for design in chosen.designs(seed) if kind in (None, design.kind)][:cases]
     here = suite.place(folder, seed, name)
     if made_by := chosen.made_by:
         digest = hashlib.sha256(b"".join(Path(__file__).with_name(one).read_bytes() for one in made_by)).hexdigest()

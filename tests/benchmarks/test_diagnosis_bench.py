@@ -123,6 +123,17 @@ def test_figures_of_walls_and_stacks_are_written_under_their_model(
     assert json.loads(beside.read_text()) == whole
 
 
+def test_cases_of_one_kind_are_those_of_the_whole_seed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[list[Any]] = []
+    monkeypatch.setattr(runner, "run_all", lambda designs, *given, **words: asked.append(list(designs)))
+    for kind in (None, "pair"):
+        bench(
+            "walls", tmp_path, seed=SEED, cases=None, kind=kind, minutes=0.0, jobs=1, run="a", say=lambda text: None,
+            answering=weak_form.answer,
+        )  # fmt: skip
+    assert asked[1] == [design for design in asked[0] if design.kind == "pair"] and len(asked[1]) >= 20
+
+
 def test_a_single_effect_from_making_to_where_it_acts(folder: Path) -> None:
     """Phase and side without a name, of a case with a laboratory's errors."""
     figures = nameless(folder, seed=OF_LABORATORIES, cases=3, jobs=1, say=lambda text: None)
