@@ -40,6 +40,8 @@ CHANGES = (8.0, 80.0)
 """Root mean square change of a channel by an effect, over its noise."""
 TRIES, DRAWS = 8, 40
 """Sizes of an effect that are tried, and effects, or true specimens, that are drawn before a case is given up."""
+SHARES = (0.03, 0.95)
+"""Of the way from the null of an effect to the end of its range, between which its size is drawn by its logarithm."""
 INNER = (0.25, 0.75)
 """Part of a range in which the true value of a parameter to be calibrated lies."""
 
@@ -198,9 +200,8 @@ def _effect(
     name = names[int(rng.integers(len(names)))]
     variants = [one for one in some if one.name == name]
     candidate = variants[int(rng.integers(len(variants)))]
-    sizes = list(candidate.grid())
-    for k in rng.permutation(len(sizes))[:TRIES]:
-        given = {**values_of(candidate.unknowns, sizes[k]), **candidate.held}
+    for _ in range(TRIES):
+        given = {**values_of(candidate.unknowns, _size(candidate, rng)), **candidate.held}
         values = {key.removeprefix(f"{name}."): value for key, value in given.items()}
         try:
             moved = _run(with_mechanism(true, name, values), *shaken)
@@ -209,6 +210,16 @@ def _effect(
         if _tells(known, moved) and CHANGES[0] <= _change(plain, moved, sigma) <= CHANGES[1]:
             return candidate, values
     return None
+
+
+def _size(candidate: Candidate, rng: np.random.Generator) -> FloatArray:
+    """Coordinates (d,) of an effect on either side of its null over its range, and of what shapes it over theirs."""
+    bounds = np.array([x.bounds for x in candidate.unknowns])
+    null = float(np.clip(candidate.null[0], *bounds[0]))
+    reaches = [end - null for end in bounds[0] if end != null]
+    drawn = rng.uniform(bounds[:, 0], bounds[:, 1])
+    drawn[0] = null + np.exp(rng.uniform(*np.log(SHARES))) * reaches[int(rng.integers(len(reaches)))]
+    return np.asarray(drawn)
 
 
 def _change(plain: xr.Dataset, moved: xr.Dataset, sigma: Mapping[str, float]) -> float:
