@@ -110,7 +110,7 @@ def _drawn(scene: Scene, kind: str, runs: Sequence[str], rng: np.random.Generato
     sigma = {name: scene.noise * float(np.abs(x).max()) for name, x in _channels(plain[first]).items()}
     hidden: list[Hidden] = []
     for _ in range(EFFECTS[kind]):
-        found = _effect(known, true, plain[first], shaken[first], [one for one, _ in hidden], sigma, rng)
+        found = _effect(known, true, shaken[first], [one for one, _ in hidden], sigma, rng)
         if found is None:
             return None
         hidden.append(found)
@@ -185,7 +185,6 @@ def _tells(specimen: Specimen, history: xr.Dataset) -> bool:
 def _effect(
     known: Specimen,
     true: Specimen,
-    plain: xr.Dataset,
     shaken: tuple[Motion, float],
     beside: Sequence[Candidate],
     sigma: Mapping[str, float],
@@ -193,7 +192,8 @@ def _effect(
 ) -> Hidden | None:
     """An effect of another class than those ``beside`` it, and its values; None where those tried are of no use."""
     taken = {one.effect_class for one in beside}
-    some = firsts(candidates(measure(known, [_recording(plain, "run")]), known))
+    before = _run(true, *shaken)
+    some = firsts(candidates(measure(known, [_recording(before, "run")]), known))
     names = sorted({one.name for one in some if one.effect_class not in taken})
     if not names:
         return None
@@ -207,7 +207,7 @@ def _effect(
             moved = _run(with_mechanism(true, name, values), *shaken)
         except InputError:  # it does not act together with what is there
             return None
-        if _tells(known, moved) and CHANGES[0] <= _change(plain, moved, sigma) <= CHANGES[1]:
+        if _tells(known, moved) and CHANGES[0] <= _change(before, moved, sigma) <= CHANGES[1]:
             return candidate, values
     return None
 
@@ -222,12 +222,11 @@ def _size(candidate: Candidate, rng: np.random.Generator) -> FloatArray:
     return np.asarray(drawn)
 
 
-def _change(plain: xr.Dataset, moved: xr.Dataset, sigma: Mapping[str, float]) -> float:
+def _change(before: xr.Dataset, after: xr.Dataset, sigma: Mapping[str, float]) -> float:
     """Largest root mean square change of a channel, over its noise."""
-    before, after = _channels(plain), _channels(moved)
-    count = min(plain.sizes["time"], moved.sizes["time"])
-    rms = {n: float(np.sqrt(np.mean((after[n][..., :count] - x[..., :count]) ** 2))) for n, x in before.items()}
-    return max(rms[name] / sigma[name] for name in rms if sigma[name] > 0.0)
+    count = min(before.sizes["time"], after.sizes["time"])
+    pairs = ((name, x[..., :count], _channels(after)[name][..., :count]) for name, x in _channels(before).items())
+    return max(float(np.sqrt(np.mean((y - x) ** 2))) / sigma[name] for name, x, y in pairs if sigma[name] > 0.0)
 
 
 def _read(history: xr.Dataset, noise: float, rng: np.random.Generator) -> xr.Dataset:

@@ -188,6 +188,24 @@ def test_effects_that_the_noise_hides_are_not_drawn(monkeypatch: pytest.MonkeyPa
         draw(scene, "single", made.RUNS, np.random.default_rng(1))
 
 
+def test_the_second_effect_of_a_pair_changes_what_the_first_one_left(
+    monkeypatch: pytest.MonkeyPatch, scene: Scene
+) -> None:
+    only(monkeypatch, "tilt", "viscous_damping")
+    seen: list[tuple[xr.Dataset, xr.Dataset]] = []
+    measured = drawn._change
+
+    def watched(before: xr.Dataset, after: xr.Dataset, sigma: dict[str, float]) -> float:
+        seen.append((before, after))
+        return measured(before, after, sigma)
+
+    monkeypatch.setattr(drawn, "_change", watched)
+    monkeypatch.setattr(drawn, "DRAWS", 15)
+    draw(scene, "pair", made.RUNS, np.random.default_rng(1))
+    before_second, _ = seen[-1]
+    assert any(before_second.equals(after) for _, after in seen[:-1])
+
+
 def test_what_is_over_the_peak_is_over_that_of_the_specimen(
     monkeypatch: pytest.MonkeyPatch, scene: Scene, motion: Motion
 ) -> None:
