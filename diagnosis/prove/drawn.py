@@ -107,10 +107,10 @@ def _drawn(scene: Scene, kind: str, runs: Sequence[str], rng: np.random.Generato
     first = runs[0]
     peak = _peak(plain[first])
     true, known = replace(true, reference_peak=peak), replace(scene.specimen, reference_peak=peak)
-    sigma = {name: scene.noise * float(np.abs(x).max()) for name, x in _channels(plain[first]).items()}
+    sigma = {run: _noise(history, scene.noise) for run, history in plain.items()}
     hidden: list[Hidden] = []
     for _ in range(EFFECTS[kind]):
-        found = _effect(known, true, shaken[first], [one for one, _ in hidden], sigma, rng)
+        found = _effect(known, true, shaken[first], [one for one, _ in hidden], sigma[first], rng)
         if found is None:
             return None
         hidden.append(found)
@@ -119,7 +119,10 @@ def _drawn(scene: Scene, kind: str, runs: Sequence[str], rng: np.random.Generato
     if not all(_tells(known, history) for history in moved.values()):
         return None
     read = {name: _read(history, scene.noise, rng) for name, history in moved.items()}
-    notes = {name: {"motion": motion.name, "scale": scale} for name, (motion, scale) in shaken.items()}
+    notes = {
+        name: {"motion": motion.name, "scale": scale, "strength": _change(plain[name], moved[name], sigma[name])}
+        for name, (motion, scale) in shaken.items()
+    }
     return Drawn(known, read, _entry(kind, hidden, values, notes))
 
 
@@ -220,6 +223,11 @@ def _size(candidate: Candidate, rng: np.random.Generator) -> FloatArray:
     drawn = rng.uniform(bounds[:, 0], bounds[:, 1])
     drawn[0] = null + np.exp(rng.uniform(*np.log(SHARES))) * reaches[int(rng.integers(len(reaches)))]
     return np.asarray(drawn)
+
+
+def _noise(history: xr.Dataset, share: float) -> dict[str, float]:
+    """Standard deviation of the noise of each channel."""
+    return {name: share * float(np.abs(x).max()) for name, x in _channels(history).items()}
 
 
 def _change(before: xr.Dataset, after: xr.Dataset, sigma: Mapping[str, float]) -> float:

@@ -119,6 +119,8 @@ def test_cases_are_null_single_and_pair_in_turn_and_effects_change_a_recording(
     count = min(with_it.size, without.size)
     change = np.sqrt(np.mean((with_it[:count] - without[:count]) ** 2)) / (NOISE * np.abs(without).max())
     assert CHANGES[0] <= change <= CHANGES[1]
+    assert entry["recordings"]["train_1"]["strength"] == pytest.approx(change, rel=1e-6)
+    assert found["case_02"]["recordings"]["train_1"]["strength"] == 0.0
 
 
 def test_nothing_but_the_key_tells_what_is_hidden(folder: Path, block: Specimen) -> None:
@@ -202,8 +204,8 @@ def test_the_second_effect_of_a_pair_changes_what_the_first_one_left(
     monkeypatch.setattr(drawn, "_change", watched)
     monkeypatch.setattr(drawn, "DRAWS", 15)
     draw(scene, "pair", made.RUNS, np.random.default_rng(1))
-    before_second, _ = seen[-1]
-    assert any(before_second.equals(after) for _, after in seen[:-1])
+    *of_effects, (before_second, _) = seen[: -len(made.RUNS)]  # the last ones are of the recordings, for the key
+    assert any(before_second.equals(after) for _, after in of_effects)
 
 
 def test_what_is_over_the_peak_is_over_that_of_the_specimen(
