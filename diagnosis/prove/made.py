@@ -39,7 +39,7 @@ def make(
     noise: float,
     say: Callable[[str], None],
 ) -> None:
-    """Make ``cases`` in ``folder``, but those that are there; the same for the same settings on any machine.
+    """Make ``cases`` in ``folder``, but those that are there; the same for the same settings.
 
     ``noise``: standard deviation of white noise, over the peak of each channel. Raises InputError for a folder of other
     settings, and where the specimen does not move under the ``motions``.

@@ -173,8 +173,8 @@ def from_other(explanation: Explanation, other: Explanation, most: float = np.in
 def in_the_place_of(single: Explanation, other: Explanation, most: float = np.inf) -> Explanation:
     """The same from the size of its effect, over its range, that fits best where another one ended.
 
-    A fit that begins where its effect is small may lose its way to where it is large; what does nearly the same as
-    another effect has its place where that ended.
+    A fit that begins at a small effect may not reach a large one. What does nearly the same as the other's effect is
+    near its own optimum there. Given up where that promises no loss of ``most``.
     """
     (candidate,) = single.candidates
     misfit = single.fitted.misfit

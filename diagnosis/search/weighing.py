@@ -66,8 +66,8 @@ def by_white_noise(explanation: Explanation, errors: Errors) -> Explanation:
 def add_single(found: Search, fits: Sequence[Explanation], most: float) -> float:
     """Add the best of some fits to the singles, `by_white_noise` too where its loss is less than ``most``.
 
-    Not where it explains little beside the best of them: what is lost explains nothing. The loss that the next must
-    promise.
+    Not where it explains little beside the best of them; a fit that is worse than the base model is stuck, and white
+    noise may free it. The loss that the next must promise.
     """
     single = best_of(fits)
     gain, best = found.base.loss - single.loss, found.base.loss - min((e.loss for e in found.singles), default=np.inf)

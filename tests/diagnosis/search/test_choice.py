@@ -5,7 +5,6 @@ The fits are made up: only their losses, window by window, decide.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from types import SimpleNamespace
 from typing import Any
 
@@ -17,98 +16,12 @@ from diagnosis.search import found as counting
 from diagnosis.search.budget import Budget
 from diagnosis.search.found import Search, rivals
 from models.runs import DONE
-
-
-@dataclass(frozen=True)
-class Effect:
-    """Stands for a candidate: all of them are laws of the joints unless they say otherwise."""
-
-    name: str
-    order: int = 0
-    of_joints: bool = True
-    unknowns: tuple[int, ...] = (1,)
-    held: tuple[str, ...] = ()
-    price: float = 0.0
-    spell: None = None
-
-    @property
-    def mechanism(self) -> Any:
-        return SimpleNamespace(beside="")
-
-    @property
-    def effect_class(self) -> str:
-        return self.name
-
-
-@dataclass(frozen=True)
-class Explained:
-    """Stands for an explanation."""
-
-    candidates: tuple[Effect, ...]
-    fitted: Any
-    in_spell = False
-    measured: Any = field(default_factory=lambda: SimpleNamespace(recording_of=np.zeros(2, int), stretches=object()))
-
-    @property
-    def loss(self) -> float:
-        return float(self.fitted.loss)
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        return tuple(c.name for c in self.candidates)
-
-    @property
-    def classes(self) -> tuple[str, ...]:
-        return self.names
-
-    @property
-    def removable(self) -> tuple[Effect, ...]:
-        return self.candidates
-
-
-def fit(*candidates: Effect, loss: float, first: float | None = None) -> Any:
-    """An explanation of two windows; ``first``: the loss of the first of them, by default half of it."""
-    first = 0.5 * loss if first is None else first
-    return Explained(candidates, SimpleNamespace(window_losses=np.array([first, loss - first]), loss=loss))
-
-
-NOTHING: Any = SimpleNamespace(loss=0.0, base=None)
-A, B, C = (Effect(name) for name in ("maxwell", "hardening", "bouc_wen"))
-TILT = Effect("tilt", of_joints=False)
+from tests.diagnosis.search.made_up import TILT, A, B, C, Effect, fit, nothing_is_fitted, search
 
 
 @pytest.fixture(autouse=True)
 def made_up(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Nothing is fitted: refits leave what they are given."""
-
-    def same(one: Any, *_: Any) -> Any:
-        return one
-
-    for module in (select, exchange):
-        for name in ("again", "reshaped", "over_ranges"):
-            monkeypatch.setattr(module, name, same)
-        monkeypatch.setattr(module, "seconds", lambda *_: [])
-    monkeypatch.setattr(weighing, "estimate", lambda f, *_: SimpleNamespace(loss=f.loss, base=None))
-    monkeypatch.setattr(weighing, "fit_under", lambda f, errors: (f, errors))
-    monkeypatch.setattr(weighing, "refitted", lambda f, *_: (f, SimpleNamespace(loss=f.loss, base=None)))
-    monkeypatch.setattr(weighing, "reweighed", same)
-    monkeypatch.setattr(weighing, "resized", same)
-    monkeypatch.setattr(weighing, "from_states_of", same)
-    monkeypatch.setattr(exchange, "extended", lambda *_, **__: [])
-    monkeypatch.setattr(details, "of_joints", lambda c, _: c.of_joints)
-    for module in (beside, counting):
-        monkeypatch.setattr(module, "explains_all", lambda _: False)
-    for module in (select, details, counting):
-        monkeypatch.setattr(module, "adequate", lambda _: True)
-    for module in (counting, weighing):
-        monkeypatch.setattr(module, "errs", lambda _: False)
-    monkeypatch.setattr(counting, "settles", lambda *_: False)
-
-
-def search(base: Any, *tried: Any) -> Any:
-    made: Any = base
-    some: Any = list(tried)
-    return Search(made, (), NOTHING, singles=list(some), tried=some, at_null=None)
+    nothing_is_fitted(monkeypatch)
 
 
 def test_a_single_that_rests_on_one_window_does_not_come_back_when_the_errors_are_estimated_anew() -> None:
@@ -150,34 +63,6 @@ def test_far_behind_an_explanation_of_everything_nothing_is_weighed(
     found.best = known[0]
     weighing.weigh_again(found)
     assert [one.candidates[0] for one in found.tried] == kept
-
-
-def test_pairs_are_weighed_by_what_they_explain_beyond_one_effect() -> None:
-    """The first of them explains most of what any pair does."""
-    pairs = [fit(A, other, loss=loss) for other, loss in ((TILT, 100.0), (B, 265.0), (C, 275.0))]
-    found = search(fit(loss=10000.0), *pairs, fit(A, loss=350.0))
-    found.best = pairs[0]
-    weighing.weigh_again(found)
-    assert [one.candidates[1] for one in found.tried] == [TILT, B]
-
-
-@pytest.mark.parametrize(("most", "asked"), [(np.inf, [100.0, 110.0, 120.0]), (30.0, [100.0, 110.0])])
-def test_mechanisms_are_weighed_as_long_as_it_is_worth_it(
-    monkeypatch: pytest.MonkeyPatch, most: float, asked: list[float]
-) -> None:
-    own: list[float] = []
-
-    def judged(explanation: Any, errors: Any) -> weighing.Judged:
-        own.append(explanation.loss)
-        DONE.call(0, 20.0)
-        return weighing.Judged(explanation.loss, explanation, NOTHING)
-
-    monkeypatch.setattr(weighing.Judged, "of", judged)
-    singles = [fit(one, loss=100.0 + 10.0 * k) for k, one in enumerate((A, B, TILT))]
-    found = search(fit(loss=1000.0), *singles)
-    found.best = singles[0]
-    weighing.weigh_again(found, most)
-    assert own == asked and found.best.candidates == (A,)
 
 
 def test_a_detail_of_a_law_does_not_take_the_place_of_a_second_effect(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -304,46 +189,3 @@ def test_what_the_budget_broke_off_is_tried_when_there_is_work_again(monkeypatch
     with found.work_of_its_own(1000.0, beyond=True):
         exchange._try_others(found, False)
     assert len(asked) == 5 and found.whole.spent
-
-
-def test_refits_that_do_not_come_near_the_best_exchange_before_are_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
-    bounds: list[float] = []
-
-    def extended(found: Search, rest: Any, scores: Any, widely: bool, but: Any, most: float) -> list[Any]:
-        bounds.append(most)
-        return [fit(A, C, loss=500.0), fit(A, B, loss=600.0)]
-
-    monkeypatch.setattr(exchange, "extended", extended)
-    monkeypatch.setattr(exchange, "without", lambda best, candidate, _=0: fit(*best.candidates[:1], loss=1000.0))
-    found = search(fit(loss=2000.0))
-    found.best = fit(A, TILT, loss=900.0)
-    found.best.measured.stretches = None
-    exchange._try_others(found, False)
-    assert bounds == [900.0 + weighing.CLOSE, 500.0 + weighing.CLOSE]
-
-
-def test_what_cannot_reach_the_best_exchange_is_not_taken_further(monkeypatch: pytest.MonkeyPatch) -> None:
-    """But for a window whose motion may have lost its way."""
-    pairs = [fit(A, B, loss=900.0, first=450.0), fit(A, C, loss=950.0, first=475.0)]
-    further: list[Any] = []
-    monkeypatch.setattr(beside, "worth_a_refit", lambda *_: [])
-    monkeypatch.setattr(beside, "_strong_alone", lambda *_: pairs)
-    monkeypatch.setattr(beside, "joined", lambda _, single, most: single)
-    monkeypatch.setattr(beside, "again", lambda one: further.append(one) or one)
-    for most, expected in ((np.inf, pairs), (460.0, pairs[:1]), (440.0, [])):
-        further.clear()
-        beside.extended(search(fit(loss=2000.0)), fit(A, loss=1500.0), [], widely=True, most=most)
-        assert further == expected
-
-
-def test_what_explains_little_beside_the_best_is_not_fitted_against_white_noise(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """What explains nothing may have lost its way, and is."""
-    asked: list[float] = []
-    monkeypatch.setattr(weighing, "by_white_noise", lambda one, _: asked.append(one.loss) or one)
-    found = search(fit(loss=1000.0))
-    for loss in (990.0, 500.0, 950.0, 850.0, 1100.0):
-        weighing.add_single(found, [fit(A, loss=loss)], np.inf)
-    assert asked == [990.0, 500.0, 850.0, 1100.0]
-    assert [one.loss for one in found.singles] == [990.0, 500.0, 950.0, 850.0, 1100.0]

@@ -1,0 +1,149 @@
+"""What a search spends its work on: what is hopeless takes none from what is not. The fits are made up."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from diagnosis.search import beside, exchange, select, weighing
+from diagnosis.search.budget import Budget
+from diagnosis.search.found import Search
+from models.runs import DONE
+from tests.diagnosis.search.made_up import NOTHING, TILT, A, B, C, fit, nothing_is_fitted, search
+
+
+@pytest.fixture(autouse=True)
+def made_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    nothing_is_fitted(monkeypatch)
+
+
+def test_pairs_are_weighed_by_what_they_explain_beyond_one_effect() -> None:
+    """The first of them explains most of what any pair does."""
+    pairs = [fit(A, other, loss=loss) for other, loss in ((TILT, 100.0), (B, 265.0), (C, 275.0))]
+    found = search(fit(loss=10000.0), *pairs, fit(A, loss=350.0))
+    found.best = pairs[0]
+    weighing.weigh_again(found)
+    assert [one.candidates[1] for one in found.tried] == [TILT, B]
+
+
+@pytest.mark.parametrize(("most", "asked"), [(np.inf, [100.0, 110.0, 120.0]), (30.0, [100.0, 110.0])])
+def test_mechanisms_are_weighed_as_long_as_it_is_worth_it(
+    monkeypatch: pytest.MonkeyPatch, most: float, asked: list[float]
+) -> None:
+    own: list[float] = []
+
+    def judged(explanation: Any, errors: Any) -> weighing.Judged:
+        own.append(explanation.loss)
+        DONE.call(0, 20.0)
+        return weighing.Judged(explanation.loss, explanation, NOTHING)
+
+    monkeypatch.setattr(weighing.Judged, "of", judged)
+    singles = [fit(one, loss=100.0 + 10.0 * k) for k, one in enumerate((A, B, TILT))]
+    found = search(fit(loss=1000.0), *singles)
+    found.best = singles[0]
+    weighing.weigh_again(found, most)
+    assert own == asked and found.best.candidates == (A,)
+
+
+def test_refits_that_do_not_come_near_the_best_exchange_before_are_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    bounds: list[float] = []
+
+    def extended(found: Search, rest: Any, scores: Any, widely: bool, but: Any, most: float) -> list[Any]:
+        bounds.append(most)
+        return [fit(A, C, loss=500.0), fit(A, B, loss=600.0)]
+
+    monkeypatch.setattr(exchange, "extended", extended)
+    monkeypatch.setattr(exchange, "without", lambda best, candidate, _=0: fit(*best.candidates[:1], loss=1000.0))
+    found = search(fit(loss=2000.0))
+    found.best = fit(A, TILT, loss=900.0)
+    found.best.measured.stretches = None
+    exchange._try_others(found, False)
+    assert bounds == [900.0 + weighing.CLOSE, 500.0 + weighing.CLOSE]
+
+
+def test_what_cannot_reach_the_best_exchange_is_not_taken_further(monkeypatch: pytest.MonkeyPatch) -> None:
+    """But for a window whose motion may have lost its way."""
+    pairs = [fit(A, B, loss=900.0, first=450.0), fit(A, C, loss=950.0, first=475.0)]
+    further: list[Any] = []
+    monkeypatch.setattr(beside, "worth_a_refit", lambda *_: [])
+    monkeypatch.setattr(beside, "_strong_alone", lambda *_: pairs)
+    monkeypatch.setattr(beside, "joined", lambda _, single, most: single)
+    monkeypatch.setattr(beside, "again", lambda one: further.append(one) or one)
+    for most, expected in ((np.inf, pairs), (460.0, pairs[:1]), (440.0, [])):
+        further.clear()
+        beside.extended(search(fit(loss=2000.0)), fit(A, loss=1500.0), [], widely=True, most=most)
+        assert further == expected
+
+
+def test_what_explains_little_beside_the_best_is_not_fitted_against_white_noise(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """What explains nothing may have lost its way, and is."""
+    asked: list[float] = []
+    monkeypatch.setattr(weighing, "by_white_noise", lambda one, _: asked.append(one.loss) or one)
+    found = search(fit(loss=1000.0))
+    for loss in (990.0, 500.0, 950.0, 850.0, 1100.0):
+        weighing.add_single(found, [fit(A, loss=loss)], np.inf)
+    assert asked == [990.0, 500.0, 850.0, 1100.0]
+    assert [one.loss for one in found.singles] == [990.0, 500.0, 950.0, 850.0, 1100.0]
+
+
+@pytest.mark.parametrize(("loss", "asked"), [(400.0, ["maxwell"]), (1400.0, ["maxwell", "hardening"])])
+def test_no_pair_is_sought_beside_another_once_one_explains_most(
+    monkeypatch: pytest.MonkeyPatch, loss: float, asked: list[str]
+) -> None:
+    singles = [fit(A, loss=2000.0), fit(B, loss=2100.0)]
+    beside_which: list[str] = []
+
+    def extended(found: Search, single: Any, *_: Any) -> list[Any]:
+        beside_which.append(single.names[0])
+        return [fit(*single.candidates, TILT, loss=loss)]
+
+    singles[0].fitted.misfit = SimpleNamespace(of_noise=0.0)
+    monkeypatch.setattr(select, "adequate", lambda _: False)
+    monkeypatch.setattr(select, "outside", lambda *_: None)
+    monkeypatch.setattr(select, "pool", lambda *_: [[one] for one in singles])
+    monkeypatch.setattr(select, "extended", extended)
+    for name in ("exchanged", "weigh_again"):
+        monkeypatch.setattr(select, name, lambda *_: None)
+    found = search(fit(loss=10000.0), *singles)
+    found.best = singles[0]
+    select._pairs(found, lambda *_: None)
+    assert beside_which == asked
+
+
+@pytest.mark.parametrize("left", [True, False])
+def test_the_last_exchange_goes_on_beyond_the_work_of_all_searches_where_much_is_left(
+    monkeypatch: pytest.MonkeyPatch, left: bool
+) -> None:
+    spent: list[bool] = []
+    monkeypatch.setattr(select, "_pairs", lambda *_: None)
+    monkeypatch.setattr(select, "_more", lambda *_: None)
+    monkeypatch.setattr(select, "exchanged", lambda found, _: spent.append(found.spent))
+    monkeypatch.setattr(select, "passes_for_white", lambda *_: not left)
+    for name in ("settle_ties", "drop", "with_other_numbers"):
+        monkeypatch.setattr(select, name, lambda _: None)
+    monkeypatch.setattr(select, "with_memory", lambda one: one)
+    monkeypatch.setattr(select, "estimate", lambda *_: NOTHING)
+    found = search(fit(loss=10000.0))
+    found.best, found.whole = fit(A, TILT, loss=900.0), Budget(-1.0)
+    found.best.measured.identification = SimpleNamespace(further_work=1.0)
+    found.base.measured.identification = SimpleNamespace(further_work=1.0)
+    list(select.further_effects(found, lambda *_: None))
+    assert spent == [not left]
+
+
+@pytest.mark.parametrize(("whole", "most"), [(250.0, 100.0), (100.0, 20.0)])
+def test_weighing_singles_leaves_further_effects_their_work(
+    monkeypatch: pytest.MonkeyPatch, whole: float, most: float
+) -> None:
+    asked: list[float] = []
+    monkeypatch.setattr(select, "weigh_again", lambda _, given: asked.append(given))
+    monkeypatch.setattr(select, "refit_singles", lambda *_: None)
+    found = search(fit(loss=1000.0), fit(A, loss=100.0))
+    found.whole = Budget(whole)
+    list(select.first_effect(found, lambda *_: None))
+    assert asked == [pytest.approx(most, abs=1.0)]
