@@ -13,11 +13,11 @@ from diagnosis.answer.result import Beyond, Unfit, Verdict
 from diagnosis.answer.task import Task
 from diagnosis.errors.summary import ErrorModel, summary
 from diagnosis.search import bootstrap as bootstrapping
+from diagnosis.search.evidence import evidence
 from diagnosis.search.found import Near, Search, rivals
 from diagnosis.search.grown import grown
 from diagnosis.search.ladder import Climbed
 from diagnosis.search.refit import Explanation
-from diagnosis.search.weighing import evidence
 
 
 @dataclass(frozen=True)

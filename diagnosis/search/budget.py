@@ -13,6 +13,8 @@ JOINTS = 45.0
 """s for the law of the strongest single at other joints."""
 UNTRIED = 60.0
 """s for what is left of the screen, in the place of the strongest single."""
+DECLARED = 80.0
+"""s for pairs from the specimen as declared, where no mechanism alone explains much."""
 FURTHER = 150.0
 """s for effects beside the first, kept back from all that comes before: where two act, the first explains little."""
 WEIGHING = 20.0

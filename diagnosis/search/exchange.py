@@ -13,7 +13,7 @@ from diagnosis.progress import Progress
 from diagnosis.search.beside import extended, seconds
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.details import least
-from diagnosis.search.found import MISSING, Search, adjusted
+from diagnosis.search.found import MISSING, STUCK, Search, adjusted
 from diagnosis.search.left_out import predicts_worse
 from diagnosis.search.refit import Explanation, again, from_states_of, gain_by_window, over_ranges, reshaped, without
 from diagnosis.search.weighing import CLOSE, weigh_again
@@ -119,9 +119,15 @@ def _try_others(found: Search, widely: bool) -> None:
     for candidate, left in sorted(standing.items(), key=lambda entry: entry[1].loss):
         others = frozenset(best.candidates) - {candidate}
         if others not in found.exchanged and found.affordable(f"others in the place of {candidate.name}"):
-            for rest in [left, *([without(best, candidate)] if widely else [])]:
+            for rest in [left, *(_elsewhere(best, candidate, left) if widely else [])]:
                 fits = extended(found, rest, seconds(found, rest), widely, candidate, reached + near)
                 reached = min([reached, *(one.loss for one in fits)])
                 found.tried += fits
             if not found.spent:  # else the others are tried when there is work left
                 found.exchanged.add(others)
+
+
+def _elsewhere(best: Explanation, candidate: Candidate, left: Explanation) -> list[Explanation]:
+    """The others fitted again without a candidate, unless that leads nowhere from where they are ``left``."""
+    elsewhere = without(best, candidate)
+    return [elsewhere] if elsewhere.loss < left.loss - STUCK else []

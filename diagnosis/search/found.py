@@ -58,6 +58,14 @@ class WhiteScreen:
     scores: list[Score]
 
 
+class LeftOut(NamedTuple):
+    """The best model with one effect left out, errors estimated with it, and what the effect gains over these."""
+
+    rest: Explanation
+    errors: Errors
+    gain: float
+
+
 @dataclass
 class Search:
     """What has been found so far; it grows, so that a stopped search leaves its state."""
@@ -102,6 +110,8 @@ class Search:
     """What was tested last for constancy."""
     white: WhiteScreen | None = None
     """The last screen against white noise (`diagnosis.search.white_screen`)."""
+    left_out: tuple[Explanation, Errors, list[LeftOut]] | None = None
+    """Of an explanation under some errors, each of its effects left out (`diagnosis.search.evidence`)."""
 
     @property
     def measured(self) -> Measured:

@@ -10,15 +10,17 @@ from collections.abc import Iterator, Sequence
 from diagnosis.errors.model import estimate
 from diagnosis.progress import Progress
 from diagnosis.search.beside import POOL_SHARE, extended, seconds
-from diagnosis.search.budget import FURTHER, LAST, WEIGHING
+from diagnosis.search.budget import DECLARED, FURTHER, LAST, WEIGHING
+from diagnosis.search.declared import explains_most, pairs_as_declared
 from diagnosis.search.details import least
+from diagnosis.search.evidence import drop_without_evidence
 from diagnosis.search.exchange import drop, exchanged
 from diagnosis.search.found import GAP, MISSING, Search, adequate, adjusted, passes_for_white, survives
 from diagnosis.search.hidden import hidden_beside, take_hidden
 from diagnosis.search.left_out import predicts_worse
 from diagnosis.search.outside import outside
 from diagnosis.search.refit import Explanation, again, best_of, over_ranges, reshaped, with_memory
-from diagnosis.search.singles import refit_singles
+from diagnosis.search.singles import refit_singles, take_further
 from diagnosis.search.ties import settle_ties
 from diagnosis.search.variants import with_other_numbers
 from diagnosis.search.weighing import weigh_again
@@ -31,13 +33,20 @@ FUTILE = "what was found explains less than a quarter of what is missing"
 
 
 def first_effect(found: Search, progress: Progress) -> Iterator[Search]:
-    """Yields the growing search after each stage, up to the best single mechanism under its own errors."""
+    """Yields the growing search after each stage, up to the best single mechanism under its own errors.
+
+    Or to two, where no mechanism alone explains much and two do from the specimen as declared.
+    """
     yield found
     progress("screening the mechanisms", 0.1)
-    refit_singles(found, progress)
+    left = refit_singles(found, progress)
     yield found
     if not found.singles:
         return
+    if _take_pair_as_declared(found, progress):
+        yield found
+        return
+    take_further(found, left)
     take_best_single(found)
     if found.best is None and found.measured.stretches is not None:
         return
@@ -71,6 +80,7 @@ def further_effects(found: Search, progress: Progress) -> Iterator[Search]:
         if found.weighed_elsewhere:
             found.errors = estimate(found.best.fitted, found.errors.base, found.errors)
         drop(found)  # errors estimated with both, and fits taken further, may ask for one only
+        drop_without_evidence(found)
         with_other_numbers(found)
     yield found
 
@@ -84,6 +94,28 @@ def take_best_single(found: Search) -> None:
             found.best = single
             return
         found.pass_over(single)
+
+
+def _take_pair_as_declared(found: Search, progress: Progress) -> bool:
+    """Take two mechanisms that explain most of what the best of them alone leaves, where that is much; whether it did.
+
+    What of the two is not needed is dropped later.
+    """
+    single = min(found.singles, key=adjusted)
+    if found.measured.stretches is not None or found.gain(single) < MISSING:
+        return False
+    if explains_most(single, found.base, found.errors):
+        return False
+    with found.work_of_its_own(DECLARED):
+        pairs = pairs_as_declared(found, single, progress)
+    pair = _pair_that_counts(found, single, pairs)
+    if pair is None or not explains_most(pair, single, found.errors):
+        return False
+    found.tried += [*found.singles, *pairs]
+    found.best = over_ranges(again(reshaped(pair)))
+    progress("estimating the errors with what was found", 0.46)
+    weigh_again(found)
+    return True
 
 
 def pool(found: Search, best: Explanation) -> list[list[Explanation]]:
@@ -108,6 +140,9 @@ def pool(found: Search, best: Explanation) -> list[list[Explanation]]:
 def _pairs(found: Search, progress: Progress) -> None:
     if found.best is None:
         return
+    if len(found.best.candidates) > 1:
+        exchanged(found, progress)
+        return
     progress("comparing with laws outside the library", 0.48)
     others = seconds(found, found.best)
     if not adequate(found.best):
@@ -121,8 +156,8 @@ def _pairs(found: Search, progress: Progress) -> None:
             if found.affordable(f"a second effect beside {name}"):
                 screened = others if single is found.best else seconds(found, single)
                 pairs += extended(found, single, screened, widely)
-        if any(adequate(e) or explains_most(e, found.best) for e in pairs):  # others are tried in its place later
-            break
+        if any(adequate(e) or explains_most(e, found.best, found.errors) for e in pairs):
+            break  # others are tried in its place later
     if found.outside is not None:
         if not any(adequate(e) for e in pairs):
             return
@@ -136,12 +171,6 @@ def _pairs(found: Search, progress: Progress) -> None:
         progress("looking for a second effect that the errors hide", 0.77)
         take_hidden(found, found.best, [*pairs, *hidden_beside(found, found.best, pairs)])
     exchanged(found, progress)  # before a third: what stands in for another effect leaves traces of its own
-
-
-def explains_most(pair: Explanation, alone: Explanation) -> bool:
-    """Whether a pair leaves little of what the best mechanism leaves ``alone`` beyond noise."""
-    missing = alone.loss - alone.fitted.misfit.of_noise
-    return adjusted(alone) - adjusted(pair) > (1.0 - LITTLE) * max(missing, 0.0)
 
 
 def _pair_that_counts(found: Search, best: Explanation, pairs: Sequence[Explanation]) -> Explanation | None:

@@ -67,16 +67,16 @@ NEAR_FIRST, MOST_FIRST = 0.3, 4
 """Share of the largest statistic from which a mechanism is refitted before what has no slope; how many at most."""
 
 
-def refit_singles(found: Search, progress: Progress) -> None:
+def refit_singles(found: Search, progress: Progress) -> list[Score]:
     """Screen the mechanisms and refit the strongest alone: ``scores``, ``null`` and ``singles``, the likeliest first.
 
-    The leader is taken further: over its ranges, to other joints, and against what the budget left untried.
+    Those that the budget left untried.
     """
     begins = starting_points(found)
     opened = linearise_about(found.base.fitted)
     found.scores = score(opened, firsts(found.candidates), found.not_tried, explains_all(found.base))
     found.null = null_distribution(opened, found.scores)
-    fewest = FEWEST_ADEQUATE if adequate(found.base) else FEWEST
+    fewest = _fewest(found)
     wanted = worth_a_refit(found.scores, fewest, SHARE_OF_FIRST)[:MOST]
     late: list[Candidate] = []
     if found.measured.stretches is None and misfits(found.base, found.errors):
@@ -91,9 +91,16 @@ def refit_singles(found: Search, progress: Progress) -> None:
         if found.not_tried.get(single.names[0]) in (COSTLY, THRESHOLD):
             del found.not_tried[single.names[0]]
     found.singles.sort(key=adjusted)
-    if not found.singles:
-        return
-    if adequate(found.base) and found.gain(found.singles[0]) < FAINT:
+    return left
+
+
+def _fewest(found: Search) -> int:
+    return FEWEST_ADEQUATE if adequate(found.base) else FEWEST
+
+
+def take_further(found: Search, left: Sequence[Score]) -> None:
+    """The likeliest single over its ranges, to other joints and against what is ``left`` untried; others beside it."""
+    if not found.singles or (adequate(found.base) and found.gain(found.singles[0]) < FAINT):
         return
     found.singles[0] = over_ranges(again(reshaped(found.singles[0])))
     if found.gain(found.singles[0]) < MISSING:
@@ -101,7 +108,7 @@ def refit_singles(found: Search, progress: Progress) -> None:
     if led_by(found, found.singles[0]):
         found.singles[0] = again(reshaped(found.singles[0]))
         tried = {single.candidates[0] for single in found.singles}
-        worth = one_of_each(worth_a_refit(found.scores, fewest, SHARE_OF_FIRST))[:MOST]
+        worth = one_of_each(worth_a_refit(found.scores, _fewest(found), SHARE_OF_FIRST))[:MOST]
         left = [s for s in worth if s.candidate not in tried and found.not_tried.get(s.candidate.name) != COSTLY]
     with found.work_of_its_own(min(JOINTS, found.spare)):
         at_other_joints(found)

@@ -20,7 +20,7 @@ from diagnosis.fit.whitening import sensor_noise_only
 from diagnosis.search.budget import ENDED, Budget
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.found import STUCK, Search, adjusted, enough, passes_for_white, within_reach
-from diagnosis.search.refit import Explanation, best_of, from_states_of, further, resized, ways, without
+from diagnosis.search.refit import Explanation, best_of, from_states_of, further, resized, ways
 from models.base import FloatArray
 
 NEAR, OWN = 0.3, 0.4
@@ -193,22 +193,3 @@ def _judged(near: Sequence[Explanation], before: float, found: Search, budget: B
 
 def _is_close(one: Judged, judged: Sequence[Judged]) -> bool:
     return one.loss < min(other.loss for other in judged) + CLOSE
-
-
-def evidence(found: Search) -> list[float]:
-    """Gain of each effect of the answer over the best model without it, under the errors of the model without it."""
-    best = found.best
-    if best is None:
-        return []
-    if len(best.candidates) == 1:
-        start = found if found.at_null is None else found.at_null
-        if same := [e for e in start.tried if e.candidates == best.candidates]:
-            # a fit that came later, in place of another effect, may have found what the first one had not
-            losses = [e.loss for e in (*same, reweighed(best, start.errors))]
-            return [max(found.marginal, start.base.loss - min(losses))]
-    return [_evidence(best, without(best, c), found.errors) for c in best.candidates]
-
-
-def _evidence(best: Explanation, rest: Explanation, start: Errors) -> float:
-    fitted, errors = refitted(rest.fitted, start.base, start)
-    return max(fitted.loss - reweighed(best, errors).loss, 0.0)

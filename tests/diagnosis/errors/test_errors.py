@@ -24,11 +24,11 @@ from diagnosis.errors.words import error_lines
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.setup import base_fit, measure
 from diagnosis.search.candidates import candidates
+from diagnosis.search.evidence import evidence
 from diagnosis.search.found import Search
 from diagnosis.search.null import null_distribution
 from diagnosis.search.refit import Explanation
 from diagnosis.search.screen import score
-from diagnosis.search.weighing import evidence
 from grids.recordings.base import Recording
 from tests.diagnosis.made import SPECIMEN, TIME_STEP, scattered
 from tests.diagnosis.made import searched as searched_to_the_end

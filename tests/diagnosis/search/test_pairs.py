@@ -48,17 +48,6 @@ def test_a_lean_and_an_instrument_that_explains_as_much_are_led_together(monkeyp
     assert leading(*weak, adequate=False, monkeypatch=monkeypatch) == [["tilt"]]
 
 
-def test_a_pair_explains_most_of_what_its_best_part_leaves_beyond_noise() -> None:
-    """Then no pair is sought beside another mechanism: an exchange tries others in its place."""
-
-    def explained(loss: float) -> Any:
-        return SimpleNamespace(loss=loss, candidates=(), fitted=SimpleNamespace(misfit=SimpleNamespace(of_noise=500.0)))
-
-    alone = explained(1500.0)
-    assert select.explains_most(explained(740.0), alone)
-    assert not select.explains_most(explained(760.0), alone)
-
-
 def coupled(seed: int) -> Recording:
     """The plain block; its base accelerometer is AC coupled, and what it is read with has an offset."""
     base = motion(seed)

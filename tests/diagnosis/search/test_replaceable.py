@@ -19,7 +19,7 @@ from diagnosis.search import singles
 from diagnosis.search.candidates import candidates
 from diagnosis.search.found import Search, explains_all
 from diagnosis.search.refit import Explanation, extend, from_other, in_the_place_of
-from diagnosis.search.singles import refit_singles
+from diagnosis.search.singles import refit_singles, take_further
 from diagnosis.search.weighing import reweighed
 from tests.diagnosis.made import SPECIMEN, recording
 
@@ -84,7 +84,7 @@ def test_singles_far_behind_are_where_the_leader_explains_everything(
 
     monkeypatch.setattr(singles, "_refit_in_turn", refitted)
     search = replace(found, singles=[], tried=[])
-    refit_singles(search, silent)
+    take_further(search, refit_singles(search, silent))
     assert [name for name, _ in asked] == (["eccentricity"] if explained else [])
     if explained:
         assert leader.loss < asked[0][1] < found.base.loss

@@ -18,10 +18,11 @@ from diagnosis.progress import silent
 from diagnosis.search import refit, singles, weighing
 from diagnosis.search.budget import Budget
 from diagnosis.search.candidates import Candidate, candidates
+from diagnosis.search.evidence import evidence
 from diagnosis.search.found import BEHIND, Search, adjusted, enough, explains_all, lost_in_a_window, within_reach
 from diagnosis.search.refit import Explanation, extend, from_states_of, with_memory
-from diagnosis.search.singles import COSTLY, THRESHOLD, in_turn, led_by, refit_singles
-from diagnosis.search.weighing import Judged, evidence, led_by_each_other, reweighed
+from diagnosis.search.singles import COSTLY, THRESHOLD, in_turn, led_by, refit_singles, take_further
+from diagnosis.search.weighing import Judged, led_by_each_other, reweighed
 from models.base import FloatArray
 from tests.diagnosis import buildings
 from tests.diagnosis.made import SPECIMEN, recording
@@ -120,7 +121,8 @@ def test_a_single_that_lost_its_way_in_one_window_is_fitted_again(
     monkeypatch.setattr(singles, "_refit_in_turn", lambda found, *_: found.singles.extend([late, lost]) or [])
     taken: list[Explanation] = []
     monkeypatch.setattr(singles, "again", lambda one: taken.append(one) or one)
-    refit_singles(replace(free, singles=[]), silent)
+    found = replace(free, singles=[])
+    take_further(found, refit_singles(found, silent))
     assert [one is late for one in taken] == [True, False] and taken[1] is lost
 
 
@@ -139,7 +141,7 @@ def test_what_the_fit_of_the_base_did_astray_does_not_lead_a_single(
     (late,) = (e for e in free.singles if e.names == ("delay",))
     found = replace(free, base=stuck(free.base), candidates=late.candidates, singles=[])
     assert found.base.loss > free.base.loss + 1000.0
-    refit_singles(found, silent)
+    take_further(found, refit_singles(found, silent))
     assert reweighed(found.base, free.errors).loss < free.base.loss + 0.5
     whitening = found.base.fitted.misfit.whitening
     assert found.errors is not free.errors and whitening.sensor is found.errors.whitening.sensor
@@ -171,7 +173,8 @@ def test_what_is_far_behind_a_single_that_explains_everything_is_not_fitted_to_i
     monkeypatch.setattr(singles, "from_other", lambda one, *_: one)
     monkeypatch.setattr(singles, "with_memory", lambda one: one)
     base = replace(free.base, fitted=replace(free.base.fitted, loss=1000.0))
-    refit_singles(replace(free, base=base, singles=[]), silent)
+    found = replace(free, base=base, singles=[])
+    take_further(found, refit_singles(found, silent))
     assert given[0] == np.inf and given[-1] == pytest.approx(100.0 + BEHIND)
     assert white == ["delay"]
 
@@ -191,7 +194,7 @@ def test_a_base_that_declared_numbers_do_not_better_stays_and_singles_begin_at_b
     monkeypatch.setattr(refit, "extend", watched)
     monkeypatch.setattr(singles, "further", lambda declared: replace(declared, fitted=replace(off.fitted, loss=1e9)))
     found = replace(free, base=off, candidates=late.candidates, singles=[])
-    refit_singles(found, silent)
+    take_further(found, refit_singles(found, silent))
     assert found.base is off
     own, declared = (one.fitted for one in list({id(one): one for one in began}.values()))
     assert own is off.fitted and np.array_equal(declared.states, off.measured.states)
@@ -232,7 +235,7 @@ def test_every_law_with_a_memory_counts_events_along_its_own_motion() -> None:
     fitted = replace(fitted, misfit=replace(fitted.misfit, predictor=predictor))
     some = tuple(one for one in candidates(measured, SPECIMEN) if one.name in ("restitution", "degradation"))
     found = Search(Explanation((), fitted), some, errors)
-    refit_singles(found, silent)
+    take_further(found, refit_singles(found, silent))
     assert [single.names[0] for single in found.singles] == ["restitution", "degradation"]
     lossy, worn = found.singles
     assert with_memory(worn).loss > worn.loss - 0.5
@@ -264,7 +267,7 @@ def test_costly_fits_are_left_out_where_another_explains_all(
     monkeypatch.setattr(singles, "setting_in", lambda *_: [some["coulomb_damping"]])
     monkeypatch.setattr(singles, "from_measured", lambda _, candidate: at_measured.append(candidate.name) or [])
     found = Search(Explanation((), fitted), tuple(some.values()), errors)
-    refit_singles(found, silent)
+    take_further(found, refit_singles(found, silent))
     assert ("coulomb_damping" in [single.names[0] for single in found.singles]) == refitted
     assert bool(at_measured) == began
     assert found.not_tried == ({} if refitted else {"coulomb_damping": COSTLY})
@@ -283,7 +286,7 @@ def test_costly_fits_are_left_out_where_whole_runs_are_compared_too(monkeypatch:
     monkeypatch.setattr(singles, "explains_all", lambda *_: True)
     monkeypatch.setattr(Measured, "stretches", property(lambda _: (), lambda *_: None), raising=False)
     found = Search(Explanation((), fitted), some, errors)
-    refit_singles(found, silent)
+    take_further(found, refit_singles(found, silent))
     assert found.not_tried == {"coulomb_damping": COSTLY}
 
 
@@ -301,7 +304,7 @@ def test_what_sets_in_at_a_threshold_is_said_not_to_be_tried_where_another_expla
     monkeypatch.setattr(singles, "setting_in", lambda *_: [some["gain"], twin])
     monkeypatch.setattr(singles, "starts_of", lambda e, _: () if e.candidate in (some["gain"], twin) else e.starts)
     found = Search(Explanation((), fitted), (*some.values(), twin), errors)
-    refit_singles(found, silent)
+    take_further(found, refit_singles(found, silent))
     assert found.not_tried == {"gain": THRESHOLD}
 
 

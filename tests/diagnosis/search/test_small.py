@@ -106,7 +106,7 @@ def test_screens_go_by_slopes_alone_where_the_model_at_hand_explains_everything(
     monkeypatch.setattr(singles, "passes_for_white", lambda *_: True)
     monkeypatch.setattr(singles, "in_turn", lambda *_: [])
     search = replace(found, singles=[], not_tried={})
-    singles.refit_singles(search, silent)
+    singles.take_further(search, singles.refit_singles(search, silent))
     beside.seconds(search, search.base)
     assert asked == [all_explained] * 2
 
@@ -129,7 +129,7 @@ def test_where_white_noise_explains_all_nothing_is_screened_or_fitted_against_it
         monkeypatch.setattr(module, "against_white_noise", refuse)
     monkeypatch.setattr(weighing, "as_white_noise", refuse)
     search = replace(found, singles=[], not_tried={})
-    singles.refit_singles(search, silent)
+    singles.take_further(search, singles.refit_singles(search, silent))
     assert search.singles
     screened = in_spells.Screened.of(search, search.base, search.scores)
     assert len(screened.screens) == 1 and not screened.hides
@@ -154,7 +154,7 @@ def test_where_a_mechanism_leaves_white_noise_none_is_sought_in_the_errors(
     search = Search(Explanation((), fitted), known, errors)
     assert not passes_for_white(search.base, search.errors)
     monkeypatch.setattr(singles, "against_white_noise", watched)
-    singles.refit_singles(search, silent)
+    singles.take_further(search, singles.refit_singles(search, silent))
     assert len(search.singles) == 1
     assert asked == ([] if name == "delay" else [search.base])
 

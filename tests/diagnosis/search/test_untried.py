@@ -74,6 +74,6 @@ def test_a_search_whose_budget_ends_at_once_tries_all_that_the_screen_asks_for(b
             return True
 
     found = Short(begun.base, begun.candidates, begun.errors)
-    singles.refit_singles(found, silent)
+    singles.take_further(found, singles.refit_singles(found, silent))
     assert {single.names[0] for single in found.singles} == {TRUE, WRONG, "tilt"}
     assert found.singles[0].names == (TRUE,) and TRUE not in found.not_tried

@@ -102,8 +102,8 @@ def test_no_pair_is_sought_beside_another_once_one_explains_most(
         beside_which.append(single.names[0])
         return [fit(*single.candidates, TILT, loss=loss)]
 
-    singles[0].fitted.misfit = SimpleNamespace(of_noise=0.0)
     monkeypatch.setattr(select, "adequate", lambda _: False)
+    monkeypatch.setattr(select, "explains_most", lambda pair, of, _: pair.loss < 0.25 * of.loss)
     monkeypatch.setattr(select, "outside", lambda *_: None)
     monkeypatch.setattr(select, "pool", lambda *_: [[one] for one in singles])
     monkeypatch.setattr(select, "extended", extended)
@@ -124,7 +124,7 @@ def test_the_last_exchange_goes_on_beyond_the_work_of_all_searches_where_much_is
     monkeypatch.setattr(select, "_more", lambda *_: None)
     monkeypatch.setattr(select, "exchanged", lambda found, _: spent.append(found.spent))
     monkeypatch.setattr(select, "passes_for_white", lambda *_: not left)
-    for name in ("settle_ties", "drop", "with_other_numbers"):
+    for name in ("settle_ties", "drop", "drop_without_evidence", "with_other_numbers"):
         monkeypatch.setattr(select, name, lambda _: None)
     monkeypatch.setattr(select, "with_memory", lambda one: one)
     monkeypatch.setattr(select, "estimate", lambda *_: NOTHING)
@@ -142,7 +142,9 @@ def test_weighing_singles_leaves_further_effects_their_work(
 ) -> None:
     asked: list[float] = []
     monkeypatch.setattr(select, "weigh_again", lambda _, given: asked.append(given))
-    monkeypatch.setattr(select, "refit_singles", lambda *_: None)
+    monkeypatch.setattr(select, "refit_singles", lambda *_: [])
+    monkeypatch.setattr(select, "take_further", lambda *_: None)
+    monkeypatch.setattr(select, "explains_most", lambda *_: True)
     found = search(fit(loss=1000.0), fit(A, loss=100.0))
     found.whole = Budget(whole)
     list(select.first_effect(found, lambda *_: None))

@@ -1,0 +1,73 @@
+"""Pairs of effects from the specimen as it is declared, where no effect alone explains what is missing.
+
+A fit that lacks much makes up for it with what it has: a stiffness of the layers twice what was declared, say. About
+such numbers a screen ranks what fits them, and a fit of both missing effects ends beside them. So the screen is made
+about the declared numbers and the measured motion; the strongest mechanisms stand at the sizes where it starts them,
+unfitted, for alone they would lead the numbers away again; and each is screened and fitted with others beside it.
+"""
+
+from __future__ import annotations
+
+from diagnosis.errors.model import Errors
+from diagnosis.fit.linearisation import linearise_about
+from diagnosis.progress import Progress
+from diagnosis.search.beside import SHARE_OF_SECOND, one_of_each, seconds, starts_of, worth_a_refit
+from diagnosis.search.candidates import firsts
+from diagnosis.search.found import Search, adjusted, left_over_white_noise
+from diagnosis.search.refit import Explanation, again, as_declared, best_of, extend, from_starts
+from diagnosis.search.screen import Score, score
+
+REST, FAR = 0.25, 20.0
+"""What an explanation of most may leave over white noise: a share of what is missing, and this misfit per sample."""
+LEADING, SECONDS = 3, 4
+"""Classes of mechanisms beside which a second is sought, and the mechanisms that are fitted beside each."""
+
+
+def explains_most(one: Explanation, of: Explanation, errors: Errors) -> bool:
+    """Whether an explanation leaves little of what another leaves, both over white noise.
+
+    Over that, for errors estimated with a wrong mechanism hold what it does not explain.
+    """
+    left, missing = (left_over_white_noise(e, errors) - 1.0 for e in (one, of))
+    return left < REST * max(missing, 1.0) and left < FAR
+
+
+def pairs_as_declared(found: Search, alone: Explanation, progress: Progress) -> list[Explanation]:
+    """Pairs beside each of the strongest of a screen about the declared specimen, until one explains most.
+
+    Of what the best mechanism leaves ``alone``; those that promise no less loss than that are given up on the way.
+    """
+    declared, most = as_declared(found.base), adjusted(alone)
+    screened = score(linearise_about(declared.fitted), firsts(found.candidates), found.not_tried)
+    pairs: list[Explanation] = []
+    for k, entry in enumerate(_of_each_class(screened)[:LEADING]):
+        what = f"a second effect beside {entry.candidate.name}, from the specimen as declared"
+        progress(f"looking for {what}", 0.35 + 0.03 * k)
+        if not found.affordable(what):
+            break
+        first = best_of([extend(declared, entry.candidate, start, 0) for start in starts_of(entry, screened)])
+        pair = _beside(found, first, most)
+        if pair is not None:
+            pairs.append(pair)
+            if explains_most(pair, alone, found.errors):
+                break
+    return pairs
+
+
+def _beside(found: Search, first: Explanation, most: float) -> Explanation | None:
+    """The best fit of ``first`` with one of the strongest beside it, if its loss is less than ``most``."""
+    scores = seconds(found, first)
+    fits = []
+    for entry in one_of_each(worth_a_refit(scores, SECONDS, SHARE_OF_SECOND))[:SECONDS]:
+        if found.affordable(entry.candidate.name):
+            fits.append(best_of(from_starts([first], entry.candidate, starts_of(entry, scores), most)))
+            most = min(most, adjusted(fits[-1]))
+    return again(best_of(fits)) if fits and best_of(fits).loss <= most else None
+
+
+def _of_each_class(scores: list[Score]) -> list[Score]:
+    first: dict[str, Score] = {}
+    for entry in scores:
+        if entry.starts:
+            first.setdefault(entry.candidate.effect_class, entry)
+    return list(first.values())

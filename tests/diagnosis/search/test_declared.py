@@ -1,0 +1,104 @@
+"""Where no mechanism explains much alone, two are sought from the specimen as declared."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from diagnosis.errors.model import calibrated
+from diagnosis.fit.setup import measure
+from diagnosis.fit.solver import fit as fitted_from
+from diagnosis.progress import silent
+from diagnosis.search import declared, select
+from diagnosis.search.budget import Budget
+from diagnosis.search.candidates import candidates
+from diagnosis.search.declared import FAR, explains_most, pairs_as_declared
+from diagnosis.search.found import ENDED, Search
+from diagnosis.search.refit import Explanation
+from tests.diagnosis.made import SPECIMEN, TRUE, recording
+from tests.diagnosis.search.made_up import TILT, A, B, fit, search
+
+EFFECTS = {"delay": {"delay": 0.004}, "gain": {"gain": 0.06}}
+
+
+@pytest.fixture(scope="module")
+def begun() -> Search:
+    measured = measure(SPECIMEN, [recording(name, k, EFFECTS) for name, k in (("a", 4), ("b", 5))])
+    fitted, errors = calibrated(SPECIMEN, measured)
+    some = tuple(one for one in candidates(measured, SPECIMEN) if one.name in (*EFFECTS, "tilt", "viscous_damping"))
+    return Search(Explanation((), fitted), some, errors)
+
+
+def over_white(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Losses stand for what is left over white noise."""
+    monkeypatch.setattr(declared, "left_over_white_noise", lambda one, _: one.loss)
+
+
+@pytest.mark.parametrize(
+    ("left", "of", "most"),
+    [(10.9, 41.0, True), (11.1, 41.0, False), (1.2, 1.3, True), (1.3, 1.3, False), (FAR + 1.1, 1000.0, False)],
+)
+def test_what_explains_most_leaves_little_over_white_noise(
+    monkeypatch: pytest.MonkeyPatch, left: float, of: float, most: bool
+) -> None:
+    over_white(monkeypatch)
+    assert explains_most(fit(A, loss=left), fit(loss=of), search(fit(loss=of)).errors) is most
+
+
+def test_a_pair_is_found_from_the_declared_numbers_wherever_the_fit_of_the_base_went(begun: Search) -> None:
+    """The base at the ends of what its numbers may be, as a fit that lacks much may leave it."""
+    f = begun.base.fitted
+    away = Explanation((), fitted_from(f.misfit, np.array([x.bounds[1] for x in f.misfit.unknowns]), f.states, 0))
+    found = Search(away, begun.candidates, begun.errors)
+    pairs = pairs_as_declared(found, begun.base, silent)
+    best = min(pairs, key=lambda pair: pair.loss)
+    assert set(best.names) == set(EFFECTS)
+    assert best.fitted.values["delay.delay"] == pytest.approx(0.004, rel=0.05)
+    assert best.fitted.values["width"] == pytest.approx(TRUE["width"], rel=0.01)
+    assert best.names[0] == pairs[0].names[0]  # none is sought beside another once one explains most
+
+
+def test_what_the_budget_left_is_said(begun: Search) -> None:
+    found = Search(begun.base, begun.candidates, begun.errors, budget=Budget(-1.0))
+    assert pairs_as_declared(found, begun.base, silent) == []
+    assert ENDED in found.not_tried.values()
+
+
+@pytest.mark.parametrize(
+    ("alone", "pair", "taken"), [(200.0, 3.0, True), (200.0, 190.0, False), (20.0, 3.0, False), (995.0, 3.0, False)]
+)
+def test_a_pair_is_taken_where_a_mechanism_alone_leaves_much_and_the_pair_little(
+    monkeypatch: pytest.MonkeyPatch, alone: float, pair: float, taken: bool
+) -> None:
+    over_white(monkeypatch)
+    single, both = fit(A, loss=alone), fit(A, B, loss=pair)
+    single.measured.stretches = both.measured.stretches = None
+    found = search(fit(loss=1000.0), single, fit(TILT, loss=alone + 1.0))
+    found.measured.stretches = None
+    asked: list[str] = []
+    monkeypatch.setattr(select, "pairs_as_declared", lambda *_: asked.append("pairs") or [both])
+    monkeypatch.setattr(select, "survives", lambda *_: True)
+    monkeypatch.setattr(select, "least", lambda *_: 15.0)
+    for name in ("again", "reshaped", "over_ranges"):
+        monkeypatch.setattr(select, name, lambda one: one)
+    monkeypatch.setattr(select, "weigh_again", lambda *_: None)
+    further: list[Any] = []
+    monkeypatch.setattr(select, "refit_singles", lambda *_: [])
+    monkeypatch.setattr(select, "take_further", lambda found, _: further.append(found))
+    monkeypatch.setattr(select, "take_best_single", lambda found: None)
+    monkeypatch.setattr(select, "take_hidden", lambda *_: None)
+    list(select.first_effect(found, silent))
+    assert (found.best is not None) is taken and bool(further) is not taken
+    assert not taken or (found.best is not None and found.best.names == both.names)
+
+
+def test_a_pair_that_was_taken_first_is_exchanged_and_no_other_sought(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = search(fit(loss=1000.0))
+    found.best = fit(A, B, loss=3.0)
+    done: list[str] = []
+    monkeypatch.setattr(select, "exchanged", lambda *_: done.append("exchanged"))
+    monkeypatch.setattr(select, "seconds", lambda *_: done.append("seconds") or [])
+    select._pairs(found, silent)
+    assert done == ["exchanged"]
