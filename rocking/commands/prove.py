@@ -15,13 +15,14 @@ SHIPPED = ("ridgecrest_2019_ccc", "ridgecrest_2019_clc")
 STEP = 0.005
 """s between samples of a case."""
 MOST_NOISE = 0.2
+CASES, SEED, NOISE = 24, 1, 0.01
 
 
 def prove(
     folder: Annotated[Path, typer.Argument(help="Folder with case_01, case_02 ... and answers.json, the key.")],
     out: Annotated[
         Path | None,
-        typer.Option(help="Folder of answers and scores.  [default: results/prove/PARENT_DIR, with half and model]"),
+        typer.Option(help="Folder of answers and scores.", show_default="results/prove/PARENT_DIR, half, model"),
     ] = None,
     half: Annotated[str, typer.Option(help="all, odd or even: which cases, by their numbers.")] = "all",
     model: Annotated[str | None, typer.Option(help="Only cases whose specimen is of this model.")] = None,
@@ -31,11 +32,15 @@ def prove(
         Path | None, typer.Option(help="Make the cases first: of this specimen (TOML), shaken by each --motion.")
     ] = None,
     motion: Annotated[list[str] | None, typer.Option(help="With --make: motions, as often as needed.")] = None,
-    cases: Annotated[int, typer.Option(help="With --make: how many cases.", min=1)] = 24,
-    seed: Annotated[int, typer.Option(help="With --make: other cases for another seed.", min=0)] = 1,
+    cases: Annotated[int | None, typer.Option(help="With --make: how many cases.", min=1, show_default="24")] = None,
+    seed: Annotated[
+        int | None,
+        typer.Option(help="With --make: other cases for another seed.", min=0, show_default="1"),
+    ] = None,
     noise: Annotated[
-        float, typer.Option(help="With --make: noise over the peak of each channel.", parser=number)
-    ] = 0.01,
+        float | None,
+        typer.Option(help="With --make: noise over the peak of each channel.", parser=number, show_default="0.01"),
+    ] = None,
 ) -> None:
     """Diagnose concealed cases, hash the answers, then open the key and score them.
 
@@ -50,10 +55,12 @@ def prove(
     from diagnosis.prove.chain import prove as prove_folder
     from rocking.commands.diagnose import make_folder
 
+    only_to_make = {"--motion": motion or None, "--cases": cases, "--seed": seed, "--noise": noise}
     if make is not None:
-        make_cases(folder, make, motion or [], cases, seed, noise)
-    elif motion:
-        raise InputError("--motion makes cases: name their specimen with --make, or leave it out.")
+        chosen = (CASES if cases is None else cases, SEED if seed is None else seed, NOISE if noise is None else noise)
+        make_cases(folder, make, motion or [], *chosen)
+    elif given := [name for name, value in only_to_make.items() if value is not None]:
+        raise InputError(f"{given[0]} makes cases: name their specimen with --make, or leave it out.")
     place = out or default_folder(folder, half, model)
     make_folder(place)
     if prove_folder(folder, place, half=half, model=model, jobs=jobs, minutes=minutes, say=typer.echo):

@@ -256,5 +256,12 @@ def test_the_command_makes_and_proves(tmp_path: Path) -> None:
     assert "making 1 of 1 cases" in run.output and "0 of 1 cases were answered before" in run.output
     refused = CliRunner().invoke(app, [*with_make, "--noise", "0"])
     assert refused.exit_code == 2
-    lonely = CliRunner().invoke(app, [*how, "--motion", "ridgecrest_2019_ccc"])
-    assert lonely.exit_code == 2
+
+
+@pytest.mark.parametrize(
+    "words", [("--motion", "ridgecrest_2019_ccc"), ("--cases", "3"), ("--seed", "0"), ("--noise", "0.02")]
+)
+def test_what_makes_cases_is_refused_without_their_specimen(tmp_path: Path, words: tuple[str, str]) -> None:
+    run = CliRunner().invoke(app, ["prove", str(tmp_path / "cases"), *words])
+    assert run.exit_code == 2
+    assert f"{words[0]} makes cases: name their specimen with --make" in run.output
