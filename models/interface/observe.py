@@ -74,7 +74,7 @@ def share(
     """
     low, high = -b + np.zeros_like(z), b + np.zeros_like(z)
     for level, slope in ((z, s), (z + late * z_rate, s + late * s_rate)):
-        with np.errstate(divide="ignore", invalid="ignore"):
+        with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
             root = level / slope
         flat = np.where(level < 0.0, -np.inf, np.inf)
         low = np.where(slope > 0.0, np.maximum(low, root), np.where(slope == 0.0, np.maximum(low, flat), low))

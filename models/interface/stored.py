@@ -19,7 +19,7 @@ Ends = tuple[FloatArray, FloatArray]
 def in_contact(ends: Ends, z: FloatArray, s: FloatArray) -> Ends:
     """Of stretches (n,) the part on which z - x s < 0."""
     low, high = ends
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         root = np.where(s == 0.0, np.where(z < 0.0, -np.inf, np.inf), z / s)
     first = np.clip(np.where(s >= 0.0, root, low), low, high)
     return first, np.clip(np.where(s < 0.0, root, high), first, high)
@@ -33,7 +33,7 @@ def frozen_share(z: FloatArray, lift: FloatArray, static: FloatArray) -> FloatAr
 
 def torn(effects: Effects, half: FloatArray, z: FloatArray, s: FloatArray, memory: Sequence[FloatArray]) -> Ends:
     """Ends (m) of what is bonded still at z, S, ``memory`` those so far; the first is the larger where nothing is."""
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         front = (z - effects.tearing) / s
     left = np.where(s > 0.0, np.maximum(memory[0], np.minimum(front, half)), memory[0])
     right = np.where(s < 0.0, np.minimum(memory[1], np.maximum(front, -half)), memory[1])

@@ -77,7 +77,7 @@ def strip(
 def stored(b: FloatArray, k: FloatArray, z: FloatArray, s: FloatArray) -> FloatArray:
     """Elastic energy of the linear law, k/2 times the integral of w^2 over the contact, in J; arrays broadcast."""
     lean = np.abs(s)
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         low = np.where(z + lean * b <= 0.0, -b, np.minimum(b, np.maximum(-b, z / lean)))
     d1, d2, d3 = b - low, (b * b - low * low) / 2.0, (b * b * b - low * low * low) / 3.0
     energy = 0.5 * k * (z * z * d1 - 2.0 * z * lean * d2 + lean * lean * d3)

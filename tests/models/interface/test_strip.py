@@ -8,7 +8,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from models.interface.lanes.strip import resultants, slopes
-from models.interface.strip import pressing, strip
+from models.interface.observe import share
+from models.interface.stored import in_contact
+from models.interface.strip import pressing, stored, strip
 
 
 def quadrature(b, k, c, z, s, z_rate, s_rate, clip):
@@ -100,3 +102,18 @@ def test_the_dashpot_may_pull_under_law_a_and_never_under_law_b() -> None:
     pulled = {"b": 0.36, "k": 6e7, "c": 8e5, "z": -1e-3, "s": 0.0, "z_rate": 0.2, "s_rate": 0.0}
     assert strip(**pulled, clip=False).force < 0.0
     assert strip(**pulled, clip=True).force == 0.0
+
+
+@pytest.mark.parametrize("lean", [5e-324, -5e-324])
+@pytest.mark.parametrize("z", [2e-3, -2e-3])
+def test_a_lean_too_small_to_divide_by_is_none(lean: float, z: float) -> None:
+    """A solver of states may end there; the line through the contact then has its root beyond all numbers."""
+    b, k = np.array([0.3]), np.array([4e7])
+    level, slopes = np.array([z]), (np.array([lean]), np.zeros(1))
+    tiny, flat = (stored(b, k, level, s) for s in slopes)
+    assert tiny == pytest.approx(flat, rel=1e-12)
+    tiny, flat = (np.diff(in_contact((-b, b), level, s), axis=0) for s in slopes)
+    assert tiny == pytest.approx(flat, rel=1e-12)
+    still = np.zeros(1)
+    tiny, flat = (share(b, still, level, s, still - 1.0, still) for s in slopes)
+    assert tiny == pytest.approx(flat, rel=1e-12)
