@@ -18,10 +18,11 @@ from diagnosis.search.refit import gain_by_window
 
 UNEXPLAINED = 0.5
 """Share of the squared motion in the windows that, left over by the best model, makes any name meaningless."""
-FAR, FEW = 3.0, 2
-"""Misfit per sample of a window far from the noise, and how many make an answer inadequate: one may be misread.
+FAR, FEW, ALONE = 3.0, 2, 6.0
+"""Misfit per sample of a window far from the noise, how many make an answer inadequate (one may be misread), and from
+which misfit on a single one is told.
 
-Of 100 windows with 20 independent samples two are as far with a chance of 3e-7.
+Of 100 windows with 20 independent samples two are as far with a chance of 3e-7, and one beyond 6 with 1e-14.
 """
 CHANCE = 0.05
 """p-value from which on the strongest suspect is no stronger than chance."""
@@ -47,7 +48,7 @@ def contradicted(found: Search, held: Shown) -> tuple[float, float] | None:
 
 
 def unfit_windows(found: Search) -> tuple[Unfit, ...]:
-    """The windows that what was found leaves far from the noise, the worst first; none where there are hardly any.
+    """The windows that what was found leaves far from the noise, the worst first.
 
     The likelihood counts a window that cannot be explained by its logarithm only, so that one wrong event does not pass
     for noise; what acts in a few windows alone must not go unsaid for that.
@@ -58,10 +59,15 @@ def unfit_windows(found: Search) -> tuple[Unfit, ...]:
     fitted = found.chosen.measured
     each = by_window(found.chosen)
     far = [k for k in np.argsort(-each) if each[k] > FAR]
-    if len(far) < FEW:
+    if len(far) < FEW and not any(each[k] > ALONE for k in far):
         return ()
     of = [(fitted.recordings[w.recording], w, float(each[k])) for k in far for w in [fitted.windows[k]]]
     return tuple(Unfit(r.name, float(r.time[w.first]), float(r.time[w.first + w.samples - 1]), x) for r, w, x in of)
+
+
+def far_from_noise(unfit: Sequence[Unfit]) -> bool:
+    """Whether so many windows are left far from the noise that what was found is no explanation."""
+    return len(unfit) >= FEW
 
 
 def verdict_of(found: Search, near: Sequence[Near], flagged: bool, explained: bool, finished: bool) -> Verdict:
@@ -108,9 +114,9 @@ def p_of_missing(
 
 
 def p_of_doubts(found: Search, left: Inadequacy, flagged: Sequence[Constancy], unfit: Sequence[Unfit]) -> list[float]:
-    """p-values of the model's own large error, of what is not the same everywhere, and of ``unfit`` windows."""
+    """p-values of the model's own large error, of what is not the same everywhere, and of many ``unfit`` windows."""
     least = [max(left.p_value, LEAST_P)] if left.large else []
-    least += [LEAST_P] if unfit else []
+    least += [LEAST_P] if far_from_noise(unfit) else []
     return least + [p_value(found, one.evidence) for one in flagged]
 
 

@@ -278,7 +278,7 @@ class Diagnosis:
     contradicted: tuple[float, float] | None = None
     """Misfit on recordings held out without and with the effects found, where that is why they are no explanation."""
     unfit: tuple[Unfit, ...] = ()
-    """Windows that what was found leaves far from the noise, where there are so many that it is no explanation."""
+    """Windows that what was found leaves far from the noise: two or more are no explanation, one is told."""
     beyond: tuple[Beyond, ...] = ()
     """Effects found that would have to be larger than the library takes for possible: they are no explanation."""
     visited: tuple[Visited, ...] = ()

@@ -41,7 +41,7 @@ def statement(found: Diagnosis, model: Model) -> str:
         )
         return " ".join(parts)
     if found.verdict == "nothing_missing":
-        parts += [_nothing(found), *_untested(declared)]
+        parts += [_nothing(found), *_unfit(found.unfit), *_untested(declared)]
         return " ".join([*parts, *_skipped(found)])
     parts.append(f"The model leaves something out ({_beyond_chance(found.p_value)}).")
     parts += _shows(found.shows, words_of(declared))
@@ -73,6 +73,7 @@ def statement(found: Diagnosis, model: Model) -> str:
     elif found.rivals:
         parts += nearly_as_much(found.rivals, len(found.effects))
     if found.verdict != "not_in_library":
+        parts += _unfit(found.unfit)
         parts += suspects_left_out(found)
     if found.detail is not None and found.verdict != "not_in_library":
         parts.append(_detail(found.detail, found.provenance["constancy_threshold"]))
@@ -142,6 +143,11 @@ def _unfit(windows: Sequence[Unfit]) -> list[str]:
     worst = [
         f"{one.recording}, {one.start:.1f} to {one.end:.1f} s ({one.misfit:.0f} times)" for one in windows[:MOST_NAMED]
     ]
+    if len(windows) == 1:
+        return [
+            f"In one window the residual stays far above the variance that is expected: {worst[0]}. One event is too "
+            "little to name what acts there: look at what happened, or repeat it."
+        ]
     more = "" if len(windows) <= MOST_NAMED else f"; and {len(windows) - MOST_NAMED} more"
     return [f"In these windows the residual stays far above the variance that is expected: {'; '.join(worst)}{more}."]
 
@@ -189,10 +195,12 @@ def _nothing(found: Diagnosis) -> str:
     suspect = found.undecided
     if suspect is None:
         chance = f", {p_text(found.p_value)}" if found.p_value is not None else ""
-        return (
-            "The model explains the recordings within their noise; nothing is missing "
-            f"(the strongest suspect is no stronger than chance{chance})."
+        explained = (
+            "The model explains the recordings within their noise but for one window, and nothing is named as missing"
+            if found.unfit
+            else "The model explains the recordings within their noise; nothing is missing"
         )
+        return f"{explained} (the strongest suspect is no stronger than chance{chance})."
     why = (
         f"but that rests on {suspect.rests_on}"
         if suspect.rests_on

@@ -7,7 +7,15 @@ from dataclasses import dataclass, replace
 
 from diagnosis.answer.constancy import Judged, judged
 from diagnosis.answer.heldout import Shown, compare
-from diagnosis.answer.judgement import contradicted, explains, p_of_doubts, p_of_missing, unfit_windows, verdict_of
+from diagnosis.answer.judgement import (
+    contradicted,
+    explains,
+    far_from_noise,
+    p_of_doubts,
+    p_of_missing,
+    unfit_windows,
+    verdict_of,
+)
 from diagnosis.answer.ranges import beyond_ranges
 from diagnosis.answer.result import Beyond, Unfit, Verdict
 from diagnosis.answer.task import Task
@@ -70,7 +78,7 @@ def judge(task: Task, found: Search, climbed: Climbed | None) -> Judgement:
     if found.best is not None and climbed is None and not constancy.flagged:
         beyond = stages.optional("whether effects go beyond their ranges", lambda: beyond_ranges(found), tuple)
     unfit = () if unexplained else stages.needed(lambda: unfit_windows(judging))
-    doubts = (constancy.flagged, errors.inadequacy.large, against is not None, beyond, unfit)
+    doubts = (constancy.flagged, errors.inadequacy.large, against is not None, beyond, far_from_noise(unfit))
     verdict = verdict_of(found, near, any(map(bool, doubts)), not unexplained, task.finished)
     gains = [climbed.gain] if climbed else stages.needed(lambda: evidence(found))
     p_value = p_of_missing(found, gains, errors.inadequacy, constancy.flagged, unfit, task.finished)

@@ -120,6 +120,17 @@ def test_windows_far_from_the_noise_and_what_could_not_be_done_are_told(
         assert "Could not be done: prediction horizons (a run cannot be cut there)." in found.statement
 
 
+def test_one_window_far_from_the_noise_is_told_and_changes_no_verdict(monkeypatch: pytest.MonkeyPatch) -> None:
+    once = searched()
+    far = (Unfit("train_1", 1.0, 1.6, 30.0),)
+    monkeypatch.setattr(import_module("diagnosis.answer.verdict"), "unfit_windows", lambda found: far)
+    found = once.judged_again()
+    assert found.verdict == "nothing_missing" and found.unfit == far
+    assert found.p_value is not None and found.p_value > 0.05
+    assert "but for one window, and nothing is named as missing" in found.statement
+    assert "train_1, 1.0 to 1.6 s (30 times). One event is too little" in found.statement
+
+
 def test_an_answer_that_needs_more_than_its_range_is_not_in_the_library(monkeypatch: pytest.MonkeyPatch) -> None:
     once = searched(LOSSY)
     judged: list[tuple[str, ...]] = []

@@ -188,8 +188,10 @@ def test_more_than_one_window_far_from_the_noise_is_no_explanation(windows: int)
     predictor = replace(fitted.misfit.predictor, measured=replace(m, values=m.values + shaken))
     disturbed = replace(fitted, misfit=replace(fitted.misfit, predictor=predictor))
     found = judgement.unfit_windows(Search(Explanation((), disturbed), (), NO_ERRORS))
-    assert len(found) == (windows if windows > 1 else 0)
-    if found:
+    assert len(found) == windows and found[0].misfit > judgement.ALONE
+    assert judgement.far_from_noise(found) is (windows > 1)
+    assert (judgement.p_of_doubts(search(), SMALL, (), found) == [LEAST_P]) is (windows > 1)
+    if windows > 1:
         assert found[0].misfit > found[1].misfit > 3.0 and found[0].recording == "a"
         assert found[0].start == pytest.approx(m.windows[5].first * TIME_STEP)
         clean = judgement.p_of_missing(search(), [], SMALL, (), found, True)
