@@ -36,7 +36,7 @@ USUAL: Mapping[str, tuple[float, float]] = {
     "time_scale": (0.1, 10.0),
 }
 """Usual values (SI) of what a name ends in; zero is always allowed."""
-USUAL_TOLERANCE = 0.2
+USUAL_TOLERANCE = 0.3
 FAR = 2.0
 """Largest sides of a specimen, from the middle of a body's underside, beyond which no arm carries an instrument."""
 SMALL_PGA = 2.0

@@ -231,11 +231,11 @@ def _untested(declared: Identification) -> list[str]:
 
 def _by_recording(gains: Mapping[str, float]) -> list[str]:
     """What each recording says of the effects, and whether one of them alone decides."""
-    if len(gains) < 2:
+    whole = sum(max(gain, 0.0) for gain in gains.values())
+    if len(gains) < 2 or whole == 0.0:
         return []
     strongest, *others = sorted(gains, key=lambda name: -gains[name])
     named = [strongest, *others] if len(gains) <= MOST_NAMED else [strongest, others[-1]]
-    whole = sum(max(gain, 0.0) for gain in gains.values())
     some = ("most ", "least ") if len(named) < len(gains) else ("",) * len(named)
     shares = [f"{word}{name} {max(gains[name], 0.0) / whole:.0%}" for word, name in zip(some, named, strict=True)]
     said = ", ".join(shares)

@@ -13,12 +13,13 @@ from diagnosis.fit.linearisation import linearise_about
 from diagnosis.progress import Progress
 from diagnosis.search.beside import SHARE_OF_SECOND, one_of_each, seconds, starts_of, worth_a_refit
 from diagnosis.search.candidates import firsts
-from diagnosis.search.found import Search, adjusted, left_over_white_noise
+from diagnosis.search.found import MISSING, Search, adjusted, left_over_white_noise, passes_for_white
 from diagnosis.search.refit import Explanation, again, as_declared, best_of, extend, from_starts
 from diagnosis.search.screen import Score, score
 
 REST, FAR = 0.25, 20.0
-"""What an explanation of most may leave over white noise: a share of what is missing, and this misfit per sample."""
+"""Share of what is missing that an explanation of most of it may leave, and the misfit per sample over white noise from
+which a mechanism leaves much, whatever it explains."""
 LEADING, SECONDS = 3, 4
 """Classes of mechanisms beside which a second is sought, and the mechanisms that are fitted beside each."""
 
@@ -29,13 +30,22 @@ def explains_most(one: Explanation, of: Explanation, errors: Errors) -> bool:
     Over that, for errors estimated with a wrong mechanism hold what it does not explain.
     """
     left, missing = (left_over_white_noise(e, errors) - 1.0 for e in (one, of))
-    return left < REST * max(missing, 1.0) and left < FAR
+    return left < REST * max(missing, 1.0)
+
+
+def leaves_much(single: Explanation, found: Search) -> bool:
+    """Whether the best mechanism alone explains something and leaves so much that two may act."""
+    if single.measured.stretches is not None or found.gain(single) < MISSING:  # fits of whole runs creep
+        return False
+    much = left_over_white_noise(single, found.errors) > FAR
+    return much or not explains_most(single, found.base, found.errors)
 
 
 def pairs_as_declared(found: Search, alone: Explanation, progress: Progress) -> list[Explanation]:
-    """Pairs beside each of the strongest of a screen about the declared specimen, until one explains most.
+    """Pairs beside each of the strongest of a screen about the declared specimen, each better than those before.
 
-    Of what the best mechanism leaves ``alone``; those that promise no less loss than that are given up on the way.
+    Until white noise explains what one leaves. Those that promise no less loss than the best so far, or than the best
+    mechanism ``alone``, are given up on the way.
     """
     declared, most = as_declared(found.base), adjusted(alone)
     screened = score(linearise_about(declared.fitted), firsts(found.candidates), found.not_tried)
@@ -49,7 +59,8 @@ def pairs_as_declared(found: Search, alone: Explanation, progress: Progress) -> 
         pair = _beside(found, first, most)
         if pair is not None:
             pairs.append(pair)
-            if explains_most(pair, alone, found.errors):
+            most = adjusted(pair)
+            if passes_for_white(pair, found.errors):
                 break
     return pairs
 

@@ -11,7 +11,7 @@ from diagnosis.errors.model import estimate
 from diagnosis.progress import Progress
 from diagnosis.search.beside import POOL_SHARE, extended, seconds
 from diagnosis.search.budget import DECLARED, FURTHER, LAST, WEIGHING
-from diagnosis.search.declared import explains_most, pairs_as_declared
+from diagnosis.search.declared import explains_most, leaves_much, pairs_as_declared
 from diagnosis.search.details import least
 from diagnosis.search.evidence import drop_without_evidence
 from diagnosis.search.exchange import drop, exchanged
@@ -102,9 +102,7 @@ def _take_pair_as_declared(found: Search, progress: Progress) -> bool:
     What of the two is not needed is dropped later.
     """
     single = min(found.singles, key=adjusted)
-    if found.measured.stretches is not None or found.gain(single) < MISSING:
-        return False
-    if explains_most(single, found.base, found.errors):
+    if not leaves_much(single, found):
         return False
     with found.work_of_its_own(DECLARED):
         pairs = pairs_as_declared(found, single, progress)

@@ -44,14 +44,19 @@ rotation_2 = { column = "rotation_2", unit = "rad" }
 
 def main() -> None:
     for name, source, pga, seed in RUNS:
-        motion = rocking.read_motion(source, vertical=False).resampled(STEP).scaled_to_pga(pga)
-        start = float(np.argmax(np.abs(motion.horizontal))) * STEP - BEFORE
-        motion = motion.cut(start, start + LENGTH)
-        rise = np.minimum(np.arange(motion.horizontal.size) * STEP / RISE, 1.0)
-        table = np.concatenate([np.zeros(round(STILL / STEP)), motion.horizontal * np.minimum(rise, rise[::-1])])
+        table = on_the_table(source, pga)
         rotations = fibre_wall.run(WALL, table, STEP, RUBBER)
         print(f"{name}: the wall turns by up to {1e3 * np.max(np.abs(rotations[0])):.1f} mrad")
         write(HERE / f"{name}.csv", table, rotations, np.random.default_rng(seed))
+
+
+def on_the_table(source: str, pga: float) -> np.ndarray:
+    """Acceleration (m s-2) of the table: the strong part of a motion scaled to ``pga``, after a rest."""
+    motion = rocking.read_motion(source, vertical=False).resampled(STEP).scaled_to_pga(pga)
+    start = float(np.argmax(np.abs(motion.horizontal))) * STEP - BEFORE
+    motion = motion.cut(start, start + LENGTH)
+    rise = np.minimum(np.arange(motion.horizontal.size) * STEP / RISE, 1.0)
+    return np.concatenate([np.zeros(round(STILL / STEP)), motion.horizontal * np.minimum(rise, rise[::-1])])
 
 
 def write(path: Path, table: np.ndarray, rotations: np.ndarray, rng: np.random.Generator) -> None:

@@ -266,3 +266,10 @@ def test_one_spell_seen_by_two_channels_is_one() -> None:
     later = replace(other, start=10.0, end=11.0)
     assert "in shake_1 from 1.0 s to 9.0 s (100% of it)" in said(located=(first, other), effects=(TILT,))
     assert "2 times" in said(located=(first, other, later), effects=(TILT,))
+
+
+def test_recordings_of_which_none_gains_have_no_shares() -> None:
+    """An effect of a state that was estimated anew may gain in neither: nothing is divided by that."""
+    for gains in ({"shake_1": 0.0, "shake_2": -3.0}, {"shake_1": 10.0}):
+        found = replace(diagnosis(), provenance={**diagnosis().provenance, "gain_by_recording": gains})
+        assert "gain in likelihood" not in statement(found, models.get("housner"))

@@ -13,16 +13,19 @@ from scipy.signal import lfilter
 
 import models
 from diagnosis.answer.ladder import confirmed, other_model
+from diagnosis.answer.result import Effect, Estimate
 from diagnosis.errors.adequacy import Inadequacy
 from diagnosis.errors.model import Errors, calibrated
 from diagnosis.fit.growing import fit_from
 from diagnosis.fit.setup import base_fit, measure
 from diagnosis.fit.solver import AT_STUCK, WIDEST, Fitted, fit, scatter
 from diagnosis.fit.starts import nominal
+from diagnosis.fit.unknowns import of_specimen
 from diagnosis.forces.columns import forces
 from diagnosis.forces.constancy import About
 from diagnosis.progress import silent
 from diagnosis.report import extend
+from diagnosis.report.extended import SEARCHED
 from diagnosis.search import ladder
 from diagnosis.search.budget import ENDED, Budget
 from diagnosis.search.found import MISSING, Search, left_over_white_noise
@@ -30,6 +33,7 @@ from diagnosis.search.refit import Explanation
 from grids.recordings.base import Recording
 from grids.specimen import Specimen, parse_specimen
 from grids.write_specimen import specimen_text
+from models import get
 from models.errors import InputError
 from models.shaking import Shaking
 from tests.diagnosis.made import TIME_STEP, motion
@@ -107,9 +111,17 @@ def test_rubber_under_a_pier_is_named_with_its_stiffness_and_the_answer_is_a_spe
     assert other.parameters["base_stiffness"] == pytest.approx(MAT["base_stiffness"], rel=0.15)
     assert other.parameters["base_damping_ratio"] == pytest.approx(MAT["base_damping_ratio"], rel=0.4)
     assert other.parameters["wall_mass"] + other.parameters["top_mass"] == pytest.approx(pier["mass"], rel=0.03)
-    extended = extend(PIER, replace(diagnosis(), other_model=other))
+    own = {p.name: other.parameters[p.name] for p in rung.parameters}
+    estimates = {name: Estimate(value, 0.95 * value, 1.05 * value, "1") for name, value in own.items()}
+    effect = Effect(rung.name, rung.name, estimates, 100.0, 1e-6)
+    extended = extend(PIER, replace(diagnosis(), other_model=other, effects=(effect,)))
     read = parse_specimen(specimen_text(extended))
     assert read.model == rung.model and read.options == rung.options and read.parameters == extended.parameters
+    # diagnosed again, what the laboratory knows keeps its tolerance, and what was searched may move
+    assert read.tolerance["base_stiffness"] == read.tolerance["base_damping_ratio"] == SEARCHED
+    assert read.tolerance["wall_length"] == pytest.approx(PIER.tolerance["width"], rel=0.01)
+    assert read.nominal["wall_length"] == pytest.approx(PIER.parameters["width"])
+    assert {x.name for x in of_specimen(read, get(read.model))} >= {"base_stiffness", "wall_length"}
 
 
 def test_a_block_that_is_one_stays_one_whatever_is_tried(monkeypatch: pytest.MonkeyPatch) -> None:
