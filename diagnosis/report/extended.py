@@ -110,5 +110,5 @@ def _known(
     for name, value in effect.parameters.items():
         relative = SEARCHED if name in at else min((value.high95 - value.low95) / (OF_95 * value.estimate), SEARCHED)
         add(rung.carried_over(given, {**own, name: value.estimate * (1.0 - relative)}))
-    tolerance = {name: min(sqrt(one), SEARCHED) for name, one in variance.items() if one > 0.0}
+    tolerance = {name: float(f"{min(sqrt(one), SEARCHED):.4g}") for name, one in variance.items() if one > 0.0}
     return {name: at[name] for name in tolerance if at[name] != other.parameters[name]}, tolerance

@@ -11,7 +11,7 @@ from diagnosis.errors.model import refitted
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.found import MISSING, LeftOut, Search, adjusted
 from diagnosis.search.refit import Explanation, without
-from diagnosis.search.weighing import reweighed
+from diagnosis.search.weighing import reweighed, weigh_again
 
 
 def evidence(found: Search) -> list[float]:
@@ -35,9 +35,9 @@ def drop_without_evidence(found: Search) -> None:
         least = min((one for c, one in each if c in best.removable), key=lambda one: one.gain)
         if least.gain >= MISSING:
             return
-        found.best = found.weighed = least.rest
-        found.errors = least.errors
+        found.best = least.rest
         found.tried.append(least.rest)
+        weigh_again(found)  # the errors hold now what the effect was taken for
 
 
 def _each_left_out(found: Search, best: Explanation) -> list[LeftOut]:
@@ -53,4 +53,4 @@ def _left_out(found: Search, best: Explanation, candidate: Candidate) -> LeftOut
     fitted, errors = refitted(rest.fitted, found.errors.base, found.errors)
     under = fitted.loss - reweighed(best, errors).loss
     each = errors.loss + adjusted(rest) - rest.loss - (found.errors.loss + adjusted(best) - best.loss)
-    return LeftOut(rest, errors, max(under, each, 0.0))
+    return LeftOut(rest, max(under, each, 0.0))

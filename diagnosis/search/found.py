@@ -59,10 +59,9 @@ class WhiteScreen:
 
 
 class LeftOut(NamedTuple):
-    """The best model with one effect left out, errors estimated with it, and what the effect gains over these."""
+    """The best model with one effect left out, and what the effect gains over it and errors estimated with it."""
 
     rest: Explanation
-    errors: Errors
     gain: float
 
 

@@ -12,7 +12,7 @@ from diagnosis.fit.setup import measure
 from diagnosis.fit.solver import fit as fitted_from
 from diagnosis.progress import silent
 from diagnosis.search import declared, select
-from diagnosis.search.budget import Budget
+from diagnosis.search.budget import DECLARED, Budget
 from diagnosis.search.candidates import candidates
 from diagnosis.search.declared import FAR, explains_most, leaves_much, pairs_as_declared
 from diagnosis.search.found import ENDED, Search
@@ -93,8 +93,8 @@ def test_a_pair_is_taken_where_a_mechanism_alone_leaves_much_and_the_pair_little
     single.measured.stretches = both.measured.stretches = None
     found = search(fit(loss=1000.0), single, fit(TILT, loss=alone + 1.0))
     found.measured.stretches = None
-    asked: list[str] = []
-    monkeypatch.setattr(select, "pairs_as_declared", lambda *_: asked.append("pairs") or [both])
+    work: list[float] = []
+    monkeypatch.setattr(select, "pairs_as_declared", lambda found, *_: work.append(found.budget.most) or [both])
     monkeypatch.setattr(select, "survives", lambda *_: True)
     monkeypatch.setattr(select, "least", lambda *_: 15.0)
     for name in ("again", "reshaped", "over_ranges"):
@@ -108,6 +108,7 @@ def test_a_pair_is_taken_where_a_mechanism_alone_leaves_much_and_the_pair_little
     list(select.first_effect(found, silent))
     assert (found.best is not None) is taken and bool(further) is not taken
     assert not taken or (found.best is not None and found.best.names == both.names)
+    assert set(work) <= {DECLARED} and (not taken or work)  # of their own, whatever the singles took
 
 
 def test_a_pair_that_was_taken_first_is_exchanged_and_no_other_sought(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -57,10 +57,11 @@ def test_what_the_errors_hold_without_it_counts_by_the_errors_of_each(monkeypatc
 
 def test_an_effect_that_the_errors_explain_as_well_is_dropped(monkeypatch: pytest.MonkeyPatch) -> None:
     found, _ = answered(monkeypatch, {"maxwell": 400.0, "tilt": 2.0}, {"maxwell": 300.0, "tilt": MISSING - 0.1})
+    weighed: list[Any] = []
+    monkeypatch.setattr(module, "weigh_again", lambda found: weighed.append(found.best))
     drop_without_evidence(found)
     assert found.chosen.names == ("maxwell",)
-    assert found.errors.loss == BEST + MISSING - 0.1 and not found.weighed_elsewhere
-    assert found.tried[-1] is found.best
+    assert found.tried[-1] is found.best and weighed == [found.best]  # the errors hold now what the tilt was taken for
 
 
 def test_of_an_effect_with_elements_beside_it_none_is_dropped_before_them(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,7 +12,7 @@ from diagnosis.search import beside, exchange, select, weighing
 from diagnosis.search.budget import Budget
 from diagnosis.search.found import Search
 from models.runs import DONE
-from tests.diagnosis.search.made_up import NOTHING, TILT, A, B, C, fit, nothing_is_fitted, search
+from tests.diagnosis.search.made_up import NOTHING, TILT, A, B, C, Effect, fit, nothing_is_fitted, search
 
 
 @pytest.fixture(autouse=True)
@@ -89,6 +89,23 @@ def test_what_explains_little_beside_the_best_is_not_fitted_against_white_noise(
         weighing.add_single(found, [fit(A, loss=loss)], np.inf)
     assert asked == [990.0, 500.0, 850.0, 1100.0]
     assert [one.loss for one in found.singles] == [990.0, 500.0, 950.0, 850.0, 1100.0]
+
+
+@pytest.mark.parametrize(("elsewhere", "tries"), [(1000.0, 2), (900.0, 4)])
+def test_others_are_tried_from_where_the_rest_moves_to_only_if_it_moves(
+    monkeypatch: pytest.MonkeyPatch, elsewhere: float, tries: int
+) -> None:
+    places: list[float] = []
+
+    def without(best: Any, gone: Effect, iterations: int = 1) -> Any:
+        return fit(*(c for c in best.candidates if c is not gone), loss=elsewhere if iterations else 1000.0)
+
+    monkeypatch.setattr(exchange, "without", without)
+    monkeypatch.setattr(exchange, "extended", lambda _, rest, *__: places.append(rest.loss) or [])
+    found = search(fit(loss=2000.0))
+    found.best = fit(A, B, loss=400.0)
+    exchange._try_others(found, True)
+    assert places == [1000.0, elsewhere][: tries // 2] * 2
 
 
 @pytest.mark.parametrize(("loss", "asked"), [(400.0, ["maxwell"]), (1400.0, ["maxwell", "hardening"])])
