@@ -67,7 +67,7 @@ def statement(found: Diagnosis, model: Model) -> str:
         acting = declared if found.other_model is None else identification_of(get(found.other_model.model))
         parts += [_flag(flag, acting) for flag in _distinct(found.constancy)[:2]]
         if found.missing_force:
-            parts += _law(found.missing_force)
+            parts += _law(found.missing_force, found.other_model is None)
     if found.verdict == "cannot_tell_apart" and found.rivals:
         parts += [f"These recordings cannot tell {which}." for which in told_apart(found.rivals, len(found.effects))]
     elif found.rivals:
@@ -91,12 +91,13 @@ def statement(found: Diagnosis, model: Model) -> str:
     return " ".join([*parts, *_skipped(found)])
 
 
-def _law(force: Mapping[str, Any]) -> list[str]:
-    """What was estimated in the place of what is missing."""
+def _law(force: Mapping[str, Any], extends: bool) -> list[str]:
+    """What was estimated in the place of what is missing; ``extends``: the specimen that is written holds it."""
     parts = []
     if force["terms"]:
         what = " and a ".join(term["meaning"] for term in force["terms"])
-        parts.append(f"A law in a table, estimated in its place, is part of extended.toml: a {what}.")
+        part = "is part" if extends else "is no part"
+        parts.append(f"A law in a table, estimated in its place, {part} of extended.toml: a {what}.")
     if force["oscillator"]:
         parts.append(oscillator_text(force["oscillator"]))
     return [*parts, *comes_and_goes(force["stages"])]

@@ -258,6 +258,9 @@ def test_a_force_of_another_base_model_is_told_in_its_own_words() -> None:
     )  # fmt: skip
     (meaning,) = (f.meaning for f in identification_of(models.get("interface")).forces if f.name == acting.parameter)
     assert f"What acts is a {meaning} that depends on the side" in statement(found, models.get("housner"))
+    law = {"terms": ({"meaning": "force"},), "oscillator": None, "stages": ()}
+    for of, part in ((other, "is no part of extended.toml"), (None, "is part of extended.toml")):
+        assert part in statement(replace(found, constancy=(), other_model=of, missing_force=law), models.get("housner"))
 
 
 def test_one_spell_seen_by_two_channels_is_one() -> None:
