@@ -100,6 +100,8 @@ def _law(force: Mapping[str, Any], extends: bool) -> list[str]:
         parts.append(f"A law in a table, estimated in its place, {part} of extended.toml: a {what}.")
     if force["oscillator"]:
         parts.append(oscillator_text(force["oscillator"]))
+        if extends and not force["terms"]:
+            parts.append("It is part of extended.toml.")
     return [*parts, *comes_and_goes(force["stages"])]
 
 
@@ -113,7 +115,7 @@ def oscillator_text(found: Mapping[str, Mapping[str, float]]) -> str:
 
     return (
         f"What is missing has a frequency of its own: an oscillator of {of('frequency')} Hz with "
-        f"{of('damping', 100.0)} % of critical damping, driven by the base, is part of extended.toml. The block is "
+        f"{of('damping', 100.0)} % of critical damping, driven by the base. The block is "
         f"carried by {of('motion')} of its motion against the base, as by a support that moves, and pushed by "
         f"{of('force')} of the force that accelerates it, as by a mass that swings."
     )

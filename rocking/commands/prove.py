@@ -32,14 +32,16 @@ def prove(
         Path | None, typer.Option(help="Make the cases first: of this specimen (TOML), shaken by each --motion.")
     ] = None,
     motion: Annotated[list[str] | None, typer.Option(help="With --make: motions, as often as needed.")] = None,
-    cases: Annotated[int | None, typer.Option(help="With --make: how many cases.", min=1, show_default="24")] = None,
+    cases: Annotated[
+        int | None, typer.Option(help="With --make: how many cases.", min=1, show_default=str(CASES))
+    ] = None,
     seed: Annotated[
         int | None,
-        typer.Option(help="With --make: other cases for another seed.", min=0, show_default="1"),
+        typer.Option(help="With --make: other cases for another seed.", min=0, show_default=str(SEED)),
     ] = None,
     noise: Annotated[
         float | None,
-        typer.Option(help="With --make: noise over the peak of each channel.", parser=number, show_default="0.01"),
+        typer.Option(help="With --make: noise over the peak of each channel.", parser=number, show_default=str(NOISE)),
     ] = None,
 ) -> None:
     """Diagnose concealed cases, hash the answers, then open the key and score them.

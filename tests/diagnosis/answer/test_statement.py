@@ -248,6 +248,9 @@ def test_what_begins_is_not_said_to_act_throughout() -> None:
     assert "Tilt acts: in shake_1 from 2.0 s to 6.0 s" in said(located=(place,), effects=(begins,))
 
 
+OSCILLATOR = ("frequency", "damping", "motion", "force")
+
+
 def test_a_force_of_another_base_model_is_told_in_its_own_words() -> None:
     """What acts in the top joint of a wall is no force that the block it was taken for has."""
     acting = Constancy("stiffness_top", "side", 30.0, "for theta > 0, to the right")
@@ -261,6 +264,10 @@ def test_a_force_of_another_base_model_is_told_in_its_own_words() -> None:
     law = {"terms": ({"meaning": "force"},), "oscillator": None, "stages": ()}
     for of, part in ((other, "is no part of extended.toml"), (None, "is part of extended.toml")):
         assert part in statement(replace(found, constancy=(), other_model=of, missing_force=law), models.get("housner"))
+        numbers = {"estimate": 3.0, "low95": 2.9, "high95": 3.1}
+        swings = {"terms": (), "stages": (), "oscillator": dict.fromkeys(OSCILLATOR, numbers)}
+        swinging = replace(found, constancy=(), other_model=of, missing_force=swings)
+        assert ("is part of extended.toml" in statement(swinging, models.get("housner"))) is (of is None)
 
 
 def test_one_spell_seen_by_two_channels_is_one() -> None:
