@@ -76,6 +76,31 @@ def test_a_pair_is_found_from_the_declared_numbers_wherever_the_fit_of_the_base_
     assert best.fitted.values["width"] == pytest.approx(TRUE["width"], rel=0.01)
 
 
+def test_the_screen_is_made_about_the_declared_numbers_and_each_pair_has_to_beat_the_last(
+    monkeypatch: pytest.MonkeyPatch, begun: Search
+) -> None:
+    screened: list[Any] = []
+    bounds: list[float] = []
+    losses = iter((900.0, 800.0, 700.0))
+
+    def beside(_: Search, first: Any, most: float) -> Any:
+        bounds.append(most)
+        return fit(A, B, loss=next(losses))
+
+    of = declared.linearise_about
+    monkeypatch.setattr(declared, "linearise_about", lambda fitted: screened.append(fitted) or of(fitted))
+    monkeypatch.setattr(declared, "_beside", beside)
+    monkeypatch.setattr(declared, "passes_for_white", lambda *_: False)
+    f = begun.base.fitted
+    away = Explanation((), fitted_from(f.misfit, np.array([x.bounds[1] for x in f.misfit.unknowns]), f.states, 0))
+    single: Any = fit(A, loss=1000.0)
+    pairs = pairs_as_declared(Search(away, begun.candidates, begun.errors), single, silent)
+    assert [x.value(u) for x, u in zip(f.misfit.unknowns, screened[0].u, strict=True)] == pytest.approx(
+        [SPECIMEN.parameters[x.name] for x in f.misfit.unknowns]
+    )
+    assert bounds == [1000.0, 900.0, 800.0] and [pair.loss for pair in pairs] == [900.0, 800.0, 700.0]
+
+
 def test_what_the_budget_left_is_said(begun: Search) -> None:
     found = Search(begun.base, begun.candidates, begun.errors, budget=Budget(-1.0))
     assert pairs_as_declared(found, begun.base, silent) == []
@@ -83,7 +108,7 @@ def test_what_the_budget_left_is_said(begun: Search) -> None:
 
 
 @pytest.mark.parametrize(
-    ("alone", "pair", "taken"), [(200.0, 3.0, True), (200.0, 190.0, False), (20.0, 3.0, False), (995.0, 3.0, False)]
+    ("alone", "pair", "taken"), [(200.0, 3.0, True), (200.0, 150.0, False), (20.0, 3.0, False), (995.0, 3.0, False)]
 )
 def test_a_pair_is_taken_where_a_mechanism_alone_leaves_much_and_the_pair_little(
     monkeypatch: pytest.MonkeyPatch, alone: float, pair: float, taken: bool

@@ -141,8 +141,9 @@ def test_the_last_exchange_goes_on_beyond_the_work_of_all_searches_where_much_is
     monkeypatch.setattr(select, "_more", lambda *_: None)
     monkeypatch.setattr(select, "exchanged", lambda found, _: spent.append(found.spent))
     monkeypatch.setattr(select, "passes_for_white", lambda *_: not left)
+    checked: list[str] = []
     for name in ("settle_ties", "drop", "drop_without_evidence", "with_other_numbers"):
-        monkeypatch.setattr(select, name, lambda _: None)
+        monkeypatch.setattr(select, name, lambda _, name=name: checked.append(name))
     monkeypatch.setattr(select, "with_memory", lambda one: one)
     monkeypatch.setattr(select, "estimate", lambda *_: NOTHING)
     found = search(fit(loss=10000.0))
@@ -151,6 +152,7 @@ def test_the_last_exchange_goes_on_beyond_the_work_of_all_searches_where_much_is
     found.base.measured.identification = SimpleNamespace(further_work=1.0)
     list(select.further_effects(found, lambda *_: None))
     assert spent == [not left]
+    assert checked == ["settle_ties", "drop", "drop_without_evidence", "with_other_numbers"]
 
 
 @pytest.mark.parametrize(("whole", "most"), [(250.0, 100.0), (100.0, 20.0)])
