@@ -157,7 +157,7 @@ def _pairs(found: Search, progress: Progress) -> None:
         if any(adequate(e) or explains_most(e, found.best, found.errors) for e in pairs):
             break  # others are tried in its place later
     if found.outside is not None:
-        if not any(adequate(e) for e in pairs):
+        if not any(adequate(e) for e in pairs) and not _with_an_instrument(pairs):
             return
         found.outside = None
     found.tried += pairs
@@ -169,6 +169,14 @@ def _pairs(found: Search, progress: Progress) -> None:
         progress("looking for a second effect that the errors hide", 0.77)
         take_hidden(found, found.best, [*pairs, *hidden_beside(found, found.best, pairs)])
     exchanged(found, progress)  # before a third: what stands in for another effect leaves traces of its own
+
+
+def _with_an_instrument(pairs: Sequence[Explanation]) -> bool:
+    """Whether the likeliest pair is a mechanism and an instrument.
+
+    What an instrument does to a recording is no law of the wall: whether one acts is asked again beside it.
+    """
+    return bool(pairs) and sum(name in INSTRUMENTS for name in min(pairs, key=adjusted).names) == 1
 
 
 def _pair_that_counts(found: Search, best: Explanation, pairs: Sequence[Explanation]) -> Explanation | None:
