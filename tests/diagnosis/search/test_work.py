@@ -132,6 +132,25 @@ def test_no_pair_is_sought_beside_another_once_one_explains_most(
     assert beside_which == asked
 
 
+@pytest.mark.parametrize(("beside", "goes_on"), [("base_filter", True), ("tilt", False)])
+def test_a_law_outside_the_library_is_asked_again_beside_an_instrument(
+    monkeypatch: pytest.MonkeyPatch, beside: str, goes_on: bool
+) -> None:
+    likelier, other = fit(A, Effect(beside, of_joints=False), loss=900.0), fit(A, B, loss=1500.0)
+    monkeypatch.setattr(select, "adequate", lambda _: False)
+    monkeypatch.setattr(select, "explains_most", lambda *_: False)
+    monkeypatch.setattr(select, "outside", lambda *_: "a law outside the library")
+    monkeypatch.setattr(select, "pool", lambda found, best: [[best]])
+    monkeypatch.setattr(select, "extended", lambda *_: [other, likelier])
+    for name in ("exchanged", "weigh_again"):
+        monkeypatch.setattr(select, name, lambda *_: None)
+    found = search(fit(loss=10000.0), fit(A, loss=2000.0))
+    found.best = found.singles[0]
+    select._pairs(found, lambda *_: None)
+    assert (found.outside is None) == goes_on
+    assert found.best.names == (("maxwell", beside) if goes_on else ("maxwell",))
+
+
 @pytest.mark.parametrize("left", [True, False])
 def test_the_last_exchange_goes_on_beyond_the_work_of_all_searches_where_much_is_left(
     monkeypatch: pytest.MonkeyPatch, left: bool
