@@ -16,6 +16,7 @@ from diagnosis.search.candidates import firsts
 from diagnosis.search.found import MISSING, Search, adjusted, left_over_white_noise, passes_for_white
 from diagnosis.search.refit import Explanation, again, as_declared, best_of, extend, from_starts
 from diagnosis.search.screen import Score, score
+from grids.instruments import INSTRUMENTS
 
 REST, FAR = 0.25, 20.0
 """Share of what is missing that an explanation of most of it may leave, and the misfit per sample over white noise from
@@ -45,17 +46,22 @@ def pairs_as_declared(found: Search, alone: Explanation, progress: Progress) -> 
     """Pairs beside each of the strongest of a screen about the declared specimen, each better than those before.
 
     Until white noise explains what one leaves. Those that promise no less loss than the best so far, or than the best
-    mechanism ``alone``, are given up on the way.
+    mechanism ``alone``, are given up on the way. If that is an instrument's effect, it is led first, as it was fitted:
+    what an instrument does to a recording leads the numbers of the specimen less astray.
     """
     declared, most = as_declared(found.base), adjusted(alone)
     screened = score(linearise_about(declared.fitted), firsts(found.candidates), found.not_tried)
+    leading: list[Score | Explanation] = [*_of_each_class(screened)[:LEADING]]
+    if any(name in INSTRUMENTS for name in alone.names):
+        leading.insert(0, alone)
     pairs: list[Explanation] = []
-    for k, entry in enumerate(_of_each_class(screened)[:LEADING]):
-        what = f"a second effect beside {entry.candidate.name}, from the specimen as declared"
+    for k, one in enumerate(leading):
+        name = one.candidate.name if isinstance(one, Score) else one.names[0]
+        what = f"a second effect beside {name}, from the specimen as declared"
         progress(f"looking for {what}", 0.35 + 0.03 * k)
         if not found.affordable(what):
             break
-        first = best_of([extend(declared, entry.candidate, start, 0) for start in starts_of(entry, screened)])
+        first = _unfitted(declared, one, screened) if isinstance(one, Score) else one
         pair = _beside(found, first, most)
         if pair is not None:
             pairs.append(pair)
@@ -74,6 +80,11 @@ def _beside(found: Search, first: Explanation, most: float) -> Explanation | Non
             fits.append(best_of(from_starts([first], entry.candidate, starts_of(entry, scores), most)))
             most = min(most, adjusted(fits[-1]))
     return again(best_of(fits)) if fits and best_of(fits).loss <= most else None
+
+
+def _unfitted(declared: Explanation, entry: Score, screened: list[Score]) -> Explanation:
+    """The declared specimen with a mechanism at the likeliest of the sizes where its refits start."""
+    return best_of([extend(declared, entry.candidate, start, 0) for start in starts_of(entry, screened)])
 
 
 def _of_each_class(scores: list[Score]) -> list[Score]:

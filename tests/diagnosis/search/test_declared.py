@@ -18,7 +18,7 @@ from diagnosis.search.declared import FAR, explains_most, leaves_much, pairs_as_
 from diagnosis.search.found import ENDED, Search
 from diagnosis.search.refit import Explanation
 from tests.diagnosis.made import SPECIMEN, TRUE, recording
-from tests.diagnosis.search.made_up import TILT, A, B, fit, search
+from tests.diagnosis.search.made_up import TILT, A, B, Effect, fit, search
 
 EFFECTS = {"delay": {"delay": 0.004}, "gain": {"gain": 0.06}}
 
@@ -99,6 +99,18 @@ def test_the_screen_is_made_about_the_declared_numbers_and_each_pair_has_to_beat
         [SPECIMEN.parameters[x.name] for x in f.misfit.unknowns]
     )
     assert bounds == [1000.0, 900.0, 800.0] and [pair.loss for pair in pairs] == [900.0, 800.0, 700.0]
+
+
+@pytest.mark.parametrize(("name", "first"), [("base_filter", True), ("maxwell", False)])
+def test_what_an_instrument_does_is_led_first_as_it_was_fitted(
+    monkeypatch: pytest.MonkeyPatch, begun: Search, name: str, first: bool
+) -> None:
+    led: list[Any] = []
+    monkeypatch.setattr(declared, "_beside", lambda found, one, most: led.append(one))
+    alone: Any = fit(Effect(name), loss=1000.0)
+    pairs_as_declared(begun, alone, silent)
+    assert (led[0] is alone) is first and alone not in led[1:]
+    assert len(led) == declared.LEADING + first
 
 
 def test_what_the_budget_left_is_said(begun: Search) -> None:
