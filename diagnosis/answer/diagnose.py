@@ -12,6 +12,7 @@ from diagnosis.answer.ladder import confirmed
 from diagnosis.answer.result import Diagnosis
 from diagnosis.answer.statement import statement
 from diagnosis.answer.task import Task
+from diagnosis.answer.unconfirmed import unless_unconfirmed
 from diagnosis.data.twice import refuse_twice
 from diagnosis.errors.model import calibrated
 from diagnosis.fit.one_thread import one_thread
@@ -75,6 +76,7 @@ def diagnose(
         else:
             for stage in beside_in_grown_windows(found, measured, progress):
                 found = stage
+            found = unless_unconfirmed(found, held)
     except KeyboardInterrupt:
         finished = False
         if found.best is None:

@@ -66,21 +66,37 @@ def frozen(
     The states are weighed by the sensors' ``errors``.
     """
     misfit = explanation.fitted.misfit
-    fixed = {**misfit.fixed, **explanation.fitted.values}
     measured = seen_as(measured, explanation.measured)
-    predictor = replace(with_held(misfit.predictor, held), measured=measured)
     if not measured.free:
+        fixed = {**misfit.fixed, **explanation.fitted.values}
+        predictor = replace(with_held(misfit.predictor, held), measured=measured)
         point = Point(fixed, measured.states, predictor.coordinates)
         return point, predictor.predict([point])[0]
-    own = explanation.measured
+    found = _with_states(explanation, measured, errors, held)
+    point, predictor = found.misfit.point(found.u, found.states), found.misfit.predictor
+    return point, replace(predictor, measured=counted(predictor, point)).predict([point])[0]
+
+
+def _with_states(
+    explanation: Explanation, measured: Measured, errors: Errors, held: Sequence[HeldStage] = ()
+) -> Fitted:  # fmt: skip
+    """The states of windows estimated anew, parameters frozen; again with the events before each window counted."""
+    misfit, own = explanation.fitted.misfit, explanation.measured
+    fixed = {**misfit.fixed, **explanation.fitted.values}
+    predictor = replace(with_held(misfit.predictor, held), measured=measured)
     learned = measured.windows == own.windows and measured.recordings == own.recordings
     states, whitening = explanation.fitted.states if learned else measured.states, errors.of_sensors(measured)
-    for fitting in (fit_thoroughly, fit):  # again with the events before each window counted
-        alone = Misfit(predictor, whitening, (), fixed)
-        states = fitting(alone, np.zeros(0), states).states
-        point = alone.point(np.zeros(0), states)
-        predictor = replace(predictor, measured=counted(predictor, point))
-    return point, predictor.predict([point])[0]
+    first = fit_thoroughly(Misfit(predictor, whitening, (), fixed), np.zeros(0), states)
+    predictor = replace(predictor, measured=counted(predictor, first.misfit.point(first.u, first.states)))
+    return fit(Misfit(predictor, whitening, (), fixed), np.zeros(0), first.states)
+
+
+def likelier(before: Explanation, after: Explanation, held: Measured, errors: Errors) -> float:
+    """How much likelier (2 log likelihood) ``after`` makes recordings that neither was fitted to; 0 without states."""
+    if not held.free:
+        return 0.0
+    one, other = (_with_states(e, seen_as(held, e.measured), errors).loss for e in (before, after))
+    return float(one - other)
 
 
 def compare(before: Explanation, after: Explanation, measured: Measured, errors: Errors) -> Shown:

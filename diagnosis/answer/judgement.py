@@ -24,6 +24,8 @@ which misfit on a single one is told.
 
 Of 100 windows with 20 independent samples two are as far with a chance of 3e-7, and one beyond 6 with 1e-14.
 """
+FITTED = "the recordings fitted to"
+"""What an effect rests on that makes those held out less likely."""
 CHANCE = 0.05
 """p-value from which on the strongest suspect is no stronger than chance."""
 
@@ -121,7 +123,10 @@ def p_of_doubts(found: Search, left: Inadequacy, flagged: Sequence[Constancy], u
 
 
 def undecided(found: Search, p_missing: float | None) -> Undecided | None:
-    """The strongest suspect where nothing is named although chance hardly brings its gain."""
+    """What recordings held out speak against, or the strongest suspect where chance hardly brings its gain."""
+    if found.doubted is not None:
+        one, gain = found.doubted
+        return Undecided(one.names[0], one.classes[0], gain, FITTED)
     if found.best is not None or p_missing is None or p_missing >= CHANCE or not found.singles:
         return None
     suspect = min(found.singles, key=adjusted)

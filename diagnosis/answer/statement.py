@@ -6,6 +6,7 @@ from collections.abc import Collection, Mapping, Sequence
 from string import Formatter
 from typing import Any
 
+from diagnosis.answer.judgement import FITTED
 from diagnosis.answer.phases import EVERYWHERE, words_of
 from diagnosis.answer.result import Beyond, Diagnosis, Effect, Extrapolated, Fit, Located, Unfit
 from diagnosis.answer.rivals import nearly_as_much, told_apart
@@ -209,6 +210,8 @@ def _nothing(found: Diagnosis) -> str:
         if suspect.rests_on
         else "less than a name takes: a weak effect, or a rare chance"
     )
+    if suspect.rests_on == FITTED:
+        why += ", for those held out are less likely with it"
     return (
         "Nothing is named as missing from the model, but one thing is not decided: "
         f"{suspect.name.replace('_', ' ')} gains {suspect.gain:.0f} in 2 log likelihood ({p_text(found.p_value)}), "

@@ -65,6 +65,13 @@ class LeftOut(NamedTuple):
     gain: float
 
 
+class Doubted(NamedTuple):
+    """An effect that recordings held out speak against, and the evidence of those that it was fitted to."""
+
+    explanation: Explanation
+    gain: float
+
+
 @dataclass
 class Search:
     """What has been found so far; it grows, so that a stopped search leaves its state."""
@@ -111,6 +118,8 @@ class Search:
     """The last screen against white noise (`diagnosis.search.white_screen`)."""
     left_out: tuple[Explanation, Errors, list[LeftOut]] | None = None
     """Of an explanation under some errors, each of its effects left out (`diagnosis.search.evidence`)."""
+    doubted: Doubted | None = None
+    """What was found and is not told, for it makes recordings held out less likely."""
 
     @property
     def measured(self) -> Measured:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import models
+from diagnosis.answer.judgement import FITTED
 from diagnosis.answer.result import (
     Beyond,
     Diagnosis,
@@ -79,13 +80,14 @@ def test_an_effect_that_needs_more_than_its_range_is_said_with_what_it_needs() -
     assert read["effect"] == "viscous_damping" and read["wanted"] == 1.3209
 
 
-@pytest.mark.parametrize("rests_on", ["one window", "one recording", ""])
+@pytest.mark.parametrize("rests_on", ["one window", "one recording", FITTED, ""])
 def test_a_refused_suspect_is_named_as_undecided(rests_on: str) -> None:
     suspect = Undecided("saturation", "saturation", 46.2, rests_on)
     found = answer("nothing_missing", p_value=LEAST_P, undecided=suspect)
     text = said("nothing_missing", p_value=LEAST_P, undecided=suspect)
     assert "chance, p" not in text and "nothing is missing" not in text
     assert "saturation gains 46" in text and "p < 1e-6" in text and rests_on in text
+    assert ("held out are less likely with it" in text) == (rests_on == FITTED)
     assert "not decided" in headline(found) and "saturation" in headline(found)
     read = json.loads(diagnosis_json(found))
     assert read["undecided"] == {

@@ -76,7 +76,7 @@ class UndecidedPart(Part):
     name: str
     effect_class: str = Field(alias="class")
     gain: float
-    rests_on: Literal["one window", "one recording"] | None
+    rests_on: Literal["one window", "one recording", "the recordings fitted to"] | None
 
 
 class SuspicionPart(Part):
