@@ -5,9 +5,9 @@ A table has `KNOTS` values from zero to its reach on either side of zero, linear
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 SIDES = ("below", "above")
 KNOTS = 6
@@ -45,14 +45,17 @@ class Term:
 
 @dataclass(frozen=True)
 class Tables:
-    """The terms of a law by name, and the variables. ``jumps``: variables of tables that may jump at zero.
+    """The terms of a law by name, and the variables.
 
+    ``units``: by port, from the coefficients of a wall, the couple or force that a value of one is, as the port of the
+    diagnosis takes it (`models.identification.Port`); ``jumps``: variables of tables that may jump at zero;
     ``oscillator``: the parameters of an oscillator beside the tables (motion, force, frequency and damping as in
     `models.oscillator`), where the model has one.
     """
 
     terms: Mapping[str, Term]
     variables: Mapping[str, Variable]
+    units: Callable[[Any], Mapping[str, Any]]
     jumps: tuple[str, ...] = ()
     oscillator: tuple[str, ...] = ()
 

@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from diagnosis.forces.action import Action, action
+from diagnosis.fit.along import Along
+from diagnosis.fit.impulses import jumps_at
+from diagnosis.fit.unknowns import without_instruments
+from diagnosis.forces.action import action
+from diagnosis.forces.columns import motions_of
 from diagnosis.search.found import Search, adjusted
 from diagnosis.search.refit import Explanation
 from diagnosis.search.tables import Law, Table
 from grids.instruments import INSTRUMENTS
 from models.base import FloatArray
-from models.tables import KNOTS, Term, Variable
+from models.identification import Motion
+from models.tables import KNOTS, Tables, Term, Variable
 
 
 def missing_force(found: Search, law: Law) -> Mapping[str, Any]:
@@ -26,7 +32,7 @@ def missing_force(found: Search, law: Law) -> Mapping[str, Any]:
     assert tables is not None
     singles = [e for e in found.singles if e.names[0] not in INSTRUMENTS]
     nearest = min(singles, key=adjusted) if singles else None
-    acting = _action(nearest) if nearest else None
+    doing = _Doing.of(nearest, tables) if nearest else None
     terms = []
     for table in law.tables:
         one, over = tables.terms[table.term], tables.variable(table.term)
@@ -35,7 +41,7 @@ def missing_force(found: Search, law: Law) -> Mapping[str, Any]:
                 "term": table.term, "meaning": one.meaning, "unit": one.unit, "variable": one.variable,
                 "variable_unit": over.unit, "at": table.at.tolist(), "value": table.value.tolist(),
                 "low95": table.low95.tolist(), "high95": table.high95.tolist(), "evidence": table.evidence,
-                "nearest": None if acting is None or nearest is None else _curve(nearest, acting, one, over, table),
+                "nearest": None if doing is None else _curve(doing, one, over, table),
             }
         )  # fmt: skip
     stages = [asdict(one) for one in law.stages]
@@ -52,41 +58,69 @@ def _oscillator(law: Law) -> dict[str, dict[str, float]] | None:
     } or None
 
 
-def _action(explanation: Explanation) -> Action:
-    return action(explanation.fitted.misfit.predictor, explanation.fitted.point, explanation.names[0])
+@dataclass(frozen=True)
+class _Doing:
+    """What an effect does along the fitted motion.
+
+    ``forces``: by port, the couple (W, N) that changes the rates as the effect does, in units of a table's values;
+    ``motions``: by port; ``event`` (W, N): an event lies in the step; ``change`` (W, N): of the leading rate in a step.
+    """
+
+    explanation: Explanation
+    forces: Mapping[str, FloatArray]
+    motions: Mapping[str, Motion]
+    event: NDArray[np.bool_]
+    change: FloatArray
+
+    @classmethod
+    def of(cls, explanation: Explanation, tables: Tables) -> _Doing:
+        """Of the first effect: couples in as many joints as the model has rates, which they change in one way only."""
+        fitted, m = explanation.fitted, explanation.measured
+        predictor = fitted.misfit.predictor
+        acting = action(predictor, fitted.point, explanation.names[0])
+        rates = [state for state in m.identification.states if state.rate]
+        ports = {one.port.name: one.port for one in m.identification.forces}
+        joints = [ports[name] for name in dict.fromkeys(one.port for one in tables.terms.values())][: len(rates)]
+        jumps = jumps_at(Along(predictor, fitted.point), joints)
+        by_unit = np.array([[jumps[joint.name][rate.name] for joint in joints] for rate in rates])
+        changed = acting.amount[:, [m.standing_for(state.channel) for state in rates]]
+        # a unit impulse resists, a value of a table drives
+        impulse = -np.linalg.solve(np.moveaxis(by_unit, (0, 1), (2, 3)), np.moveaxis(changed, 1, 2)[..., None])[..., 0]
+        wall = m.model.build(without_instruments(fitted.point.values), predictor.options)
+        unit, step = tables.units(wall), m.time_steps[:, None]
+        forces = {
+            one.name: impulse[..., k] / (step * float(np.ravel(unit[one.name])[0])) for k, one in enumerate(joints)
+        }
+        motions = {**motions_of(fitted), joints[0].name: acting.motion}
+        return cls(explanation, forces, motions, acting.event, acting.amount.sum(axis=1))
 
 
-def _curve(
-    explanation: Explanation, acting: Action, term: Term, over: Variable, table: Table
-) -> list[float | None] | None:  # fmt: skip
+def _curve(doing: _Doing, one: Term, over: Variable, table: Table) -> list[float | None] | None:
     """What the effect does on average at each row of a table, in the table's own unit; None where it was not.
 
-    None where a force at one port moves several bodies: what an effect changes of their rates is no force there. Forces
-    over a factor (the rate, its sign, ...) are fitted as that factor times the row; what acts at events is the
-    relative change of the rate.
+    None for a force on the upper block, which couples in both joints stand for. Forces over a factor (the rate, its
+    sign, ...) are fitted as that factor times the row; what acts at events is the relative change of the rate.
     """
-    m = explanation.measured
-    if len(m.identification.leads) > 1:
+    if one.port not in doing.forces:
         return None
-    step = m.time_steps[:, None]
+    m, motion = doing.explanation.measured, doing.motions[one.port]
     inside = np.asarray(m.mask.any(axis=1))
     inside[:, :-1] &= inside[:, 1:]
     inside[:, -1] = False
-    motion, impulse = acting.motion, acting.amount.sum(axis=1)
     growing = motion.coordinate * motion.rate > 0.0
     factors = {
         "": np.ones_like(motion.rate), "rate": motion.rate, "direction": np.sign(motion.rate),
         "outward": motion.rate * growing,
     }  # fmt: skip
     x = {"coordinate": motion.coordinate, "rate": motion.rate, "base": motion.base}[over.along]
-    if term.event:
+    if one.event:
         after = np.roll(motion.rate, -1, axis=1)
-        inside &= acting.event & (after != impulse)
-        value, weight = impulse / np.where(inside, after - impulse, 1.0), np.ones_like(x)
+        inside &= doing.event & (after != doing.change)
+        value, weight = doing.change / np.where(inside, after - doing.change, 1.0), np.ones_like(x)
     else:
-        inside &= ~acting.event
-        factor = factors[term.factor]
-        value, weight = impulse / step * factor, factor**2
+        inside &= ~doing.event
+        factor = factors[one.factor]
+        value, weight = doing.forces[one.port] * factor, factor**2
     found = _averages(x[inside], value[inside], weight[inside], table.at)
     return [None if np.isnan(v) else float(v) for v in found]
 

@@ -87,6 +87,9 @@ def _motions(along: Along) -> dict[str, Motion]:
 def _motion(along: Along, coordinate: FloatArray) -> Motion:
     m = along.predictor.measured
     step = m.time_steps[:, None]
+    last = np.array([m.recordings[w.recording].time.size - 1 - w.first for w in m.windows])
+    known = np.minimum(np.arange(coordinate.shape[1]), last[:, None])  # behind the end of a recording nothing ran
+    coordinate = np.take_along_axis(coordinate, known, axis=1)
     reach = float(np.max(np.abs(coordinate) * m.mask[:, m.lead]))
     return Motion(coordinate, np.gradient(coordinate, axis=1) / step, m.base, reach)
 

@@ -37,6 +37,14 @@ def _couple(joint: str, where: str, over: str) -> dict[str, Term]:
     }  # fmt: skip
 
 
+def units(wall: Any) -> dict[str, Any]:
+    """M g b1 and m2 g bt (N m), m2 g (N): what the values of the tables are shares of, by port."""
+    block = wall.mass_2 * wall.gravity
+    return {
+        "base": wall.mass * wall.gravity * wall.base_half_width, "top": block * wall.top_half_width, "block": block,
+    }  # fmt: skip
+
+
 FORCE = "force along the base on the block over m2 g"
 TABLES = Tables(
     terms={
@@ -55,6 +63,7 @@ TABLES = Tables(
         "velocity_block": Variable("rate", "reach_velocity", "m s-1", "velocity of the last rows"),
         "base": Variable("base", "reach_base", "m s-2", "acceleration of the base of the last rows"),
     },
+    units=units,
 )  # fmt: skip
 """Of a wall between two layers."""
 ONE_LINE = 2 * KNOTS - 1
@@ -66,18 +75,12 @@ def merged(law: Mapping[str, Any], term: str) -> list[Any]:
     return [*below[:0:-1], 0.5 * (below[0] + above[0]), *above[1:]]
 
 
-def forces_of(wall: Any) -> tuple[Any, Any, Any]:
-    """M g b1 and m2 g bt (N m), m2 g (N): what the values of the tables are shares of."""
-    block = wall.mass_2 * wall.gravity
-    return wall.mass * wall.gravity * wall.base_half_width, block * wall.top_half_width, block
-
-
 class LawInTable:
     """The law of one wall with plain floats in its fields, or of n whose arrays broadcast to what it is asked of."""
 
     def __init__(self, wall: Any) -> None:
         self.law: Mapping[str, Any] = wall.effects.law
-        self.scales, law = forces_of(wall), self.law
+        self.units, law = units(wall), self.law
         self.tables = {term: np.array(np.broadcast_arrays(*merged(law, term))) for term in TABLES.terms}
         self.acting = {term for term, values in self.tables.items() if np.any(values)}
 
@@ -108,7 +111,7 @@ class LawInTable:
             + self._at("push_block", acceleration)
         )
         return (
-            self.scales[0] * self._couple("base", *base),
-            self.scales[1] * self._couple("top", *top),
-            self.scales[2] * push,
+            self.units["base"] * self._couple("base", *base),
+            self.units["top"] * self._couple("top", *top),
+            self.units["block"] * push,
         )

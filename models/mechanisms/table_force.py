@@ -42,6 +42,7 @@ TABLES = Tables(
         "rate": Variable("rate", "reach_rate", "rad s-1", "angular velocity of the last rows"),
         "base": Variable("base", "reach_base", "m s-2", "acceleration of the base of the last rows"),
     },
+    units=lambda block: {"base": 1.0},
     jumps=("rotation",),
     oscillator=("oscillator_motion", "oscillator_force", "oscillator_frequency", "oscillator_damping"),
 )  # fmt: skip

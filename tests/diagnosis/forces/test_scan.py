@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from diagnosis.fit.along import Along
 from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.setup import measure
-from diagnosis.forces.columns import Forces, forces
+from diagnosis.forces.columns import Forces, forces, motions_of
 from diagnosis.forces.scan import missing
 from tests.diagnosis.made import SPECIMEN, TRUE, at_truth, recording
 
@@ -49,6 +50,13 @@ def test_an_effect_throughout_is_found_in_all_windows() -> None:
 def test_noise_alone_is_rarely_anything() -> None:
     alarms = sum(missing(about({}, slice(0, 0), seed), seed) is not None for seed in range(12))
     assert alarms <= 3  # .05 of 12 is .6, with probability .997 at most 3
+
+
+def test_where_a_recording_ends_in_motion_the_rate_does_not_jump() -> None:
+    """Behind its end nothing ran: a table over the rate had reached far beyond any rate of the motion."""
+    fitted = at_truth(measure(SPECIMEN, [recording("a", 1)]))
+    rate = Along(fitted.misfit.predictor, fitted.point).states["rotation_rate_1"]
+    assert np.max(np.abs(motions_of(fitted)["base"].rate)) < 1.05 * np.max(np.abs(rate))
 
 
 def test_what_lies_behind_a_window_has_no_say(monkeypatch: pytest.MonkeyPatch) -> None:

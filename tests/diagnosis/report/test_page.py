@@ -113,7 +113,7 @@ def test_page_says_what_was_found(verdict: Verdict) -> None:
 def test_the_caption_names_a_dashed_curve_only_where_one_is_drawn(
     nearest: list[float | None] | None, drawn: bool
 ) -> None:
-    """Of walls and two blocks the nearest mechanism has a name and no curve."""
+    """A force on the upper block of a wall has none."""
     found = diagnosis("not_in_library")
     assert found.missing_force is not None
     terms = [{**term, "nearest": nearest} for term in found.missing_force["terms"]]

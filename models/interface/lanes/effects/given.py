@@ -14,7 +14,7 @@ from models.interface.lanes.effects.rows import More
 from models.interface.lanes.rows import W
 from models.interface.layered import LayeredWall
 from models.interface.stored import static_compressions, stored
-from models.interface.table import TABLES, forces_of, merged
+from models.interface.table import TABLES, merged
 from models.lanes.tables import filled
 from models.rubber import lanes as rubber
 from models.tables import KNOTS
@@ -70,7 +70,7 @@ def given_effects(
     for k, name in enumerate(LANDED):
         table[:, e.G_LANDED + k] = initial.get(name, 0.0)
     if effects.law:
-        scales = dict(zip(("base", "top", "block"), forces_of(wall), strict=True))
+        scales = TABLES.units(wall)
         reaches = [(KNOTS - 1) / effects.law[variable.reach] for variable in TABLES.variables.values()]
         values = [scales[one.port] * value for term, one in TABLES.terms.items() for value in merged(effects.law, term)]
         table[:, e.G_LAW :] = np.stack([*reaches, *values], axis=1)
