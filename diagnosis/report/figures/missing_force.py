@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from textwrap import wrap
 from typing import Any
 
 import numpy as np
@@ -10,16 +11,18 @@ from matplotlib.axes import Axes
 
 from diagnosis.answer.result import Visited
 from diagnosis.report.figures.palette import PAPER, Palette
-from diagnosis.report.figures.panels import WIDE, in_milli, legend, name_panel, new_panels
+from diagnosis.report.figures.panels import WIDE, in_milli, is_narrow, legend, name_panel, new_panels
 
-PANEL = 2.8
-"""Inches."""
+PANEL, LETTERS = 2.8, 10.0
+"""Height in inches; letters to an inch of a panel's name."""
 
 
 def plot_missing_force(force: Mapping[str, Any], *, width: float = WIDE, palette: Palette = PAPER) -> tuple[Axes, ...]:
     """Draw each table of a law: its values with the 95 % band, and the nearest law of the library."""
-    panels = new_panels([PANEL] * len(force["terms"]), width, palette, below=0.5)
-    for ax, term in zip(panels, force["terms"], strict=True):
+    terms = force["terms"]
+    panels = new_panels([PANEL] * len(terms), width, palette, below=0.5)
+    of_all = next((k for k, term in enumerate(terms) if term["nearest"] is not None), 0)
+    for k, (ax, term) in enumerate(zip(panels, terms, strict=True)):
         at, unit = in_milli(np.asarray(term["at"], float), term["variable_unit"])
         half = at.size // 2
         for side in (slice(0, half), slice(half, None)):  # it may jump at zero
@@ -33,10 +36,12 @@ def plot_missing_force(force: Mapping[str, Any], *, width: float = WIDE, palette
                 ax.plot(at[side], near, color=palette.before, linewidth=1.4, linestyle=(0, (4, 2)), zorder=2,
                         label=force["nearest"].replace("_", " ") if first else None)  # fmt: skip
         _cross(ax, palette)
-        name_panel(ax, term["meaning"], palette)
-        ax.set_xlabel(f"{term['variable']} [{unit}]")
+        lines = wrap(term["meaning"], int(LETTERS * width))
+        name_panel(ax, "\n".join([*lines, " "] if k == of_all else lines), palette)  # the legend stands below its name
+        ax.set_xlabel(f"{term['variable'].replace('_', ' ')} [{unit}]")
+        ax.locator_params(axis="x", nbins=5 if is_narrow(width) else 9)
         ax.set_ylabel(f"[{in_milli(at, term['unit'])[1]}]" if term["unit"] != "1" else "")
-    legend(panels[0], palette)
+    legend(panels[of_all], palette)
     return tuple(panels)
 
 

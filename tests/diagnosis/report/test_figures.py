@@ -102,6 +102,14 @@ def test_numbers_and_depths_survive_the_way_to_the_page() -> None:
     assert drawn - {0.0} == set(DEPTHS) - {1.0}
 
 
+def test_the_legend_stands_where_all_curves_are() -> None:
+    """A force on the upper block has no curve of the nearest mechanism."""
+    (term, *rest) = FORCE["terms"]
+    first, second, *_ = plot_missing_force({**FORCE, "terms": [{**term, "nearest": None}, term, *rest]})
+    assert first.get_legend() is None and second.get_legend() is not None
+    assert "added stiffness" in [text.get_text() for text in second.get_legend().get_texts()]
+
+
 points = st.lists(st.tuples(st.integers(-9999, 9999), st.integers(-9999, 9999)), min_size=2, max_size=30)
 
 
