@@ -78,7 +78,7 @@ class _Doing:
         fitted, m = explanation.fitted, explanation.measured
         predictor = fitted.misfit.predictor
         acting = action(predictor, fitted.point, explanation.names[0])
-        rates = [state for state in m.identification.states if state.rate]
+        rates = [state for state in m.identification.states if state.rate and state.name in m.free]
         ports = {one.port.name: one.port for one in m.identification.forces}
         joints = [ports[name] for name in dict.fromkeys(one.port for one in tables.terms.values())][: len(rates)]
         jumps = jumps_at(Along(predictor, fitted.point), joints)
