@@ -75,6 +75,12 @@ def test_what_acts_on_a_wall_is_told_in_the_joint_that_it_acts_in(name: str, siz
     m = base.measured
     built = m.model.build(base.fitted.point.values, base.fitted.misfit.predictor.options)
     unit = {port: float(np.ravel(x)[0]) for port, x in units(built).items()}
+    known, weight = base.fitted.point.values, 9.81 * base.fitted.point.values["top_mass"]
+    assert unit["block"] == pytest.approx(weight, rel=1e-3)
+    assert unit["top"] == pytest.approx(0.5 * weight * known["top_length"], rel=1e-3)
+    assert unit["base"] == pytest.approx(
+        0.5 * (weight + 9.81 * known["wall_mass"]) * known["wall_length"], rel=1e-3
+    )  # fmt: skip
     of_joint = motions_of(base.fitted)
     in_base, in_top = f"{over}_base", f"{over}_top"
     reaches = {}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from importlib import import_module
 from types import SimpleNamespace
 from typing import Any
 
@@ -35,6 +36,7 @@ def test_what_is_weak_needs_the_recordings_held_out(
     found = search(fit(loss=100.0), fit(A, loss=75.0))
     before = replace(found)
     found.best, found.at_null = found.singles[0], before
+    found.base = fit(loss=95.0)  # under errors estimated with the effect
     said = unless_unconfirmed(found, HELD)
     assert (said is found) is told
     if not told:
@@ -55,6 +57,15 @@ def test_only_one_effect_that_always_acts_is_asked(monkeypatch: pytest.MonkeyPat
     found.best = fit(A, loss=75.0)
     assert unless_unconfirmed(found, None) is found
     assert unless_unconfirmed(found, HELD).best is None
+
+
+def test_a_diagnosis_asks_the_recordings_held_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[Any] = []
+    module = import_module("diagnosis.answer.diagnose")
+    monkeypatch.setattr(module, "unless_unconfirmed", lambda found, held: asked.append(held) or found)
+    answer = module.diagnose(SPECIMEN, [recording("a", 1)], [recording("b", 2)])
+    assert answer.verdict == "nothing_missing"
+    assert [r.name for held in asked for r in held.recordings] == ["b"]
 
 
 @pytest.mark.parametrize(("held", "likely"), [({"gain": {"gain": 0.05}}, True), ({}, False)])
