@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError
 from contextlib import contextmanager
 from dataclasses import dataclass
-from os.path import isfile
+from os.path import isfile, realpath
 from pathlib import Path
 
 from grids.changes import describe
@@ -112,9 +112,10 @@ def run(
     Raises InputError for a plan that differs from the folder's in more than added axis values.
     """
     check_scheduler(scheduler, workers)
-    plan_folder = "" if isinstance(plan, Plan) else str(path_of(plan, "plan").resolve().parent)
+    plan_folder = "" if isinstance(plan, Plan) else str(Path(realpath(path_of(plan, "plan"))).parent)
     plan = plan if isinstance(plan, Plan) else read_plan(plan)
-    folder = path_of(results, "results", "give the name of the folder of all results").resolve() / plan.name
+    # realpath: resolve raises RuntimeError for a link to itself
+    folder = Path(realpath(path_of(results, "results", "give the name of the folder of all results"))) / plan.name
     check_name(folder)
     if any(isfile(above) for above in folder.parents):
         raise InputError(f"results {results} is a file, or lies in one: name the folder of all results")

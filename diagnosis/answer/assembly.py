@@ -84,7 +84,7 @@ def assemble(task: Task, found: Search, climbed: Climbed | None) -> Diagnosis:
         ),
         extrapolated=extrapolated(*shown) if judged.held else (),
         prediction_horizon=stages.optional("prediction horizons", lambda: _horizons(shown, found.base, final), dict),
-        missing_force=missing_force(found, law) if law else None,
+        missing_force=missing_force(found, law, stages) if law else None,
         held_stages=judged.held.held_stages if judged.held else (),
         contradicted=judged.against,
         beyond=judged.beyond,

@@ -14,6 +14,7 @@ from diagnosis.fit.impulses import jumps_at
 from diagnosis.fit.unknowns import without_instruments
 from diagnosis.forces.action import action
 from diagnosis.forces.columns import motions_of
+from diagnosis.progress import Stages
 from diagnosis.search.found import Search, adjusted
 from diagnosis.search.refit import Explanation
 from diagnosis.search.tables import Law, Table
@@ -23,16 +24,20 @@ from models.identification import Motion
 from models.tables import KNOTS, Tables, Term, Variable
 
 
-def missing_force(found: Search, law: Law) -> Mapping[str, Any]:
+def missing_force(found: Search, law: Law, stages: Stages) -> Mapping[str, Any]:
     """``terms``: curves with 95 % bands and evidence; ``nearest``: the best single mechanism, and its curve in each
-    term; ``parameters``: every value of the law, by name; ``stages``: when it acts in each recording, if not always;
-    ``oscillator``: motion, force, frequency and damping of one beside the tables with their intervals, or None.
+    term, None where what it does cannot be told; ``parameters``: every value of the law, by name; ``stages``: when it
+    acts in each recording, if not always; ``oscillator``: motion, force, frequency and damping of one beside the
+    tables with their intervals, or None.
     """
     tables = law.mechanism.tabulated
     assert tables is not None
     singles = [e for e in found.singles if e.names[0] not in INSTRUMENTS]
     nearest = min(singles, key=adjusted) if singles else None
-    doing = _Doing.of(nearest, tables) if nearest else None
+    doing = None
+    if nearest is not None:
+        what = f"what the nearest law ({nearest.names[0]}) does"
+        doing = stages.optional(what, lambda: _Doing.of(nearest, tables), lambda: None)
     terms = []
     for table in law.tables:
         one, over = tables.terms[table.term], tables.variable(table.term)
@@ -44,10 +49,9 @@ def missing_force(found: Search, law: Law) -> Mapping[str, Any]:
                 "nearest": None if doing is None else _curve(doing, one, over, table),
             }
         )  # fmt: skip
-    stages = [asdict(one) for one in law.stages]
     return {
-        "terms": terms, "nearest": nearest.names[0] if nearest else None, "parameters": law.values, "stages": stages,
-        "oscillator": _oscillator(law),
+        "terms": terms, "nearest": doing.explanation.names[0] if doing else None, "parameters": law.values,
+        "stages": [asdict(one) for one in law.stages], "oscillator": _oscillator(law),
     }  # fmt: skip
 
 

@@ -69,7 +69,7 @@ def _is_described(table: Path) -> bool:
         stated = parse_toml(read_text(beside, "the description of the columns"))
     except InputError:
         return True  # what a damaged one describes is not known
-    return "columns" in stated or stated.get("table") == table.name
+    return stated["table"] == table.name if "table" in stated else "columns" in stated
 
 
 def in_study(folder: Path) -> list[Path]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from os.path import realpath
 from pathlib import Path
 from typing import Annotated
 
@@ -87,6 +88,6 @@ def make_cases(folder: Path, specimen: Path, motions: list[str], cases: int, see
 
 def default_folder(folder: Path, half: str, model: str | None) -> Path:
     """Its own for each choice of cases; many folders of cases are called ``cases``, so the one above counts too."""
-    whole = folder.resolve()
+    whole = Path(realpath(folder))  # resolve raises RuntimeError for a link to itself
     words = [whole.parent.name, whole.name, *([half] if half != "all" else []), *([model] if model else [])]
     return Path("results/prove") / "_".join(word for word in words if word)

@@ -25,6 +25,7 @@ from rocking.commands.calibrate import samples_beside, write
 from rocking.commands.outputs import keep_others
 
 CUBE = Path(__file__).resolve().parents[2] / "results" / "example.nc"
+STUDIES = Path(__file__).resolve().parents[2] / "studies"
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "from_a_data_logger"
 
 
@@ -130,6 +131,16 @@ def test_a_table_named_like_its_plan_is_written_anew() -> None:
         assert written.exit_code == 0, written.output
 
 
+def test_a_table_named_like_the_description_of_another_is_written_anew() -> None:
+    described = """table = "tests.csv"\n\n[columns]\nmotion = "name"\n"""
+    Path("runs.toml").write_text(described)
+    Path("runs.csv").write_text("motion,chance\n")
+    keep_others(Path("runs.csv"))
+    Path("tests.toml").write_text(described)
+    with pytest.raises(InputError, match=r"tests\.csv is there"):
+        keep_others(Path("tests.csv"))
+
+
 def test_a_calibrated_specimen_is_written_as_toml() -> None:
     refused = rocking("calibrate", "block.toml", "shake_1.csv", "--out", "free.nc")
     assert refused.exit_code == 2 and "--out free.nc" in refused.stderr and "end the name in .toml" in refused.stderr
@@ -193,3 +204,13 @@ def test_a_cube_that_is_a_link_to_itself_is_not_there() -> None:
     cube.symlink_to(cube.absolute())
     found = rocking("export", "study", "--out", "cells.csv")
     assert found.exit_code == 2 and "cube.nc does not exist" in found.output, found.output
+
+
+def test_a_folder_that_is_a_link_to_itself_is_refused_in_a_sentence() -> None:
+    loop = Path("loop")
+    loop.symlink_to(loop.absolute())
+    shutil.copy(STUDIES / "one_block.toml", "plan.toml")
+    found = rocking("run", "plan.toml", "--results", "loop")
+    assert found.exit_code == 2 and "too many levels of symbolic links" in found.output.lower(), found.output
+    found = rocking("prove", "loop")
+    assert found.exit_code == 2 and "no concealed cases in loop" in found.output, found.output

@@ -13,11 +13,13 @@ from diagnosis.errors.model import calibrated
 from diagnosis.fit.setup import measure
 from diagnosis.fit.solver import fit
 from diagnosis.forces.columns import motions_of
+from diagnosis.progress import Stages
 from diagnosis.search.candidates import candidates
 from diagnosis.search.refit import Explanation, extend
 from diagnosis.search.tables import Table
 from grids.specimen import Specimen
 from models.base import Mechanism
+from models.errors import InputError
 from models.interface.table import units
 from models.mechanisms.table_force import OF_WALL
 from models.tables import KNOTS
@@ -42,7 +44,7 @@ def curves(
         tables.append(Table(term, at, 0.0 * at, 0.0 * at, 0.0 * at, 20.0))
     law: Any = SimpleNamespace(mechanism=mechanism, tables=tables, values={}, stages=(), oscillator={})
     found: Any = SimpleNamespace(singles=[nearest])
-    answer = missing_force(found, law)
+    answer = missing_force(found, law, Stages())
     assert answer["nearest"] == name
     told = {}
     for term in answer["terms"]:
@@ -64,6 +66,26 @@ def test_a_dashpot_of_a_block_is_a_constant_table_times_the_rate() -> None:
     (form,) = [one for one in measured.model.mechanisms.values() if one.tabulated]
     told = curves(base, SPECIMEN, form, "viscous_damping", RATE, {"damping": 0.05})
     assert told["damping"][1] == pytest.approx(-RATE, rel=0.02)
+
+
+def test_a_law_whose_doing_cannot_be_told_costs_its_curves_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(*_: Any) -> None:
+        raise InputError("a run cannot be cut there")
+
+    monkeypatch.setattr("diagnosis.answer.missing_force.action", refused)
+    measured = measure(SPECIMEN, [recording("a", 1)])
+    base = Explanation((), calibrated(SPECIMEN, measured)[0])
+    dashpot = next(c for c in candidates(measured, SPECIMEN) if c.name == "viscous_damping")
+    found: Any = SimpleNamespace(singles=[extend(base, dashpot, dashpot.null, 0)])
+    side = np.linspace(0.0, 0.05, KNOTS)
+    table = Table("damping", np.concatenate([-side[::-1], side]), *np.ones((3, 2 * KNOTS)), 20.0)
+    (form,) = [one for one in measured.model.mechanisms.values() if one.tabulated]
+    law: Any = SimpleNamespace(mechanism=form, tables=[table], values={}, stages=(), oscillator={})
+    stages = Stages()
+    answer = missing_force(found, law, stages)
+    assert stages.failed == {"what the nearest law (viscous_damping) does": "a run cannot be cut there"}
+    assert answer["nearest"] is None and answer["terms"][0]["nearest"] is None
+    assert answer["terms"][0]["value"] == [1.0] * (2 * KNOTS)
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ import pytest
 from diagnosis.answer.missing_force import missing_force
 from diagnosis.answer.statement import oscillator_text
 from diagnosis.errors.model import disturbance_about, refitted
+from diagnosis.progress import Stages
 from diagnosis.search.driven import with_oscillator
 from diagnosis.search.found import Search
 from diagnosis.search.law import missing_law
@@ -33,7 +34,7 @@ def test_a_support_that_moves_and_a_mass_that_swings_are_told_apart(gain: str, s
     others = windows((3, 4), hidden, 1)
     before, after = chi2(plain, others), chi2(plain, others, law)
     assert before > 1.5 and (before - after) / (before - 1.0) > 0.7
-    told = missing_force(Search(without, (), errors), law)
+    told = missing_force(Search(without, (), errors), law, Stages())
     assert "an oscillator of 3." in oscillator_text(told["oscillator"])
 
 
