@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from diagnosis.answer.by_score import as_scored
 from diagnosis.answer.heldout import Shown, relative_misfit
 from diagnosis.answer.result import Undecided, Unfit, Verdict
 from diagnosis.errors.adequacy import Inadequacy
@@ -26,6 +27,8 @@ Of 100 windows with 20 independent samples two are as far with a chance of 3e-7,
 """
 FITTED = "the recordings fitted to"
 """What an effect rests on that makes those held out less likely."""
+REFIT = "the refit alone"
+"""What an effect rests on whose score is no larger than chance brings."""
 CHANCE = 0.05
 """p-value from which on the strongest suspect is no stronger than chance."""
 
@@ -91,7 +94,10 @@ def p_value(found: Search, gain: float) -> float:
 
 def p_of_effects(found: Search, gains: Sequence[float], effects: Sequence[Candidate]) -> list[float]:
     """p-value of each of the effects of an answer, from its evidence less the price of its details."""
-    return [p_value(found, gain - price(c)) for gain, c in zip(gains, effects, strict=True)]
+    each = [(c, gain - price(c)) for gain, c in zip(gains, effects, strict=True)]
+    if len(each) == 1:
+        return [p_value(found, as_scored(found, *each[0]))]
+    return [p_value(found, gain) for _, gain in each]
 
 
 def p_of_missing(
@@ -106,13 +112,17 @@ def p_of_missing(
 
     Of the strongest effect or that of `p_of_doubts`, if less. Without an effect that of the doubts, which say that the
     model lacks something: a suspect that is not named says no such thing. Without doubts that of the strongest suspect.
+    What is weak and alone counts as its score does.
     """
     least = p_of_doubts(found, left, flagged, unfit)
     if gains:
         return min([*p_of_effects(found, gains, found.chosen.candidates), *least])
     if found.null is None or not finished:
         return None
-    return min(least) if least else p_value(found, max((found.gain(e) for e in found.singles), default=0.0))
+    if least:
+        return min(least)
+    suspects = (as_scored(found, e.candidates[0], found.gain(e)) for e in found.singles)
+    return p_value(found, max(suspects, default=0.0))
 
 
 def p_of_doubts(found: Search, left: Inadequacy, flagged: Sequence[Constancy], unfit: Sequence[Unfit]) -> list[float]:
@@ -123,10 +133,10 @@ def p_of_doubts(found: Search, left: Inadequacy, flagged: Sequence[Constancy], u
 
 
 def undecided(found: Search, p_missing: float | None) -> Undecided | None:
-    """What recordings held out speak against, or the strongest suspect where chance hardly brings its gain."""
+    """What was found and is doubted, or the strongest suspect where chance hardly brings its gain."""
     if found.doubted is not None:
-        one, gain = found.doubted
-        return Undecided(one.names[0], one.classes[0], gain, FITTED)
+        one, gain, rests_on = found.doubted
+        return Undecided(one.names[0], one.classes[0], gain, rests_on)
     if found.best is not None or p_missing is None or p_missing >= CHANCE or not found.singles:
         return None
     suspect = min(found.singles, key=adjusted)

@@ -81,8 +81,9 @@ class Rival:
 class Undecided:
     """A suspect that is not named although chance hardly brings its ``gain`` (2 log likelihood less that of shapes).
 
-    ``rests_on``: "one window" or "one recording" without which too little is left, or "the recordings fitted to", those
-    held out being less likely with it; "" where the gain is under what a name takes.
+    ``rests_on``: "one window" or "one recording" without which too little is left, "the recordings fitted to", those
+    held out being less likely with it, or "the refit alone", the score being no larger than chance brings; "" where
+    the gain is under what a name takes.
     """
 
     name: str

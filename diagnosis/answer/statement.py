@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping, Sequence
 from string import Formatter
 from typing import Any
 
-from diagnosis.answer.judgement import FITTED
+from diagnosis.answer.judgement import FITTED, REFIT
 from diagnosis.answer.phases import EVERYWHERE, words_of
 from diagnosis.answer.result import Beyond, Diagnosis, Effect, Extrapolated, Fit, Located, Unfit
 from diagnosis.answer.rivals import nearly_as_much, told_apart
@@ -212,6 +212,8 @@ def _nothing(found: Diagnosis) -> str:
     )
     if suspect.rests_on == FITTED:
         why += ", for those held out are less likely with it"
+    if suspect.rests_on == REFIT:
+        why += ", for the derivative at no effect shows no more than chance brings"
     return (
         "Nothing is named as missing from the model, but one thing is not decided: "
         f"{suspect.name.replace('_', ' ')} gains {suspect.gain:.0f} in 2 log likelihood ({p_text(found.p_value)}), "

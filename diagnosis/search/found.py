@@ -66,10 +66,11 @@ class LeftOut(NamedTuple):
 
 
 class Doubted(NamedTuple):
-    """An effect that recordings held out speak against, and the evidence of those that it was fitted to."""
+    """A weak effect that is not told, its evidence, and what that rests on (`diagnosis.answer.unconfirmed`)."""
 
     explanation: Explanation
     gain: float
+    rests_on: str
 
 
 @dataclass

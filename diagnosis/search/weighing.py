@@ -181,7 +181,8 @@ def _judged(near: Sequence[Explanation], before: float, found: Search, budget: B
         alike = sum(set(one.explanation.names) == set(explanation.names) for one in judged)
         if len(judged) == MOST_OWN or not (is_best or (alike < ALIKE and found.eligible(explanation))):
             continue
-        if before - adjusted(explanation) > OWN * (before - adjusted(best)):
+        # what was passed over with one effect less may fit better than the best
+        if is_best or before - adjusted(explanation) > OWN * (before - adjusted(best)):
             judged.append(Judged.of(explanation, found.errors))
     fitted: set[int] = set()
     while close := [k for k in range(len(judged)) if k not in fitted and _is_close(judged[k], judged)]:

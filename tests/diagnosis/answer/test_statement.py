@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import models
-from diagnosis.answer.judgement import FITTED
+from diagnosis.answer.judgement import FITTED, REFIT
 from diagnosis.answer.result import (
     Beyond,
     Diagnosis,
@@ -80,7 +80,7 @@ def test_an_effect_that_needs_more_than_its_range_is_said_with_what_it_needs() -
     assert read["effect"] == "viscous_damping" and read["wanted"] == 1.3209
 
 
-@pytest.mark.parametrize("rests_on", ["one window", "one recording", FITTED, ""])
+@pytest.mark.parametrize("rests_on", ["one window", "one recording", FITTED, REFIT, ""])
 def test_a_refused_suspect_is_named_as_undecided(rests_on: str) -> None:
     suspect = Undecided("saturation", "saturation", 46.2, rests_on)
     found = answer("nothing_missing", p_value=LEAST_P, undecided=suspect)
@@ -88,6 +88,7 @@ def test_a_refused_suspect_is_named_as_undecided(rests_on: str) -> None:
     assert "chance, p" not in text and "nothing is missing" not in text
     assert "saturation gains 46" in text and "p < 1e-6" in text and rests_on in text
     assert ("held out are less likely with it" in text) == (rests_on == FITTED)
+    assert ("no more than chance brings" in text) == (rests_on == REFIT)
     assert "not decided" in headline(found) and "saturation" in headline(found)
     read = json.loads(diagnosis_json(found))
     assert read["undecided"] == {

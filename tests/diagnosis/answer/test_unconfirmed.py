@@ -11,17 +11,20 @@ import numpy as np
 import pytest
 
 from diagnosis.answer import unconfirmed
+from diagnosis.answer.by_score import SURE
 from diagnosis.answer.heldout import likelier
 from diagnosis.answer.judgement import FITTED, undecided
-from diagnosis.answer.unconfirmed import SURE, unless_unconfirmed
+from diagnosis.answer.unconfirmed import unless_unconfirmed
 from diagnosis.errors.model import calibrated
 from diagnosis.fit.setup import measure
 from diagnosis.search.candidates import candidates
+from diagnosis.search.null import Null
 from diagnosis.search.refit import Explanation, extend
 from tests.diagnosis.made import SPECIMEN, recording
 from tests.diagnosis.search.made_up import A, B, fit, search
 
 HELD: Any = SimpleNamespace()
+NULL = Null(np.sort(np.random.default_rng(0).chisquare(1, 20_000)), 1.0)
 
 
 @pytest.mark.parametrize(
@@ -34,6 +37,7 @@ def test_what_is_weak_needs_the_recordings_held_out(
     monkeypatch.setattr(unconfirmed, "evidence", lambda _: [evidence])
     monkeypatch.setattr(unconfirmed, "likelier", lambda *_: held)
     found = search(fit(loss=100.0), fit(A, loss=75.0))
+    found.null = NULL
     before = replace(found)
     found.best, found.at_null = found.singles[0], before
     found.base = fit(loss=95.0)  # under errors estimated with the effect
@@ -50,6 +54,7 @@ def test_only_one_effect_that_always_acts_is_asked(monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(unconfirmed, "evidence", lambda _: [25.0])
     monkeypatch.setattr(unconfirmed, "likelier", lambda *_: -7.0)
     found = search(fit(loss=100.0))
+    found.null = NULL
     assert unless_unconfirmed(found, HELD) is found
     for best in (fit(A, B, loss=50.0), SimpleNamespace(candidates=(A,), in_spell=True)):
         found.best = best

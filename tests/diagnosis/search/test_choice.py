@@ -33,6 +33,15 @@ def test_a_single_that_rests_on_one_window_does_not_come_back_when_the_errors_ar
     assert found.best.names == ("tilt",)
 
 
+def test_a_pair_is_weighed_though_a_single_that_was_passed_over_fits_better() -> None:
+    clipped, pair = fit(C, loss=90.0, first=10.0), fit(A, TILT, loss=100.0)
+    found = search(fit(loss=1000.0), clipped, fit(A, loss=300.0), pair)
+    found.pass_over(clipped)
+    found.best = pair
+    weighing.weigh_again(found)
+    assert found.best.names == ("maxwell", "tilt") and found.errors.loss == 100.0
+
+
 def test_own_errors_are_those_of_two_of_a_name_and_fits_under_them_go_on_where_they_come_close(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
