@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from scipy.stats import qmc
 
 from diagnosis.data.measured import Measured
+from diagnosis.fit.bounded import bounded_step
 from diagnosis.fit.misfit import NU, Asking, Linear, Misfit, Reduced, answered, reduce
 from diagnosis.fit.prediction import Point
 from diagnosis.fit.unknowns import clip, values_of
@@ -199,9 +200,12 @@ class Place:
         return self.loss - HOPE * (self.loss - float(ahead.sum()) - misfit.prior(u))
 
     def change(self, damping: float) -> FloatArray:
-        """Of the unknowns and the level of the shared errors, coordinates that push against a bound held."""
+        """Of the unknowns, within their bounds, and the level of the shared errors."""
         hessian, gradient = self.normals
-        return _step(self.misfit, hessian, gradient, self.u, damping)
+        low, high = (np.full(gradient.size, end) for end in (-np.inf, np.inf))
+        if self.u.size:
+            low[: self.u.size], high[: self.u.size] = np.array([x.bounds for x in self.misfit.unknowns]).T - self.u
+        return bounded_step(hessian, gradient, low, high, damping)
 
     def moved(self, change: FloatArray) -> FloatArray:
         return clip(self.misfit.unknowns, self.u + change[: self.u.size])
@@ -337,18 +341,3 @@ def normal(misfit: Misfit, reduced: Reduced, weights: FloatArray, u: FloatArray)
     hessian, gradient = weighted.T @ j, reduced.residual.ravel() @ weighted
     precision, slope = misfit.prior_normal(u)
     return hessian + precision, gradient + slope
-
-
-def _step(misfit: Misfit, hessian: FloatArray, gradient: FloatArray, u: FloatArray, damping: float) -> FloatArray:
-    """The damped step, with coordinates that push against a bound held."""
-    step = np.zeros(gradient.size)
-    bounds = np.array([x.bounds for x in misfit.unknowns]).reshape(-1, 2)
-    own = gradient[: u.size]
-    held = np.zeros(gradient.size, bool)
-    held[: u.size] = ((u <= bounds[:, 0]) & (own > 0.0)) | ((u >= bounds[:, 1]) & (own < 0.0))
-    free = np.flatnonzero(~held)
-    if free.size:
-        part = hessian[np.ix_(free, free)]
-        scale = np.diag(part) + 1e-9 * (np.max(np.diag(part)) + 1e-12)
-        step[free] = -np.linalg.solve(part + damping * np.diag(scale) + 1e-12 * np.eye(free.size), gradient[free])
-    return step

@@ -68,6 +68,7 @@ def test_what_cannot_reach_the_best_exchange_is_not_taken_further(monkeypatch: p
     """But for a window whose motion may have lost its way."""
     pairs = [fit(A, B, loss=900.0, first=450.0), fit(A, C, loss=950.0, first=475.0)]
     further: list[Any] = []
+    monkeypatch.setattr(beside, "further", lambda one, most: one)
     monkeypatch.setattr(beside, "worth_a_refit", lambda *_: [])
     monkeypatch.setattr(beside, "_strong_alone", lambda *_: pairs)
     monkeypatch.setattr(beside, "joined", lambda _, single, most: single)
@@ -76,6 +77,28 @@ def test_what_cannot_reach_the_best_exchange_is_not_taken_further(monkeypatch: p
         further.clear()
         beside.extended(search(fit(loss=2000.0)), fit(A, loss=1500.0), [], widely=True, most=most)
         assert further == expected
+
+
+def test_quick_fits_go_on_that_may_reach_the_best_exchange(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The few best, as far as they promise to; what then reaches it is taken further as others are."""
+    pairs = [fit(A, other, loss=loss) for other, loss in ((B, 900.0), (C, 950.0), (TILT, 990.0))]
+    ended, gone_on, thoroughly = fit(A, C, loss=100.0), [], []
+    monkeypatch.setattr(beside, "worth_a_refit", lambda *_: [])
+    monkeypatch.setattr(beside, "_strong_alone", lambda *_: pairs)
+    monkeypatch.setattr(beside, "joined", lambda _, single, most: single)
+    monkeypatch.setattr(beside, "again", lambda one: thoroughly.append(one) or one)
+
+    def further(one: Any, most: float) -> Any:
+        gone_on.append((one.loss, most))
+        return ended if one is pairs[1] else one
+
+    monkeypatch.setattr(beside, "further", further)
+    found = beside.extended(search(fit(loss=2000.0)), fit(A, loss=1500.0), [], widely=True, most=200.0)
+    assert gone_on == [(900.0, 200.0), (950.0, 200.0)]
+    assert found == [ended, pairs[0], pairs[2]] and thoroughly == [ended]
+    gone_on.clear()
+    beside.extended(search(fit(loss=2000.0)), fit(A, loss=1500.0), [], widely=True)
+    assert not gone_on
 
 
 def test_what_explains_little_beside_the_best_is_not_fitted_against_white_noise(
