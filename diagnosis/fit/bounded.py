@@ -1,7 +1,8 @@
-"""The step of a fit whose coordinates have bounds: the least of a quadratic between them.
+"""The step of a fit whose coordinates have bounds.
 
-A step that is cut at a bound, coordinate by coordinate, is no step of the others: it may gain nothing where much is to
-be gained, and a fit would end there.
+Newton's step is cut at the bounds, coordinate by coordinate, as long as that promises to gain. Where it does not, it is
+no step for the other coordinates, and a fit that took it for the last word would end there: then the step is the least
+of the quadratic within the bounds.
 """
 
 from __future__ import annotations
@@ -13,39 +14,35 @@ from models.base import FloatArray
 
 LEAST = 1e-12
 """Curvature, over the largest of coordinates of like size, under which a direction counts as flat."""
+STEPS = 20
+"""Changes of the coordinates at bounds, over the number of coordinates, until the least is found at the latest."""
 
 
 def bounded_step(
     hessian: FloatArray, gradient: FloatArray, low: FloatArray, high: FloatArray, damping: float = 0.0
 ) -> FloatArray:
-    """The step s (k,) that makes g's + s'(H + damping diag H) s/2 least within ``low`` <= s <= ``high``.
+    """The step s (k,) within ``low`` <= s <= ``high`` along which q(s) = g's + s'(H + damping diag H) s/2 falls.
 
-    ``low`` (k,) at most 0 and ``high`` (k,) at least 0, infinite where there is no bound.
+    ``low`` (k,) at most 0 and ``high`` (k,) at least 0, infinite where there is no bound; zero where q is least at 0.
     """
-    held = ((low >= 0.0) & (gradient > 0.0)) | ((high <= 0.0) & (gradient < 0.0))
-    free = np.flatnonzero(~held)
-    step = np.zeros(gradient.size)
-    if not free.size:
-        return step
-    part = hessian[np.ix_(free, free)]
-    scale = np.diag(part) + 1e-9 * (np.max(np.diag(part)) + LEAST)
-    damped = part + damping * np.diag(scale) + LEAST * np.eye(free.size)
-    step[free] = -np.linalg.solve(damped, gradient[free])
-    if np.all((low <= step) & (step <= high)):
-        return step
-    return _within(hessian, gradient, low, high, damping)
+    free = np.flatnonzero(~(((low >= 0.0) & (gradient > 0.0)) | ((high <= 0.0) & (gradient < 0.0))))
+    step, scale = np.zeros(gradient.size), np.diag(hessian) + 1e-9 * (np.max(np.diag(hessian), initial=0.0) + LEAST)
+    damped = hessian + damping * np.diag(scale)
+    if free.size:
+        step[free] = -np.linalg.solve(damped[np.ix_(free, free)] + LEAST * np.eye(free.size), gradient[free])
+    inside = np.clip(step, low, high)
+    if np.array_equal(inside, step) or gradient @ inside + 0.5 * inside @ damped @ inside < 0.0:
+        return inside
+    return _least(damped, gradient, low, high)
 
 
-def _within(hessian: FloatArray, gradient: FloatArray, low: FloatArray, high: FloatArray, damping: float) -> FloatArray:
-    """The same where bounds are in the way, by least squares in coordinates of like curvature."""
-    scale = np.diag(hessian) + 1e-9 * (np.max(np.diag(hessian)) + LEAST)
-    size = np.sqrt(scale)
-    values, vectors = np.linalg.eigh(hessian / np.outer(size, size) + damping * np.eye(size.size))
+def _least(hessian: FloatArray, gradient: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
+    """Where g's + s'H s/2 is least within the bounds, by least squares in coordinates of like curvature."""
+    size = np.sqrt(np.maximum(np.diag(hessian), LEAST * np.max(np.diag(hessian))))
+    values, vectors = np.linalg.eigh(hessian / np.outer(size, size))
     root = np.sqrt(np.maximum(values, LEAST * values[-1]))
-    step = np.zeros(gradient.size)
-    open_ = low < high
-    factor = (root[:, None] * vectors.T)[:, open_]
-    target = -(vectors.T @ (gradient / size)) / root
-    found = lsq_linear(factor, target, ((low * size)[open_], (high * size)[open_]), method="bvls")
-    step[open_] = found.x / size[open_]
+    step, opened = np.zeros(gradient.size), low < high
+    factor, target = (root[:, None] * vectors.T)[:, opened], -(vectors.T @ (gradient / size)) / root
+    ends = ((low * size)[opened], (high * size)[opened])
+    step[opened] = lsq_linear(factor, target, ends, method="bvls", max_iter=STEPS * step.size).x / size[opened]
     return np.clip(step, low, high)

