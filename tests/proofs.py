@@ -56,7 +56,6 @@ PROOFS = (
     "diagnosis/errors/test_likelihood.py::test_what_is_absent_stays_at_its_bound[3]",
     "diagnosis/fit/test_growing.py::test_a_whole_diagnosis_compares_what_can_be_followed",
     "diagnosis/fit/test_solver.py::test_windows_of_two_bodies_come_back_from_most_states",
-    "diagnosis/fit/test_walls.py::test_a_fit_from_other_sizes_gets_along_a_bent_valley",
     "diagnosis/forces/test_varying.py::test_a_force_in_some_windows_is_seen_and_one_in_all_is_not[stiffness]",
     "diagnosis/forces/test_varying.py::test_a_force_in_some_windows_is_seen_and_one_in_all_is_not[viscous_damping]",
     "diagnosis/outcomes/test_chain.py::test_outcomes_turned_round_are_not_explained_and_asked_about",

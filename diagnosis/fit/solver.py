@@ -24,7 +24,10 @@ from diagnosis.fit.prediction import Point
 from diagnosis.fit.unknowns import clip, values_of
 from models.base import FloatArray
 
-DAMPINGS = (0.0, 0.1, 3.0)
+DAMPINGS = (0.0, 0.03, 0.3, 3.0)
+"""Dampings tried at once, over the one that the step before leads to."""
+LESS, MORE = 0.3, 3.0
+"""Damping after a step, over that before: less, but more where the step that was damped most was the best."""
 STATE_STEPS = (1.0, 0.3, 0.0)
 ITERATIONS = 14
 TOLERANCE = 0.02
@@ -284,7 +287,7 @@ def _fitting(
                 break
             continue
         gain, place, moved = place.loss - further.loss, further, True
-        damping = max(damping * (0.3 if best == 0 else 1.0 if best == 1 else 3.0), 1e-6)
+        damping = max(damping * (MORE if best == len(DAMPINGS) - 1 else LESS), 1e-6)
         small = small + 1 if gain < TOLERANCE else 0
         if small >= 2:
             break

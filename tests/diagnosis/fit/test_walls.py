@@ -19,7 +19,7 @@ from diagnosis.fit.solver import fit
 from diagnosis.fit.starts import start_of
 from diagnosis.forces.action import action, one_step
 from diagnosis.search.candidates import candidates
-from diagnosis.search.refit import Explanation, extend, further, resized
+from diagnosis.search.refit import Explanation, extend, further
 from diagnosis.search.screen import score
 from grids.recordings.base import CHANNELS
 from tests.diagnosis.walls import LAYERS, MAXWELL, TRUE, WALL, misfit, recorded
@@ -97,20 +97,19 @@ def test_what_a_law_does_along_the_motion_starts_from_what_the_layers_remember_t
         assert np.max(np.abs(lost)) < 0.02 * np.max(np.abs(acting.amount))
 
 
-def test_a_fit_from_other_sizes_gets_along_a_bent_valley() -> None:
-    """A damping couple and the dashpot of the layer do nearly the same; where a fit has crawled to, it is not over."""
+def test_fits_get_along_a_bent_valley() -> None:
+    """A damping couple and the dashpot of the layer do nearly the same; the way from one to the other is no long one.
+
+    A fit that never dares a longer step crawls there, each iteration a hundredth of the way.
+    """
     measured = measure(WALL, [recorded(1, (("viscous_damping.couple_damping", 3.0e5),))])
     one = misfit(measured)
     base = fit(one, start_of(one.unknowns), measured.states)
     (law,) = (c for c in candidates(measured, WALL) if c.name == "viscous_damping")
     reach = law.unknowns[0].bounds[1] - law.null
-    crawled = [further(extend(Explanation((), base), law, law.null + share * reach)) for share in (0.005, 0.05)]
-    ended = [resized(one) for one in crawled]
-    # where a fit crawls to is a matter of rounding; where it gets to from other sizes is not
+    ended = [further(extend(Explanation((), base), law, law.null + share * reach)) for share in (0.005, 0.05)]
     assert abs(ended[0].loss - ended[1].loss) < 0.5
-    assert max(one.loss for one in crawled) > max(one.loss for one in ended) + 1.0
-    found = ended[0]
-    sizes = found.fitted.values
+    sizes = ended[0].fitted.values
     assert abs(sizes["viscous_damping.couple_damping"] / 3.0e5 - 1.0) < 0.1
     assert abs(sizes["base_damping"] - LAYERS["base_damping"]) < 0.7 * LAYERS["base_damping"]
 
