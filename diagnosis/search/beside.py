@@ -11,7 +11,7 @@ from diagnosis.fit.linearisation import linearise_about
 from diagnosis.fit.unknowns import clip
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.found import MISSING, Search, adjusted, enough, explains_all, lost_in_a_window, within_reach
-from diagnosis.search.refit import QUICK, Explanation, again, best_of, extend, from_starts, further, joined
+from diagnosis.search.refit import QUICK, Explanation, again, best_of, extend, from_starts, joined, reaching
 from diagnosis.search.screen import Score, score
 from models.base import FloatArray
 from models.errors import InputError
@@ -119,7 +119,7 @@ def extended(
         except InputError as refusal:  # it does not act together with an effect of the explanation
             found.not_tried.setdefault(single.names[0], str(refusal))
     fits.sort(key=adjusted)  # quick fits that have not ended may promise to reach what they are to reach
-    fits = [e if k >= THOROUGH or _may_reach(e, most) else further(e, most=most) for k, e in enumerate(fits)]
+    fits = [e if k >= THOROUGH or _may_reach(e, most) else reaching(e, most) for k, e in enumerate(fits)]
     fits.sort(key=adjusted)
     taken = [(k < THOROUGH and within_reach(e, fits[0])) or lost_in_a_window(e, fits[0]) for k, e in enumerate(fits)]
     return [again(e) if goes_on and _may_reach(e, most) else e for e, goes_on in zip(fits, taken, strict=True)]

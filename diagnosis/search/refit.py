@@ -22,8 +22,8 @@ SHAPES, QUICK = 5, 6
 """Values of a shape tried anew, and the iterations of each."""
 BETWEEN_STARTS = 30.0
 """What a refit from another start may promise to end behind the best before it."""
-SIZES = (0.4, 1.6, 2.5)
-"""Sizes of an effect tried anew, over the fitted one."""
+SOON = 0.1
+"""Of what a fit has to go, what some iterations must bring for the next."""
 
 
 @dataclass(frozen=True)
@@ -129,6 +129,16 @@ def further(explanation: Explanation, iterations: int = ITERATIONS, most: float 
     return replace(explanation, fitted=fit(f.misfit, f.u, f.states, iterations, most))
 
 
+def reaching(explanation: Explanation, most: float) -> Explanation:
+    """The same model fitted further until its loss is ``most``, or as long as it promises to get there soon."""
+    while explanation.loss >= most:
+        before = explanation.loss
+        explanation = further(explanation, most=most)
+        if before - explanation.loss <= SOON * (explanation.loss - most):
+            break
+    return explanation
+
+
 def joined(explanation: Explanation, single: Explanation, most: float = np.inf) -> Explanation:
     """Fit with the mechanism of a single as it stands alone; the base parameters from the better of both."""
     (candidate,) = single.candidates
@@ -227,24 +237,6 @@ def over_ranges(explanation: Explanation) -> Explanation:
     origins = [Origin(fitted.u, states, known) for states in (fitted.states, fitted.measured.states)]
     tried = again(replace(explanation, fitted=searched(fitted.misfit, origins)))
     return min((explanation, tried), key=lambda e: e.loss)
-
-
-def resized(explanation: Explanation) -> Explanation:
-    """The best of this fit and of fits from other sizes of its effects, one at a time.
-
-    Where a parameter of the base does nearly the same as an effect, such as a layer's dashpot beside a damping couple,
-    the valley is narrow and bent, and a fit ends on its way along it.
-    """
-    fitted, tried = explanation.fitted, [explanation]
-    names = [x.name for x in fitted.misfit.unknowns]
-    for candidate in explanation.candidates:
-        i = names.index(candidate.unknowns[0].name)
-        for size in SIZES:
-            u = fitted.u.copy()
-            u[i] = candidate.null[0] + size * (fitted.u[i] - candidate.null[0])
-            started = replace(explanation, fitted=fit(fitted.misfit, u, fitted.states, QUICK))
-            tried.append(further(started) if started.loss < explanation.loss else started)
-    return min(tried, key=lambda e: e.loss)
 
 
 def reshaped(explanation: Explanation) -> Explanation:

@@ -17,10 +17,10 @@ from diagnosis.errors.adequacy import errs
 from diagnosis.errors.model import Errors, estimate, fit_under, refitted
 from diagnosis.fit.solver import Fitted, fit
 from diagnosis.fit.whitening import sensor_noise_only
-from diagnosis.search.budget import ENDED, Budget
+from diagnosis.search.budget import Budget
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.found import STUCK, Search, adjusted, enough, passes_for_white, within_reach
-from diagnosis.search.refit import Explanation, best_of, from_states_of, further, resized, ways
+from diagnosis.search.refit import Explanation, best_of, from_states_of, further, ways
 from models.base import FloatArray
 
 NEAR, OWN = 0.3, 0.4
@@ -33,8 +33,8 @@ TURNS = 2
 AHEAD = 3.0
 """Times what the states of others gain an explanation under its errors that it is trusted to gain under new ones."""
 CLOSE = 30.0
-"""Gain from the best within which an explanation is fitted under errors of its own and from other sizes, and led by
-others, and which a refit in the place of an effect must promise: three times what rivals have."""
+"""Gain from the best within which an explanation is fitted under errors of its own, and led by others, and which a
+refit in the place of an effect must promise: three times what rivals have."""
 
 
 def reweighed(explanation: Explanation, errors: Errors) -> Explanation:
@@ -156,14 +156,8 @@ def weigh_again(found: Search, most: float = np.inf) -> None:
     found.base = reweighed(found.base, found.errors)
     others = [reweighed(e, found.errors) for e in near if e.candidates != found.best.candidates]
     others = [from_states_of(e, [found.best]) for e in others]
-    close = [e for e in others if adjusted(e) - adjusted(found.best) < CLOSE]
-    if close and budget.spent:
-        found.not_tried.setdefault("other sizes of what was found", ENDED)
-        close = []
-    found.tried = [found.best, *(resized(e) if any(e is one for one in close) else e for e in others)]
-    if close:
-        found.best = min([resized(found.best), *filter(found.eligible, found.tried)], key=adjusted)
-        found.tried.append(found.best)
+    found.tried = [found.best, *others]
+    found.best = min([found.best, *filter(found.eligible, others)], key=adjusted)
     found.singles = sorted((e for e in found.tried if len(e.candidates) == 1), key=adjusted)
 
 

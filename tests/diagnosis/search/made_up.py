@@ -86,7 +86,6 @@ def nothing_is_fitted(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(weighing, "fit_under", lambda f, errors: (f, errors))
     monkeypatch.setattr(weighing, "refitted", lambda f, *_: (f, SimpleNamespace(loss=f.loss, base=None)))
     monkeypatch.setattr(weighing, "reweighed", same)
-    monkeypatch.setattr(weighing, "resized", same)
     monkeypatch.setattr(weighing, "from_states_of", same)
     monkeypatch.setattr(exchange, "extended", lambda *_, **__: [])
     monkeypatch.setattr(details, "of_joints", lambda c, _: c.of_joints)

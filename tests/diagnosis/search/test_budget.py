@@ -12,7 +12,7 @@ from diagnosis import diagnose
 from diagnosis.errors.model import calibrated
 from diagnosis.fit.setup import measure
 from diagnosis.progress import silent
-from diagnosis.search import beginnings, weighing
+from diagnosis.search import beginnings
 from diagnosis.search.budget import ENDED, Budget
 from diagnosis.search.candidates import candidates
 from diagnosis.search.found import Search
@@ -54,22 +54,7 @@ def test_stages_are_left_out_once_the_work_of_an_answer_is_done(monkeypatch: pyt
     fitted, errors = calibrated(SPECIMEN, measured)
     tried = tuple(c for c in candidates(measured, SPECIMEN) if c.name in TRIED)
     found = searched(Search(Explanation((), fitted), tried, errors))
-    asked: list[str] = []
-
-    def resized(explanation: Explanation) -> Explanation:
-        asked.extend(explanation.names)
-        return explanation
-
-    monkeypatch.setattr(weighing, "resized", resized)
-    monkeypatch.setattr(weighing, "CLOSE", np.inf)
-    monkeypatch.setattr(weighing, "NEAR", -np.inf)
-    found.tried += found.singles + [e for e in (found.at_null or found).singles if e.names != found.chosen.names]
-    weighing.weigh_again(found)
-    assert set(asked) == set(TRIED)
-    asked.clear()
     found.whole = Budget(-1.0)
-    weighing.weigh_again(found)
-    assert not asked and found.not_tried["other sizes of what was found"] == ENDED
     monkeypatch.setattr(beginnings, "_settled", lambda _: False)
     monkeypatch.setattr(beginnings, "seconds", lambda *_: pytest.fail("a screen"))
     assert not list(beginnings.beside(found, silent))

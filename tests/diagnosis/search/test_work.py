@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from diagnosis.search import beside, exchange, select, weighing
+from diagnosis.search import beside, exchange, refit, select, weighing
 from diagnosis.search.budget import Budget
 from diagnosis.search.found import Search
 from models.runs import DONE
@@ -68,7 +68,7 @@ def test_what_cannot_reach_the_best_exchange_is_not_taken_further(monkeypatch: p
     """But for a window whose motion may have lost its way."""
     pairs = [fit(A, B, loss=900.0, first=450.0), fit(A, C, loss=950.0, first=475.0)]
     further: list[Any] = []
-    monkeypatch.setattr(beside, "further", lambda one, most: one)
+    monkeypatch.setattr(beside, "reaching", lambda one, most: one)
     monkeypatch.setattr(beside, "worth_a_refit", lambda *_: [])
     monkeypatch.setattr(beside, "_strong_alone", lambda *_: pairs)
     monkeypatch.setattr(beside, "joined", lambda _, single, most: single)
@@ -88,17 +88,27 @@ def test_quick_fits_go_on_that_may_reach_the_best_exchange(monkeypatch: pytest.M
     monkeypatch.setattr(beside, "joined", lambda _, single, most: single)
     monkeypatch.setattr(beside, "again", lambda one: thoroughly.append(one) or one)
 
-    def further(one: Any, most: float) -> Any:
+    def reaching(one: Any, most: float) -> Any:
         gone_on.append((one.loss, most))
         return ended if one is pairs[1] else one
 
-    monkeypatch.setattr(beside, "further", further)
+    monkeypatch.setattr(beside, "reaching", reaching)
     found = beside.extended(search(fit(loss=2000.0)), fit(A, loss=1500.0), [], widely=True, most=200.0)
     assert gone_on == [(900.0, 200.0), (950.0, 200.0)]
     assert found == [ended, pairs[0], pairs[2]] and thoroughly == [ended]
     gone_on.clear()
     beside.extended(search(fit(loss=2000.0)), fit(A, loss=1500.0), [], widely=True)
     assert not gone_on
+
+
+@pytest.mark.parametrize(("losses", "rounds"), [((900.0, 400.0, 90.0), 3), ((900.0, 895.0, 90.0), 2), ((), 0)])
+def test_a_fit_goes_on_as_long_as_it_gets_on(
+    monkeypatch: pytest.MonkeyPatch, losses: tuple[float, ...], rounds: int
+) -> None:
+    ends = [fit(A, loss=loss) for loss in (2000.0 if losses else 50.0, *losses)]
+    following = iter(ends[1:])
+    monkeypatch.setattr(refit, "further", lambda one, most: next(following))
+    assert refit.reaching(ends[0], 100.0) is ends[rounds]
 
 
 def test_what_explains_little_beside_the_best_is_not_fitted_against_white_noise(
