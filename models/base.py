@@ -97,8 +97,8 @@ class Mechanism:
     ``acts`` maps a model's name to the function that changes that model's coefficients (their type is
     the model's own). Where the equation has other parameters on another model, that is a second
     declaration of the same name.
-    ``signature`` says where the residual shows when it is left out; ``sentence`` is what a report
-    prints, with the parameters' names in braces.
+    ``signature`` says where the residual shows when it is left out, and after a semicolon what tells it
+    from others that show there; ``sentence`` is what a report prints, with the parameters' names in braces.
     """
 
     name: str
@@ -119,6 +119,11 @@ class Mechanism:
     """A test without shaking that would settle it, as an instruction; empty where there is none."""
     beside: str = ""
     """Of a further element of the same kind: the name of the first, beside which a diagnosis tries it."""
+
+    @property
+    def shows(self) -> str:
+        """Where the residual shows when it is left out; what shows at the same place is easily taken for it."""
+        return self.signature.partition(";")[0]
 
     def parameter(self, name: str) -> MechanismParameter:
         for parameter in (*self.parameters, *self._of_joints()):

@@ -88,6 +88,7 @@ PROOFS = (
     "diagnosis/search/test_law_of_walls.py::test_a_law_on_one_side_is_found_and_predicts[hidden1",
     "diagnosis/search/test_over_ranges.py::test_a_fit_with_an_effect_leaves_the_valley_of_a_base_that_went_astray[powers1]",
     "diagnosis/search/test_over_ranges.py::test_a_fit_with_an_effect_leaves_the_valley_of_a_base_that_went_astray[powers2]",
+    "diagnosis/search/test_alike.py::test_steps_of_one_effect_at_a_time_lead_to_the_truth",
     "diagnosis/search/test_over_ranges.py::test_the_leading_single_and_what_an_exchange_finds_start_anew_over_the_ranges",
     "diagnosis/search/test_pairs.py::test_an_offset_behind_an_ac_coupling_is_told_from_a_lean",
     "diagnosis/search/test_recovery_linear.py::test_a_simulated_effect_is_seen_and_recovered[pivot_inset",

@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from diagnosis.progress import Progress
+from diagnosis.search.alike import in_the_place_of_each
 from diagnosis.search.beside import extended, seconds
 from diagnosis.search.candidates import Candidate
 from diagnosis.search.details import least
@@ -107,24 +108,35 @@ def _try_others(found: Search, widely: bool) -> None:
 
     From where the others stand: fitted again without the effect they may move into another valley, as a clock does
     without the filter whose lag it then takes for its own. Where what stands is incomplete, from that valley too.
-    First in the place of the effect without which least is lost: it is the least sure, and its refits are the shortest.
-    Refits that do not come near what stands, or the best of those before, are given up.
+    First in the place of the effect without which least is lost: it is the least sure, and its refits are the shortest;
+    but last where the budget ended on others before. Refits that do not come near what stands, or the best of those
+    before, are given up. What is easily taken for an effect comes before all others, which wait if that fits better.
     """
     if (best := found.best) is None:
         return
     # where whole runs are compared fits creep, and what is ahead of one tells little of where it ends
     near = np.inf if best.measured.stretches is not None else CLOSE
     reached = best.loss
+    if best.measured.stretches is None and (own := frozenset(best.candidates)) not in found.alike:
+        found.alike.add(own)
+        for fits in in_the_place_of_each(found, best, reached + near):
+            found.tried += fits
+            if _better(found, widely) is not None:
+                return
     standing = {candidate: without(best, candidate, 0) for candidate in best.removable}
-    for candidate, left in sorted(standing.items(), key=lambda entry: entry[1].loss):
+
+    def later(entry: tuple[Candidate, Explanation]) -> tuple[bool, float]:
+        return frozenset(best.candidates) - {entry[0]} in found.cut, entry[1].loss
+
+    for candidate, left in sorted(standing.items(), key=later):
         others = frozenset(best.candidates) - {candidate}
         if others not in found.exchanged and found.affordable(f"others in the place of {candidate.name}"):
             for rest in [left, *(_elsewhere(best, candidate, left) if widely else [])]:
                 fits = extended(found, rest, seconds(found, rest), widely, candidate, reached + near)
                 reached = min([reached, *(one.loss for one in fits)])
                 found.tried += fits
-            if not found.spent:  # else the others are tried when there is work left
-                found.exchanged.add(others)
+            # where the budget ended the others are tried when there is work left
+            (found.cut if found.spent else found.exchanged).add(others)
 
 
 def _elsewhere(best: Explanation, candidate: Candidate, left: Explanation) -> list[Explanation]:

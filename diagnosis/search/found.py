@@ -90,6 +90,10 @@ class Search:
     """What is likelier than what was taken and does not count: it rests on one window, or is a detail of a law."""
     exchanged: set[frozenset[Candidate]] = field(default_factory=set)
     """The mechanisms beside which others were tried in the place of one, under the errors as they are."""
+    cut: set[frozenset[Candidate]] = field(default_factory=set)
+    """Beside which not all others were tried, for the budget ended."""
+    alike: set[frozenset[Candidate]] = field(default_factory=set)
+    """Explanations of which what is easily taken for each effect was tried in its place."""
     weighed: Explanation | None = None
     """That with which the errors were estimated."""
     at_null: Search | None = None

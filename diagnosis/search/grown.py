@@ -72,7 +72,7 @@ def _begun_anew(found: Search, longer: Search) -> Search:
     singles = [_only(best, candidate) for candidate in best.candidates]
     return replace(
         longer, base=again(_only(best)), singles=singles, tried=[best, *singles], at_null=None, outside=None,
-        shorter=found, passed_over=set(), exchanged=set(),
+        shorter=found, passed_over=set(), exchanged=set(), cut=set(), alike=set(),
     )  # fmt: skip
 
 

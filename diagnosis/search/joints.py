@@ -31,8 +31,10 @@ def at_other_joints(found: Search) -> None:
             return
         standing = without(leader, candidate, 0)
         for other in found.candidates:
-            if _same_law(candidate, other) and found.affordable(f"{candidate.name} at other joints"):
-                single = best_of([extend(standing, other, start, QUICK) for start in _starts(leader, candidate)])
+            if same_law(candidate, other) and found.affordable(f"{candidate.name} at other joints"):
+                single = best_of(
+                    [extend(standing, other, start, QUICK) for start in sizes_at_other_joints(leader, candidate)]
+                )
                 if found.gain(single) > NEAR * found.gain(leader):
                     single = over_ranges(again(single))
                 found.singles.append(single)
@@ -41,14 +43,15 @@ def at_other_joints(found: Search) -> None:
             return
 
 
-def _starts(leader: Explanation, candidate: Candidate) -> Iterator[FloatArray]:
+def sizes_at_other_joints(leader: Explanation, candidate: Candidate) -> Iterator[FloatArray]:
+    """Coordinates (d,) at which the law of one of its effects may begin at other joints."""
     for size in SIZES:
         start = leader.part(candidate)
         start[0] = candidate.null[0] + size * (start[0] - candidate.null[0])
         yield start
 
 
-def _same_law(one: Candidate, other: Candidate) -> bool:
+def same_law(one: Candidate, other: Candidate) -> bool:
     """Whether they are one law at different joints, with the same whole numbers."""
     if one.name != other.name or other.mechanism.beside:
         return False

@@ -22,7 +22,9 @@ SHAPES, QUICK = 5, 6
 """Values of a shape tried anew, and the iterations of each."""
 BETWEEN_STARTS = 30.0
 """What a refit from another start may promise to end behind the best before it."""
-SOON = 0.1
+TURNS, STAYS = 4, 0.5
+"""How often a fit goes on at most, and the gain under which its loss stays."""
+SOON = 0.2
 """Of what a fit has to go, what some iterations must bring for the next."""
 
 
@@ -165,9 +167,17 @@ def without(explanation: Explanation, candidate: Candidate, iterations: int = IT
 
 
 def again(explanation: Explanation) -> Explanation:
-    """The same fit taken further from where it stands, stuck windows started again."""
+    """The same fit taken further from where it stands, stuck windows started again, until its loss stays.
+
+    Where whole runs are compared a fit creeps, and each time it is taken further is enough.
+    """
     f = explanation.fitted
-    return replace(explanation, fitted=fit_thoroughly(f.misfit, f.u, f.states))
+    found = fit_thoroughly(f.misfit, f.u, f.states)
+    for _ in range(TURNS if f.measured.stretches is None else 0):
+        before, found = found.loss, fit(found.misfit, found.u, found.states)
+        if before - found.loss < STAYS:
+            break
+    return replace(explanation, fitted=found)
 
 
 def from_other(explanation: Explanation, other: Explanation, most: float = np.inf) -> Explanation:
@@ -186,18 +196,31 @@ def in_the_place_of(single: Explanation, other: Explanation, most: float = np.in
     A fit that begins at a small effect may not reach a large one. What does nearly the same as the other's effect is
     near its own optimum there. Given up where that promises no loss of ``most``.
     """
-    (candidate,) = single.candidates
-    misfit = single.fitted.misfit
-    names = [x.name for x in misfit.unknowns]
-    own = [names.index(x.name) for x in candidate.unknowns]
-    trials = []
-    for size in candidate.grid():
-        trials.append(_at_values_of(single, other))
-        trials[-1][own] = size
-    residuals = misfit.residuals([misfit.point(u, other.fitted.states) for u in trials])
-    best = trials[int(np.argmin(misfit.losses(residuals).sum(axis=-1)))]
-    tried = replace(single, fitted=fit(misfit, best, other.fitted.states, most=most))
+    led = replace(single, fitted=replace(single.fitted, u=_at_values_of(single, other), states=other.fitted.states))
+    tried = further(_at_best_size(led), most=most)
     return min((single, tried), key=lambda e: e.loss)
+
+
+def beside_at_best_size(explanation: Explanation, candidate: Candidate, most: float = np.inf) -> Explanation:
+    """Fit with one more mechanism, from the size that fits best where the explanation stands.
+
+    Quick, and taken further as long as it promises a loss of ``most``.
+    """
+    begun = _at_best_size(extend(explanation, candidate, candidate.null, 0))
+    return reaching(further(begun, QUICK, most), most)
+
+
+def _at_best_size(explanation: Explanation) -> Explanation:
+    """With the size of its last effect, over its range, that fits best with all else as it stands."""
+    f, candidate = explanation.fitted, explanation.candidates[-1]
+    names, trials = [x.name for x in f.misfit.unknowns], []
+    own = [names.index(x.name) for x in candidate.unknowns]
+    for size in candidate.grid():
+        trials.append(f.u.copy())
+        trials[-1][own] = size
+    residuals = f.misfit.residuals([f.misfit.point(u, f.states) for u in trials])
+    best = trials[int(np.argmin(f.misfit.losses(residuals).sum(axis=-1)))]
+    return replace(explanation, fitted=replace(f, u=best))
 
 
 def _at_values_of(explanation: Explanation, other: Explanation) -> FloatArray:
@@ -270,7 +293,7 @@ def with_memory(explanation: Explanation) -> Explanation:
         if predictor.measured.stretches is None and _alike(recounted, predictor, point):
             break
         fitted = fit_thoroughly(replace(fitted.misfit, predictor=recounted), fitted.u, fitted.states)
-        if abs(before - fitted.loss) < 0.5:
+        if abs(before - fitted.loss) < STAYS:
             break
     return replace(explanation, fitted=fitted) if fitted.loss < explanation.loss else explanation
 

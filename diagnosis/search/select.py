@@ -15,11 +15,12 @@ from diagnosis.search.declared import explains_most, leaves_much, pairs_as_decla
 from diagnosis.search.details import least
 from diagnosis.search.evidence import drop_without_evidence
 from diagnosis.search.exchange import drop, exchanged
-from diagnosis.search.found import GAP, MISSING, Search, adequate, adjusted, passes_for_white, survives
+from diagnosis.search.found import GAP, MISSING, Search, adequate, adjusted, survives
 from diagnosis.search.hidden import hidden_beside, take_hidden
 from diagnosis.search.left_out import predicts_worse
 from diagnosis.search.outside import outside
 from diagnosis.search.refit import Explanation, again, best_of, over_ranges, reshaped, with_memory
+from diagnosis.search.shapes import in_the_place_of_shapes
 from diagnosis.search.singles import refit_singles, take_further
 from diagnosis.search.ties import settle_ties
 from diagnosis.search.variants import with_other_numbers
@@ -71,8 +72,7 @@ def further_effects(found: Search, progress: Progress) -> Iterator[Search]:
             _more(found, progress)
             yield found
     if found.best is not None and len(found.best.candidates) > 1:
-        beyond = not passes_for_white(found.best, found.errors)
-        with found.work_of_its_own(LAST, beyond=beyond):  # goes on where the budget ended
+        with found.work_of_its_own(LAST, beyond=True):  # goes on where the budget ended
             exchanged(found, progress)
     settle_ties(found)
     if found.best is not None:
@@ -154,6 +154,7 @@ def _pairs(found: Search, progress: Progress) -> None:
             if found.affordable(f"a second effect beside {name}"):
                 screened = others if single is found.best else seconds(found, single)
                 pairs += extended(found, single, screened, widely)
+                pairs += in_the_place_of_shapes(found, single)
         if any(adequate(e) or explains_most(e, found.best, found.errors) for e in pairs):
             break  # others are tried in its place later
     if found.outside is not None:

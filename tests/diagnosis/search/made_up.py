@@ -88,6 +88,8 @@ def nothing_is_fitted(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(weighing, "reweighed", same)
     monkeypatch.setattr(weighing, "from_states_of", same)
     monkeypatch.setattr(exchange, "extended", lambda *_, **__: [])
+    monkeypatch.setattr(exchange, "in_the_place_of_each", lambda *_: [])
+    monkeypatch.setattr(select, "in_the_place_of_shapes", lambda *_: [])
     monkeypatch.setattr(details, "of_joints", lambda c, _: c.of_joints)
     for module in (beside, counting):
         monkeypatch.setattr(module, "explains_all", lambda _: False)

@@ -11,6 +11,7 @@ import pytest
 from diagnosis.search import beside, exchange, refit, select, weighing
 from diagnosis.search.budget import Budget
 from diagnosis.search.found import Search
+from diagnosis.search.refit import Explanation
 from models.runs import DONE
 from tests.diagnosis.search.made_up import NOTHING, TILT, A, B, C, Effect, fit, nothing_is_fitted, search
 
@@ -111,6 +112,18 @@ def test_a_fit_goes_on_as_long_as_it_gets_on(
     assert refit.reaching(ends[0], 100.0) is ends[rounds]
 
 
+@pytest.mark.parametrize(("losses", "left"), [((90.0, 50.0, 49.8, 10.0), 1), ((90.0, 89.9), 0)])
+def test_a_fit_is_taken_further_until_its_loss_stays(
+    monkeypatch: pytest.MonkeyPatch, losses: tuple[float, ...], left: int
+) -> None:
+    made = SimpleNamespace(misfit=None, u=None, states=None, measured=SimpleNamespace(stretches=None))
+    ends = iter([SimpleNamespace(**vars(made), loss=loss) for loss in losses])
+    for name in ("fit_thoroughly", "fit"):
+        monkeypatch.setattr(refit, name, lambda *_: next(ends))
+    ended = refit.again(Explanation((), made))  # type: ignore[arg-type]
+    assert len(list(ends)) == left and ended.loss == losses[len(losses) - left - 1]
+
+
 def test_what_explains_little_beside_the_best_is_not_fitted_against_white_noise(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -184,15 +197,11 @@ def test_a_law_outside_the_library_is_asked_again_beside_an_instrument(
     assert found.best.names == (("maxwell", beside) if goes_on else ("maxwell",))
 
 
-@pytest.mark.parametrize("left", [True, False])
-def test_the_last_exchange_goes_on_beyond_the_work_of_all_searches_where_much_is_left(
-    monkeypatch: pytest.MonkeyPatch, left: bool
-) -> None:
+def test_the_last_exchange_goes_on_beyond_the_work_of_all_searches(monkeypatch: pytest.MonkeyPatch) -> None:
     spent: list[bool] = []
     monkeypatch.setattr(select, "_pairs", lambda *_: None)
     monkeypatch.setattr(select, "_more", lambda *_: None)
     monkeypatch.setattr(select, "exchanged", lambda found, _: spent.append(found.spent))
-    monkeypatch.setattr(select, "passes_for_white", lambda *_: not left)
     checked: list[str] = []
     for name in ("settle_ties", "drop", "drop_without_evidence", "with_other_numbers"):
         monkeypatch.setattr(select, name, lambda _, name=name: checked.append(name))
@@ -203,7 +212,7 @@ def test_the_last_exchange_goes_on_beyond_the_work_of_all_searches_where_much_is
     found.best.measured.identification = SimpleNamespace(further_work=1.0)
     found.base.measured.identification = SimpleNamespace(further_work=1.0)
     list(select.further_effects(found, lambda *_: None))
-    assert spent == [not left]
+    assert spent == [False]
     assert checked == ["settle_ties", "drop", "drop_without_evidence", "with_other_numbers"]
 
 

@@ -1,0 +1,45 @@
+"""What is easily taken for an effect, tried in its place whatever a screen says: its law at other joints, and
+mechanisms that show where it does (`models.base.Mechanism.shows`).
+
+With a large effect left out the small steps of a screen lead to something else, or nowhere: the stiffening of a layer
+by one law has no score beside what another one left behind, though both fit all but equally well.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from diagnosis.search.beside import joinable
+from diagnosis.search.candidates import Candidate
+from diagnosis.search.found import Search, within_reach
+from diagnosis.search.joints import same_law, sizes_at_other_joints
+from diagnosis.search.refit import QUICK, Explanation, again, beside_at_best_size, best_of, extend, reaching, without
+
+
+def in_the_place_of_each(found: Search, best: Explanation, most: float) -> Iterator[list[Explanation]]:
+    """Refits of the best with each effect exchanged: for its law at other joints, then for what is easily taken for it.
+
+    Those that promise no loss of ``most`` are given up; those that come near the best are taken further.
+    """
+    standing = {candidate: without(best, candidate, 0) for candidate in best.removable}
+    for refits in (_at_other_joints, _for_what_shows_there):
+        fits = [e for one, left in standing.items() for e in refits(found, best, one, left, most)]
+        yield [again(e) if within_reach(e, best) else e for e in fits]
+
+
+def _at_other_joints(
+    found: Search, best: Explanation, one: Candidate, left: Explanation, most: float
+) -> Iterator[Explanation]:
+    for other in joinable(found, left):
+        if same_law(one, other) and found.affordable(f"{one.name} at other joints"):
+            starts = sizes_at_other_joints(best, one)
+            yield reaching(best_of([extend(left, other, start, QUICK, most) for start in starts]), most)
+
+
+def _for_what_shows_there(
+    found: Search, best: Explanation, one: Candidate, left: Explanation, most: float
+) -> Iterator[Explanation]:
+    for other in joinable(found, left):
+        easily_taken = other.name != one.name and other.mechanism.shows == one.mechanism.shows
+        if easily_taken and found.affordable(other.name):
+            yield beside_at_best_size(left, other, most)
