@@ -21,6 +21,7 @@ def in_the_place_of_each(found: Search, best: Explanation, most: float) -> Itera
 
     Those that promise no loss of ``most`` are given up; those that come near the best are taken further.
     """
+    found.alike.add(frozenset(best.candidates))
     standing = {candidate: without(best, candidate, 0) for candidate in best.removable}
     for refits in (_at_other_joints, _for_what_shows_there):
         fits = [e for one, left in standing.items() for e in refits(found, best, one, left, most)]
@@ -31,7 +32,7 @@ def _at_other_joints(
     found: Search, best: Explanation, one: Candidate, left: Explanation, most: float
 ) -> Iterator[Explanation]:
     for other in joinable(found, left):
-        if same_law(one, other) and found.affordable(f"{one.name} at other joints"):
+        if same_law(one, other) and _asked(found, left, other):
             starts = sizes_at_other_joints(best, one)
             yield reaching(best_of([extend(left, other, start, QUICK, most) for start in starts]), most)
 
@@ -40,6 +41,15 @@ def _for_what_shows_there(
     found: Search, best: Explanation, one: Candidate, left: Explanation, most: float
 ) -> Iterator[Explanation]:
     for other in joinable(found, left):
-        easily_taken = other.name != one.name and other.mechanism.shows == one.mechanism.shows
-        if easily_taken and found.affordable(other.name):
+        shows_there = other.name != one.name and other.mechanism.shows == one.mechanism.shows
+        if shows_there and _asked(found, left, other):
             yield beside_at_best_size(left, other, most)
+
+
+def _asked(found: Search, left: Explanation, other: Candidate) -> bool:
+    """Whether the two together are still to be tried, and there is work for it; then they count as tried."""
+    both = frozenset((*left.candidates, other))
+    if both in found.alike or not found.affordable(f"{other.name} beside {' and '.join(left.names)}"):
+        return False
+    found.alike.add(both)
+    return True

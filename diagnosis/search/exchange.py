@@ -117,8 +117,7 @@ def _try_others(found: Search, widely: bool) -> None:
     # where whole runs are compared fits creep, and what is ahead of one tells little of where it ends
     near = np.inf if best.measured.stretches is not None else CLOSE
     reached = best.loss
-    if best.measured.stretches is None and (own := frozenset(best.candidates)) not in found.alike:
-        found.alike.add(own)
+    if best.measured.stretches is None:
         for fits in in_the_place_of_each(found, best, reached + near):
             found.tried += fits
             if _better(found, widely) is not None:

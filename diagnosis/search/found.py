@@ -93,7 +93,7 @@ class Search:
     cut: set[frozenset[Candidate]] = field(default_factory=set)
     """Beside which not all others were tried, for the budget ended."""
     alike: set[frozenset[Candidate]] = field(default_factory=set)
-    """Explanations of which what is easily taken for each effect was tried in its place."""
+    """Effects that stood together, and what was tried for being easily taken for one (`diagnosis.search.alike`)."""
     weighed: Explanation | None = None
     """That with which the errors were estimated."""
     at_null: Search | None = None

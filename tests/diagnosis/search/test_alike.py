@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,13 +13,13 @@ import pytest
 import models
 from diagnosis.errors.model import calibrated
 from diagnosis.fit.setup import measure
-from diagnosis.search import exchange
+from diagnosis.search import alike, exchange
 from diagnosis.search.alike import in_the_place_of_each
-from diagnosis.search.budget import Budget
+from diagnosis.search.budget import ENDED, Budget
 from diagnosis.search.candidates import candidates
 from diagnosis.search.found import Search
 from diagnosis.search.refit import Explanation, again, extend
-from tests.diagnosis.search.made_up import A, B, C, fit, nothing_is_fitted, search
+from tests.diagnosis.search.made_up import A, B, C, Effect, fit, nothing_is_fitted, search
 from tests.diagnosis.walls import WALL, recorded
 
 HARD, SHEAR = 40.0, 0.3
@@ -48,7 +51,8 @@ def named(explanation: Explanation) -> list[str]:
 
 def test_one_stiffening_of_a_layer_is_tried_for_another_and_laws_at_other_joints() -> None:
     stands = with_effects(("locking.lock_strain", 0.6), ("interface_shear.shear_over_normal_top", SHEAR))
-    fits = [one for each in in_the_place_of_each(found(), stands, np.inf) for one in each]
+    own = replace(found(), alike=set())
+    fits = [one for each in in_the_place_of_each(own, stands, np.inf) for one in each]
     tried = {name for one in fits for name in named(one) if name not in named(stands)}
     assert tried == {
         *(f"hardening.beta2{joint}" for joint in ("", "_base", "_top")),
@@ -61,7 +65,7 @@ def test_one_stiffening_of_a_layer_is_tried_for_another_and_laws_at_other_joints
 
 def test_steps_of_one_effect_at_a_time_lead_to_the_truth() -> None:
     """From a wrong law beside one at the wrong joint."""
-    own = found()
+    own = replace(found(), alike=set())
     own.best = with_effects(("locking.lock_strain", 0.6), ("interface_shear.shear_over_normal_top", SHEAR))
     true = with_effects(*TRUE)
     for _ in range(3):
@@ -88,6 +92,31 @@ def test_other_mechanisms_wait_where_that_fits_better(monkeypatch: pytest.Monkey
     own.best = fit(A, B, loss=500.0)
     own.best.measured.stretches = None
     exchange._try_others(own, False)
-    exchange._try_others(own, False)
-    first = ["alike"] if nearer else ["alike", "screen", "screen"]
-    assert asked[: len(first)] == first and asked.count("alike") == 1 and other in own.tried
+    assert asked == (["alike"] if nearer else ["alike", "screen", "screen"]) and other in own.tried
+
+
+def test_what_was_tried_is_not_tried_again_and_what_was_not_is_noted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As the budget ends, and goes on later."""
+    asked: list[str] = []
+    left = {A: fit(B, loss=9.0), B: fit(A, loss=9.0)}
+    monkeypatch.setattr(alike, "without", lambda best, one, _: left[one])
+    monkeypatch.setattr(alike, "joinable", lambda *_: [C])
+    monkeypatch.setattr(alike, "same_law", lambda *_: False)
+    monkeypatch.setattr(Effect, "mechanism", SimpleNamespace(shows="everywhere"))
+    monkeypatch.setattr(alike, "within_reach", lambda *_: False)
+
+    def tried(left: Any, other: Effect, most: float) -> Any:
+        asked.append(f"{left.names[0]}+{other.name}")
+        own.budget = Budget(-1.0)
+        return fit(*left.candidates, other, loss=5.0)
+
+    monkeypatch.setattr(alike, "beside_at_best_size", tried)
+    own = search(fit(loss=9000.0))
+    best = fit(A, B, loss=500.0)
+    list(in_the_place_of_each(own, best, np.inf))
+    assert len(asked) == 1 and ENDED in own.not_tried.values()
+    own.budget = Budget()
+    list(in_the_place_of_each(own, best, np.inf))
+    own.budget = Budget()
+    list(in_the_place_of_each(own, best, np.inf))
+    assert sorted(asked) == sorted([f"{A.name}+{C.name}", f"{B.name}+{C.name}"])
