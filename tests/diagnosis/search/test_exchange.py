@@ -100,11 +100,11 @@ def test_no_effect_gives_way_to_one_that_predicts_recordings_left_out_worse(
     assert set(best.names) == {"tilt", "velocity_restitution"}
 
 
-@pytest.mark.parametrize(("gain", "expected"), [(0.5 * MISSING, "ttw"), (2.0 * MISSING, "twtt")])
+@pytest.mark.parametrize(("gain", "expected"), [(0.5 * MISSING, "tw"), (2.0 * MISSING, "wtt")])
 def test_errors_are_estimated_anew_at_once_where_an_exchange_gains_clearly(
     found: Search, monkeypatch: pytest.MonkeyPatch, gain: float, expected: str
 ) -> None:
-    """Else once at the end (t: others tried, w: errors weighed); it takes its place all the same."""
+    """Else once at the end (t: others tried, w: errors weighed); it takes its place all the same, before others."""
     asked: list[str] = []
     monkeypatch.setattr(exchange, "weigh_again", lambda _: asked.append("w"))
     monkeypatch.setattr(exchange, "extended", lambda *_: asked.append("t") or [])
