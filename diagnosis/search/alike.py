@@ -14,6 +14,7 @@ from diagnosis.search.candidates import Candidate
 from diagnosis.search.found import Search, within_reach
 from diagnosis.search.joints import same_law, sizes_at_other_joints
 from diagnosis.search.refit import QUICK, Explanation, again, beside_at_best_size, best_of, extend, reaching, without
+from models.errors import InputError
 
 
 def in_the_place_of_each(found: Search, best: Explanation, most: float) -> Iterator[list[Explanation]]:
@@ -23,27 +24,31 @@ def in_the_place_of_each(found: Search, best: Explanation, most: float) -> Itera
     """
     found.alike.add(frozenset(best.candidates))
     standing = {candidate: without(best, candidate, 0) for candidate in best.removable}
-    for refits in (_at_other_joints, _for_what_shows_there):
-        fits = [e for one, left in standing.items() for e in refits(found, best, one, left, most)]
+    for easily_taken, refit in ((same_law, _at_other_joints), (_shows_there, _at_best_size)):
+        fits = []
+        for one, left in standing.items():
+            for other in joinable(found, left):
+                if easily_taken(one, other) and _asked(found, left, other):
+                    try:
+                        fits.append(refit(best, one, left, other, most))
+                    except InputError as refusal:  # it does not act together with another effect
+                        found.not_tried.setdefault(other.name, str(refusal))
         yield [again(e) if within_reach(e, best) else e for e in fits]
 
 
 def _at_other_joints(
-    found: Search, best: Explanation, one: Candidate, left: Explanation, most: float
-) -> Iterator[Explanation]:
-    for other in joinable(found, left):
-        if same_law(one, other) and _asked(found, left, other):
-            starts = sizes_at_other_joints(best, one)
-            yield reaching(best_of([extend(left, other, start, QUICK, most) for start in starts]), most)
+    best: Explanation, one: Candidate, left: Explanation, other: Candidate, most: float
+) -> Explanation:
+    starts = sizes_at_other_joints(best, one)
+    return reaching(best_of([extend(left, other, start, QUICK, most) for start in starts]), most)
 
 
-def _for_what_shows_there(
-    found: Search, best: Explanation, one: Candidate, left: Explanation, most: float
-) -> Iterator[Explanation]:
-    for other in joinable(found, left):
-        shows_there = other.name != one.name and other.mechanism.shows == one.mechanism.shows
-        if shows_there and _asked(found, left, other):
-            yield beside_at_best_size(left, other, most)
+def _shows_there(one: Candidate, other: Candidate) -> bool:
+    return other.name != one.name and other.mechanism.shows == one.mechanism.shows
+
+
+def _at_best_size(_: Explanation, one: Candidate, left: Explanation, other: Candidate, most: float) -> Explanation:
+    return beside_at_best_size(left, other, most)
 
 
 def _asked(found: Search, left: Explanation, other: Candidate) -> bool:

@@ -120,3 +120,12 @@ def test_what_was_tried_is_not_tried_again_and_what_was_not_is_noted(monkeypatch
     own.budget = Budget()
     list(in_the_place_of_each(own, best, np.inf))
     assert sorted(asked) == sorted([f"{A.name}+{C.name}", f"{B.name}+{C.name}"])
+
+
+def test_what_the_model_refuses_beside_the_other_effect_is_noted() -> None:
+    """A contact that stays shows where a spring does; beside a layer that locks there is none."""
+    own = replace(found(), alike=set(), not_tried={})
+    stands = with_effects(("locking.lock_strain", 0.6), ("added_stiffness.couple_stiffness", 1e4))
+    fits = [one for each in in_the_place_of_each(own, stands, stands.loss + 30.0) for one in each]
+    assert all("contact_length" not in one.names for one in fits if "locking" in one.names)
+    assert "contact_length" in own.not_tried["contact_length"]
