@@ -65,6 +65,27 @@ def test_refits_that_do_not_come_near_the_best_exchange_before_are_given_up(monk
     assert bounds == [900.0 + weighing.CLOSE, 500.0 + weighing.CLOSE]
 
 
+def test_others_on_which_the_budget_ended_come_last_when_it_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[tuple[str, ...]] = []
+
+    def extended(found: Search, rest: Any, *_: Any) -> list[Any]:
+        asked.append(rest.names)
+        found.budget = Budget(-1.0)
+        return []
+
+    left = {A: fit(B, loss=900.0), B: fit(A, loss=990.0)}
+    monkeypatch.setattr(exchange, "extended", extended)
+    monkeypatch.setattr(exchange, "without", lambda best, candidate, _: left[candidate])
+    found = search(fit(loss=2000.0))
+    found.best = fit(A, B, loss=500.0)
+    found.best.measured.stretches = None
+    for _ in left:
+        exchange._try_others(found, False)
+        found.budget = Budget()
+    assert asked == [(B.name,), (A.name,)]
+    assert found.cut == {frozenset({A}), frozenset({B})} and not found.exchanged
+
+
 def test_what_cannot_reach_the_best_exchange_is_not_taken_further(monkeypatch: pytest.MonkeyPatch) -> None:
     """But for a window whose motion may have lost its way."""
     pairs = [fit(A, B, loss=900.0, first=450.0), fit(A, C, loss=950.0, first=475.0)]
