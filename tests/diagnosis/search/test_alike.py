@@ -103,7 +103,9 @@ def test_what_was_tried_is_not_tried_again_and_what_was_not_is_noted(monkeypatch
     monkeypatch.setattr(alike, "joinable", lambda *_: [C])
     monkeypatch.setattr(alike, "same_law", lambda *_: False)
     monkeypatch.setattr(Effect, "mechanism", SimpleNamespace(shows="everywhere"))
-    monkeypatch.setattr(alike, "within_reach", lambda *_: False)
+    monkeypatch.setattr(alike, "within_reach", lambda one, _: one.candidates[0] is A)
+    thoroughly: list[Any] = []
+    monkeypatch.setattr(alike, "again", lambda one: thoroughly.append(one) or one)
 
     def tried(left: Any, other: Effect, most: float) -> Any:
         asked.append(f"{left.names[0]}+{other.name}")
@@ -120,6 +122,7 @@ def test_what_was_tried_is_not_tried_again_and_what_was_not_is_noted(monkeypatch
     own.budget = Budget()
     list(in_the_place_of_each(own, best, np.inf))
     assert sorted(asked) == sorted([f"{A.name}+{C.name}", f"{B.name}+{C.name}"])
+    assert [one.names for one in thoroughly] == [(A.name, C.name)]  # what comes near is taken further
 
 
 def test_what_the_model_refuses_beside_the_other_effect_is_noted() -> None:

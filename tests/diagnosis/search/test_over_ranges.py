@@ -22,7 +22,7 @@ from tests.diagnosis.walls import LAYERS, MAXWELL, TRUE, WALL, misfit, recorded
 ARM = {f"{name}{joint}": value for name, value in MAXWELL.items() for joint in ("", "_base", "_top")}
 
 
-@pytest.mark.parametrize("powers", [(-1, -1, -1, 1), (1, -1, -1, -1), (-1, 1, 1, -1)])
+@pytest.mark.parametrize("powers", [(-1, -1, 1, 1), (1, -1, -1, -1), (-1, 1, -1, -1)])
 def test_a_fit_with_an_effect_leaves_the_valley_of_a_base_that_went_astray(powers: tuple[int, ...]) -> None:
     measured = measure(WALL, [recorded(1, tuple(MAXWELL.items()))])
     one = misfit(measured)
@@ -37,7 +37,7 @@ def test_a_fit_with_an_effect_leaves_the_valley_of_a_base_that_went_astray(power
     right = again(with_arm(LAYERS, QUICK))
     astray = {name: value * 2.4**power for (name, value), power in zip(LAYERS.items(), powers, strict=True)}
     stuck = with_arm(astray, QUICK)
-    assert stuck.loss > right.loss + 15.0
+    assert stuck.loss > right.loss + 50.0
     found = over_ranges(stuck)
     assert found.loss < right.loss + 15.0
     assert found.candidates == stuck.candidates and over_ranges(found).loss <= found.loss

@@ -30,6 +30,21 @@ def test_pairs_are_weighed_by_what_they_explain_beyond_one_effect() -> None:
     assert [one.candidates[1] for one in found.tried] == [TILT, B]
 
 
+def test_what_fits_better_from_the_states_of_the_best_takes_its_place(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Unless it was passed over."""
+    better = fit(A, C, loss=50.0)
+    monkeypatch.setattr(weighing, "from_states_of", lambda one, _: better if C in one.candidates else one)
+    monkeypatch.setattr(weighing, "led_by_each_other", lambda judged, *_: judged)
+    pairs = [fit(A, TILT, loss=100.0), fit(A, C, loss=110.0)]
+    for passed_over, expected in (([], better), ([better], pairs[0])):
+        found = search(fit(loss=10000.0), *pairs)
+        found.best = pairs[0]
+        for one in passed_over:
+            found.pass_over(one)
+        weighing.weigh_again(found)
+        assert found.best.candidates == expected.candidates
+
+
 @pytest.mark.parametrize(("most", "asked"), [(np.inf, [100.0, 110.0, 120.0]), (30.0, [100.0, 110.0])])
 def test_mechanisms_are_weighed_as_long_as_it_is_worth_it(
     monkeypatch: pytest.MonkeyPatch, most: float, asked: list[float]
@@ -216,6 +231,21 @@ def test_a_law_outside_the_library_is_asked_again_beside_an_instrument(
     select._pairs(found, lambda *_: None)
     assert (found.outside is None) == goes_on
     assert found.best.names == (("maxwell", beside) if goes_on else ("maxwell",))
+
+
+def test_a_pair_in_the_place_of_a_shape_is_taken_like_any_other(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Though no mechanism scores beside the law with its shape."""
+    single, pair = fit(A, loss=500.0), fit(A, B, loss=300.0)
+    monkeypatch.setattr(select, "extended", lambda *_: [])
+    monkeypatch.setattr(select, "in_the_place_of_shapes", lambda _, one: [pair] if one is single else [])
+    monkeypatch.setattr(select, "survives", lambda *_: True)
+    monkeypatch.setattr(select, "explains_most", lambda *_: True)
+    for name in ("exchanged", "weigh_again"):
+        monkeypatch.setattr(select, name, lambda *_: None)
+    found = search(fit(loss=2000.0), single)
+    found.best = single
+    select._pairs(found, lambda *_: None)
+    assert found.best is pair
 
 
 def test_the_last_exchange_goes_on_beyond_the_work_of_all_searches(monkeypatch: pytest.MonkeyPatch) -> None:
