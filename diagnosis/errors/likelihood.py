@@ -129,12 +129,13 @@ class Prior:
 
 @dataclass(frozen=True)
 class Solved:
-    """One piece at one theta: P (n, n), P r, P times `Piece.common`, log determinants, r'P r."""
+    """One piece at one theta: P (n, n), P r, P times `Piece.common`, log|C| + log|X'C^-1 X|, log|C|, r'P r."""
 
     projector: FloatArray
     on_residual: FloatArray
     on_common: FloatArray
     determinants: float
+    volume: float
     square: float
 
 
@@ -142,8 +143,9 @@ class Solved:
 class State:
     """The restricted likelihood at one theta: -2 log L, and its slope and average information (K,), (K, K).
 
-    ``chi2`` of what base parameters and drifts leave and log ``determinants`` by piece; ``price`` of the drifts,
-    |D^-1/2 d|^2 + log|I + D A|; ``estimate`` (k + q,) of base parameters and drifts with its ``covariance``.
+    By piece ``chi2`` of what base parameters and drifts leave, log ``determinants`` and, of them, log ``volumes`` |C|;
+    ``price`` of the drifts, |D^-1/2 d|^2 + log|I + D A|; ``estimate`` (k + q,) of base parameters and drifts with its
+    ``covariance``.
     """
 
     deviance: float
@@ -153,6 +155,7 @@ class State:
     trace: FloatArray
     chi2: FloatArray
     determinants: FloatArray
+    volumes: FloatArray
     price: float
     estimate: FloatArray
     covariance: FloatArray
@@ -172,11 +175,13 @@ def solve(piece: Piece, theta: FloatArray) -> Solved:
     gram += SLACK * np.max(np.diagonal(gram), initial=0.0) * np.eye(gram.shape[0])
     projector = inverse - x @ np.linalg.solve(gram, x.T)
     on_residual = projector @ piece.residual
+    volume = 2.0 * float(diagonal)
     return Solved(
         projector,
         on_residual,
         projector @ piece.common,
-        2.0 * float(diagonal) + float(np.linalg.slogdet(gram)[1]),
+        volume + float(np.linalg.slogdet(gram)[1]),
+        volume,
         float(piece.residual @ on_residual),
     )
 
@@ -212,7 +217,7 @@ def evaluate(
         [(p.residual - p.common @ shift[at]) @ x for p, x, at in zip(pieces, a, where, strict=True)], np.float64
     )
     squares = np.array([one.square for one in solved])
-    determinants = np.array([one.determinants for one in solved])
+    determinants, volumes = np.array([[one.determinants, one.volume] for one in solved]).T
     logdet = float(np.linalg.slogdet(hessian)[1])
     deviance = float(determinants.sum()) + float(weights @ squares) + float(-gradient @ shift) + logdet
     scaled = np.linalg.solve(hessian, turn.T @ gradient)[k:]
@@ -244,7 +249,9 @@ def evaluate(
             for i, part in piece.others:
                 trace[i] += part.trace(left_over)
         information -= along @ spread @ along.T
-    return State(deviance, trace - quadratic, information, quadratic, trace, chi2, determinants, price, shift, spread)
+    return State(
+        deviance, trace - quadratic, information, quadratic, trace, chi2, determinants, volumes, price, shift, spread
+    )
 
 
 def climbed(
@@ -291,11 +298,16 @@ def _newton(theta: FloatArray, state: State) -> FloatArray:
     return np.asarray(unit * found - theta)
 
 
-def robust_deviance(state: State, pieces: Sequence[Piece], moving: int) -> float:
-    """-2 log L, base parameters at their estimate, with the t-distribution that the weights belong to."""
-    count = np.array([piece.residual.size for piece in pieces[:moving]], np.float64)
-    windows = (NU + 1.0) * count * np.log1p(state.chi2[:moving] / (NU * count))
-    return float(state.determinants.sum() + windows.sum() + state.chi2[moving:].sum() + state.price)
+def by_piece(state: State, pieces: Sequence[Piece], moving: int) -> FloatArray:
+    """-2 log L by piece (pieces,), states and base parameters at their estimate, by which models are compared.
+
+    With the t-distribution that the weights of the ``moving`` windows belong to, and without log|X'C^-1 X|: that
+    depends on how many states a model has, on their units, and on how much of them the recordings show. By it a
+    low-pass, behind which the states that a window starts from show less, is likelier than the delay that there is.
+    """
+    count = np.array([piece.residual.size for piece in pieces], np.float64)
+    windows = (NU + 1.0) * count * np.log1p(state.chi2 / (NU * count))
+    return np.asarray(state.volumes + np.where(np.arange(count.size) < moving, windows, state.chi2), np.float64)
 
 
 def robust_weights(chi2: FloatArray, count: FloatArray) -> FloatArray:

@@ -12,7 +12,7 @@ from diagnosis.errors.components import CORNERS, DECAYS, LOW_PASS, SLOW_DRIFTS, 
 from diagnosis.errors.drifts import columns, knots_of
 from diagnosis.errors.followed import followed
 from diagnosis.errors.kicks import Kicks, kicks
-from diagnosis.errors.likelihood import Piece, Prior, climbed, maximise, robust_deviance
+from diagnosis.errors.likelihood import Piece, Prior, by_piece, climbed, maximise
 from diagnosis.errors.lines import lines
 from diagnosis.errors.own import AS_MOTION, own_error
 from diagnosis.errors.pieces import LARGEST, Scene, opened, peaks_of, prior_of, windows
@@ -51,10 +51,10 @@ class Errors:
 
     ``unit`` (C,): that over all recordings; `Measured.units` are those of each.
 
-    ``deviance``: -2 log restricted likelihood of the windows and still stretches with the weights held, ``loss`` with
-    those of a t-distribution: what models, each with its own errors, are compared by; ``pieces`` with their
-    ``weights``: the windows' first; ``step``: s between samples as recorded, of the first recording;
-    ``base`` (W, C, N, K): columns of base noise; ``kicks``: what events leave.
+    ``deviance``: -2 log restricted likelihood of the windows and still stretches with the weights held; ``loss``: -2
+    log likelihood by which models, each with its own errors, are compared (`diagnosis.errors.likelihood.by_piece`), and
+    ``by_window`` (W,) of it; ``pieces`` with their ``weights``: the windows' first; ``step``: s between samples as
+    recorded, of the first recording; ``base`` (W, C, N, K): columns of base noise; ``kicks``: what events leave.
     """
 
     components: tuple[Component, ...]
@@ -65,6 +65,7 @@ class Errors:
     prior: Prior
     deviance: float
     loss: float
+    by_window: FloatArray
     step: float
     whitening: Whitening
     base: FloatArray
@@ -196,10 +197,12 @@ def estimate(fitted: Fitted, base: FloatArray, start: Errors | None = None) -> E
     theta, state = maximise(pieces, prior, theta, weights)
     whitening = _whitening(fitted.measured, scene.unit, components, theta, base, kicked.columns, prior)
     step = fitted.measured.recordings[0].time_step
-    loss = robust_deviance(state, pieces, moving) + fitted.misfit.prior_of_unknowns(fitted.u)
+    each = by_piece(state, pieces, moving)
+    loss = float(each.sum()) + state.price + fitted.misfit.prior_of_unknowns(fitted.u)
     return Errors(
-        components, theta, scene.unit, pieces, weights, prior, state.deviance, loss, step, whitening, base, kicked
-    )
+        components, theta, scene.unit, pieces, weights, prior, state.deviance, loss, each[:moving], step, whitening,
+        base, kicked,
+    )  # fmt: skip
 
 
 def _components(scene: Scene) -> tuple[Component, ...]:

@@ -5,9 +5,9 @@ specimen's parameters with their tolerances carried over and what it has more se
 the base model with the best mechanism leaves more than the sensors' noise and its errors, as estimated, hold a smooth
 error of the model beyond chance, or events that scatter as much as they may. It is named where it explains clearly more
 than the base model with all mechanisms found, each under the errors estimated with itself
-(`diagnosis.errors.comparison`): twice the log likelihood rises by what a further effect must bring, after the other
-model has paid for its parameters and for every state more that it starts a window from, and still does without the
-window that weighs most, and under its own errors without that of every recording.
+(`diagnosis.errors.likelihood.by_piece`): twice the log likelihood rises by what a further effect must bring, after the
+other model has paid for its parameters and for every state more that it starts a window from, and still does without
+the window that weighs most, and under its own errors without that of every recording.
 """
 
 from __future__ import annotations
@@ -19,7 +19,6 @@ import numpy as np
 
 from diagnosis.data.measured import Measured, for_model, identification_of
 from diagnosis.errors.adequacy import inadequacy
-from diagnosis.errors.comparison import by_window, deviance
 from diagnosis.errors.model import Errors, disturbance_about, refitted
 from diagnosis.fit.growing import fit_from
 from diagnosis.fit.misfit import Misfit
@@ -289,8 +288,7 @@ def _as_found(found: Search, base: bool = False) -> Weighed:
 
 
 def _judged(explanation: Explanation, errors: Errors) -> Weighed:
-    paid = deviance(explanation.fitted, errors) + adjusted(explanation) - explanation.loss
-    return Weighed(explanation, errors, paid, by_window(errors))
+    return Weighed(explanation, errors, errors.loss + adjusted(explanation) - explanation.loss, errors.by_window)
 
 
 def _on(found: Search, best: Weighed, others: Sequence[Explanation]) -> Search:

@@ -9,7 +9,7 @@ import pytest
 
 from diagnosis.errors.components import Component, Diagonal, LowRank, Stationary
 from diagnosis.errors.drifts import Knots
-from diagnosis.errors.likelihood import Piece, Prior, climbed, evaluate, maximise
+from diagnosis.errors.likelihood import Piece, Prior, by_piece, climbed, evaluate, maximise
 
 N, PIECES = 80, 40
 TIME = np.arange(N) * 0.01
@@ -84,6 +84,25 @@ def test_slope_and_weights_are_those_of_the_deviance() -> None:
         assert state.slope[k] == pytest.approx((ends[0] - ends[1]) / 2e-4, rel=1e-4, abs=1e-4)
     lighter = evaluate(made, prior, theta, weights)
     assert lighter.deviance < state.deviance
+
+
+def test_models_are_compared_without_how_much_the_recordings_show_of_their_states() -> None:
+    """States in other units, or half hidden behind a sensor: the restricted likelihood changes, what compares does not.
+
+    It is -2 log of the likelihood that the states make largest, by hand.
+    """
+    made, theta, weights = pieces([1.0, 0.5, 2.0, 3.0], 4)[:6], np.array([0.8, 0.7, 1.5, 2.0]), np.ones(6)
+    hidden = [replace(p, by_state=p.by_state * 0.5) for p in made]
+    full, less = (evaluate(p, NO_PRIOR, theta, weights) for p in (made, hidden))
+    assert full.deviance - less.deviance == pytest.approx(sum(2.0 * p.by_state.shape[1] for p in made) * np.log(2.0))
+    assert by_piece(full, made, 0) == pytest.approx(by_piece(less, hidden, 0), rel=1e-9)
+    for piece, value in zip(made, by_piece(full, made, 0), strict=True):
+        covariance = piece.covariance(theta)
+        shift = full.estimate @ piece.by_unknown.T
+        whiten = np.linalg.inv(np.linalg.cholesky(covariance))
+        left = whiten @ (piece.residual - shift)
+        left = left - whiten @ piece.by_state @ np.linalg.lstsq(whiten @ piece.by_state, left, rcond=None)[0]
+        assert value == pytest.approx(np.linalg.slogdet(covariance)[1] + left @ left, rel=1e-6)
 
 
 def test_an_unknown_that_changes_nothing_is_no_obstacle() -> None:
