@@ -16,6 +16,8 @@ from models.model import Model
 STEPS_OF_RANGE = 20.0
 LOG_SPAN = 3.0
 """A range [low, high] wider than this ratio is fitted in its logarithm."""
+AT_BOUND = 1e-7
+"""Share of a range over which a coordinate is not told from its bound."""
 WIDEST_PRIOR = 3.0
 """Standard deviations that a toleranced parameter may depart from its nominal value."""
 
@@ -62,8 +64,14 @@ class Unknown:
 
 
 def clip(unknowns: Sequence[Unknown], u: FloatArray) -> FloatArray:
-    bounds = np.array([x.bounds for x in unknowns]).reshape(-1, 2)
-    return np.clip(u, bounds[:, 0], bounds[:, 1])
+    """The coordinates within their bounds; what is `AT_BOUND` of its range or nearer to one is there.
+
+    A model that is stiff near the null of an effect, where the null itself is not, takes that many steps for what is
+    left of rounding.
+    """
+    low, high = np.array([x.bounds for x in unknowns]).reshape(-1, 2).T
+    slack = np.where(np.isfinite(high - low), AT_BOUND * (high - low), 0.0)
+    return np.where(u <= low + slack, low, np.where(u >= high - slack, high, u))
 
 
 def values_of(unknowns: Sequence[Unknown], u: FloatArray) -> dict[str, float]:

@@ -11,8 +11,10 @@ from scipy.optimize import minimize
 from diagnosis.errors.model import calibrated
 from diagnosis.fit.bounded import bounded_step
 from diagnosis.fit.setup import measure
+from diagnosis.fit.unknowns import clip, of_parameter
 from diagnosis.search.candidates import candidates
 from diagnosis.search.refit import Explanation, extend
+from models import get
 from tests.diagnosis.walls import WALL, recorded
 
 FREE = np.full(2, np.inf)
@@ -87,3 +89,15 @@ def test_a_fit_goes_on_where_its_step_leaves_a_range() -> None:
     one = extend(base, shear, np.array([shear.unknowns[0].coordinate(0.05)]))
     start = np.array([hardening.unknowns[0].coordinate(30.0)])
     assert extend(one, hardening, start).loss < 0.7 * extend(one, hardening, start, 0).loss
+
+
+def test_what_rounding_leaves_of_an_effect_at_its_bound_is_its_null() -> None:
+    """A joint that gives way over 1e-19 rad would take 1e8 steps, which the model refuses: the answer was lost."""
+    joint = get("housner").mechanisms["flexible_joint"]
+    one = of_parameter(joint, joint.parameter("angle"))
+    low, high = one.bounds
+    near = np.array([[low + 1e-17], [high - 1e-12], [low + 1e-5]])
+    assert [float(clip([one], u)[0]) for u in near] == [low, high, low + 1e-5]
+    start = np.array([low + 0.3])
+    step = bounded_step(np.eye(1), np.array([1.0]), low - start, high - start)
+    assert one.value(float(clip([one], start + step * (1.0 - 1e-16))[0])) == 0.0
