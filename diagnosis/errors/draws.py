@@ -36,7 +36,8 @@ def draw(errors: Errors, measured: Measured, rng: np.random.Generator) -> FloatA
 
     And of a model that runs through whole recordings its own, which is no sign of what is missing.
     """
-    found = np.einsum("wcnk,wk->wcn", errors.base, rng.normal(size=errors.base.shape[::3]))
+    known = np.concatenate([errors.base, errors.past], axis=-1)
+    found = np.einsum("wcnk,wk->wcn", known, rng.normal(size=known.shape[::3]))
     knots = knots_of(measured, errors.components)
     if knots is not None:
         drift = errors.prior.root(errors.theta) @ rng.normal(size=(knots.time.size, 1))

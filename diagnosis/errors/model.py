@@ -15,6 +15,7 @@ from diagnosis.errors.kicks import Kicks, kicks
 from diagnosis.errors.likelihood import Piece, Prior, by_piece, climbed, maximise
 from diagnosis.errors.lines import lines
 from diagnosis.errors.own import AS_MOTION, own_error
+from diagnosis.errors.past import before_windows
 from diagnosis.errors.pieces import LARGEST, Scene, opened, peaks_of, prior_of, windows
 from diagnosis.errors.scattered import Events, gauss_newton, known_changes, linear_about, shortened
 from diagnosis.errors.sensors import of_sensors
@@ -54,7 +55,8 @@ class Errors:
     ``deviance``: -2 log restricted likelihood of the windows and still stretches with the weights held; ``loss``: -2
     log likelihood by which models, each with its own errors, are compared (`diagnosis.errors.likelihood.by_piece`), and
     ``by_window`` (W,) of it; ``pieces`` with their ``weights``: the windows' first; ``step``: s between samples as
-    recorded, of the first recording; ``base`` (W, C, N, K): columns of base noise; ``kicks``: what events leave.
+    recorded, of the first recording; ``base`` (W, C, N, K): columns of base noise, ``past`` of
+    what sensors remember from before the windows; ``kicks``: what events leave.
     """
 
     components: tuple[Component, ...]
@@ -69,6 +71,7 @@ class Errors:
     step: float
     whitening: Whitening
     base: FloatArray
+    past: FloatArray
     kicks: Kicks
 
     def on(self, misfit: Misfit) -> Misfit:
@@ -79,9 +82,9 @@ class Errors:
 
     def repeating(self, misfit: Misfit) -> Misfit:
         """The misfit weighed by these errors but the scatter of events."""
-        m, none = self.whitening.measured, np.zeros((*self.base.shape[:3], 0))
+        m = self.whitening.measured
         return replace(
-            misfit, whitening=_whitening(m, self.unit, self.components, self.theta, self.base, none, self.prior)
+            misfit, whitening=_whitening(m, self.unit, self.components, self.theta, self.base, self.past, self.prior)
         )
 
     @property
@@ -108,11 +111,12 @@ class Errors:
     def expected(self, predictor: Predictor, point: Point) -> Whitening:
         """What is to be expected in windows of other recordings: errors of sensors, noise of the base, scatter.
 
-        The latter about the motion at ``point``; without drifts, which windows share.
+        The latter about the motion at ``point``, like what sensors remember; without drifts, which windows share.
         """
         base = base_columns(predictor, responses(predictor, point))
         scattered = self.scatter * kicks(predictor, point).columns
-        return self.of_sensors(predictor.measured).with_columns(np.concatenate([base, scattered], axis=-1))
+        columns = np.concatenate([base, before_windows(predictor, point), scattered], axis=-1)
+        return self.of_sensors(predictor.measured).with_columns(columns)
 
 
 def disturbance_about(fitted: Fitted) -> FloatArray:
@@ -170,8 +174,8 @@ def _about_the_events(fitted: Fitted, errors: Errors) -> tuple[Fitted, Errors]:
 
 def estimate(fitted: Fitted, base: FloatArray, start: Errors | None = None) -> Errors:
     """The errors about a fit; ``base`` (W, C, N, K): columns of base noise, of unit variance."""
-    kicked = kicks(fitted.misfit.predictor, fitted.point)
-    scene = opened(fitted, base, kicked.columns)
+    kicked, past = kicks(fitted.misfit.predictor, fitted.point), before_windows(fitted.misfit.predictor, fitted.point)
+    scene = opened(fitted, base, past, kicked.columns)
     components = _components(scene) if start is None else start.components
     own = fitted.measured.stretches is not None
     quiet = stills(scene, components)
@@ -195,13 +199,14 @@ def estimate(fitted: Fitted, base: FloatArray, start: Errors | None = None) -> E
             theta = np.concatenate([theta, np.full(len(heard), 0.1)])
             theta, weights = climbed(pieces, prior, theta, weights, moving, AGAIN)
     theta, state = maximise(pieces, prior, theta, weights)
-    whitening = _whitening(fitted.measured, scene.unit, components, theta, base, kicked.columns, prior)
+    known = np.concatenate([past, _scatter(components, theta) * kicked.columns], axis=-1)
+    whitening = _whitening(fitted.measured, scene.unit, components, theta, base, known, prior)
     step = fitted.measured.recordings[0].time_step
     each = by_piece(state, pieces, moving)
     loss = float(each.sum()) + state.price + fitted.misfit.prior_of_unknowns(fitted.u)
     return Errors(
         components, theta, scene.unit, pieces, weights, prior, state.deviance, loss, each[:moving], step, whitening,
-        base, kicked,
+        base, past, kicked,
     )  # fmt: skip
 
 
@@ -225,7 +230,7 @@ def _components(scene: Scene) -> tuple[Component, ...]:
         found += [Component("inadequacy", None, s) for s in (AS_MOTION, *stretches.smooth)]
     if scene.kicks.shape[-1]:
         found.append(Component("scatter"))
-    if scene.base.shape[-1]:
+    if scene.pulses.shape[-1]:
         found += [Component("base_drift", None, s) for s in SLOW_DRIFTS]
     return tuple(found)
 
@@ -245,18 +250,17 @@ def _whitening(
     components: Sequence[Component],
     theta: FloatArray,
     base: FloatArray,
-    kicked: FloatArray,
+    others: FloatArray,
     prior: Prior,
 ) -> Whitening:
-    """Of the sensors' errors; the base's, events and a model's own error as columns, drifts as errors windows share."""
-    scatter = _scatter(components, theta)
+    """Of the sensors' errors; the base's, ``others`` and a model's own as columns, drifts as errors windows share."""
     found = of_sensors(components, theta, unit, m.channels, peaks_of(m), m)
     own = [
         np.sqrt(t) * own_error(m, c.scale)
         for c, t in zip(components, theta, strict=True)
         if c.kind == "inadequacy" and c.channel is None and t > 0.0
     ]
-    found = found.with_columns(np.concatenate([base, scatter * kicked, *own], axis=-1))
+    found = found.with_columns(np.concatenate([base, others, *own], axis=-1))
     knots, root = knots_of(m, components), prior.root(theta)
     root = root[:, np.sum(root**2, axis=0) > FAINT]
     return found.with_shared(columns(knots, root, m, base)) if knots and root.size else found

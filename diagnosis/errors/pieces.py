@@ -42,20 +42,20 @@ class Scene:
 
     ``unit`` (C,): that over all recordings.
 
-    ``linear``: averages (W, M) and so on; ``base``, ``pulses`` and ``kicks`` (W, C, n, K): columns of base noise, of
-    pulses that a drift of the base accelerometer's zero is made of, and of events.
+    ``linear``: averages (W, M) and so on; ``known``, ``pulses`` and ``kicks`` (W, C, n, K): columns of base noise
+    and sensors' memory, of pulses that a drift of the base accelerometer's zero is made of, and of events.
     """
 
     fitted: Fitted
     unit: FloatArray
     linear: Linear
-    base: FloatArray
+    known: FloatArray
     pulses: FloatArray
     kicks: FloatArray
 
 
-def opened(fitted: Fitted, base: FloatArray, kicks: FloatArray) -> Scene:
-    """``base`` and ``kicks`` (W, C, N, K): columns of base noise and of events."""
+def opened(fitted: Fitted, base: FloatArray, past: FloatArray, kicks: FloatArray) -> Scene:
+    """``base``, ``past`` and ``kicks`` (W, C, N, K): columns of base noise, of sensors' memory and of events."""
     m = fitted.measured
     whitening = Whitening(m, m.compared / m.units[:, :, None])
     misfit = Misfit(fitted.misfit.predictor, whitening, fitted.misfit.unknowns, fitted.misfit.fixed)
@@ -65,7 +65,8 @@ def opened(fitted: Fitted, base: FloatArray, kicks: FloatArray) -> Scene:
         return np.moveaxis(each, 0, -1)
 
     linear = misfit.linearise(fitted.u, fitted.states)
-    return Scene(fitted, m.unit, linear, scaled(base), scaled(of_pulses(m, base)), scaled(kicks))
+    known = scaled(np.concatenate([base, past], axis=-1))
+    return Scene(fitted, m.unit, linear, known, scaled(of_pulses(m, base)), scaled(kicks))
 
 
 def prior_of(scene: Scene, components: Sequence[Component]) -> Prior:
@@ -118,8 +119,8 @@ def windows(scene: Scene, components: Sequence[Component]) -> list[Piece]:
                 parts.append(Diagonal(values))
             else:
                 parts.append(stationary(component, at[inside], step, inside, float(m.strides[w])))
-        base = scene.base[w].reshape(keep.size, -1)[keep]
-        known = base @ base.T + np.diag(np.full(channel.size, FLOOR / m.strides[w]))
+        columns = scene.known[w].reshape(keep.size, -1)[keep]
+        known = columns @ columns.T + np.diag(np.full(channel.size, FLOOR / m.strides[w]))
         linear = scene.linear
         found.append(
             Piece(

@@ -71,3 +71,8 @@ def recorded_in_windows(channels: Channels, mechanisms: Switched, around: Surrou
         if "response" in one.acts:
             channels = one.acts.get("windowed", one.acts["response"])(channels, values, around)
     return channels
+
+
+def remembering(mechanisms: Switched) -> Switched:
+    """Those of the instruments that are on and whose output depends on what came before a window."""
+    return {one.name: mechanisms[one.name] for one, _ in switched_on(mechanisms) if "windowed" in one.acts}

@@ -38,7 +38,7 @@ def quiet(rest: float) -> list[Piece]:
     one = misfit(measured)
     found = fit(one, np.array([x.coordinate(TRUE[x.name]) for x in one.unknowns]), measured.states, 1)
     nothing = np.zeros((*measured.values.shape, 0))
-    return stills(opened(found, nothing, nothing), [Component("white", 0)])
+    return stills(opened(found, nothing, nothing, nothing), [Component("white", 0)])
 
 
 def correlation(values: np.ndarray) -> float:
@@ -67,7 +67,7 @@ def test_a_block_that_rocks_by_little_is_not_still(seed: int, rests: bool) -> No
     """Under the second motion it lifts within a second and hardly rests after that: its stillest second is motion."""
     measured = measure(SPECIMEN, [recording("run", seed)])
     nothing = np.zeros((*measured.values.shape, 0))
-    found = stills(opened(base_fit(SPECIMEN, measured), nothing, nothing), [Component("white", 0)])
+    found = stills(opened(base_fit(SPECIMEN, measured), nothing, nothing, nothing), [Component("white", 0)])
     assert len(found) == rests and all(piece.residual.std() < 1.2 for piece in found)
 
 
@@ -84,7 +84,7 @@ def test_rest_after_noise_became_louder_is_weighed_by_its_level() -> None:
     made = Recording("run", moving.time_step, TIME_STEP * np.arange(rotation.size), channels)
     measured = measure(SPECIMEN, [made])
     nothing = np.zeros((*measured.values.shape, 0))
-    found = stills(opened(base_fit(SPECIMEN, measured), nothing, nothing), [Component("white", 0)])
+    found = stills(opened(base_fit(SPECIMEN, measured), nothing, nothing, nothing), [Component("white", 0)])
     late = [piece for piece in found if piece.time.min() > 0.5 * made.time[-1]]
     assert late
     for piece in late:
