@@ -7,7 +7,8 @@ is known: from a sample s on, a peak as windows start at,
     d(t) = recorded from the whole window - recorded from its sample s on,
 
 as large in any window, for a rocking block's acceleration does not grow with its rotation. With the n of all windows as
-rows of D, D/sqrt(n) = U S V', and V S are columns whose squares add up to the covariance of what is wrong there.
+rows of D, D/sqrt(n) = U S V', and V S are columns whose squares add up to the covariance of what is wrong there. It is
+too small for a high-pass that remembers more than a third of a window, whose slow errors are those of a drift.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from grids.instruments.windowed import recorded_in_windows, remembering
 from models.base import FloatArray
 
 MIDDLE = (0.3, 0.7)
-"""Shares of a window between which s lies: what was guessed before the window no longer counts."""
+"""Shares of a window between which s lies: of a low-pass, what was guessed before the window no longer counts."""
 MOST = 6
 """Columns of a window."""
 

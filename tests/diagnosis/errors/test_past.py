@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -19,6 +20,7 @@ from diagnosis.fit.setup import measure
 from diagnosis.search.candidates import candidates
 from diagnosis.search.refit import Explanation, extend, fit
 from grids.instruments.filter import lag as lag_of
+from grids.stages import Stage
 from tests.diagnosis.made import SPECIMEN, TIME_STEP, TRUE, motion, recording
 
 SEEDS = (1, 6)
@@ -88,3 +90,31 @@ def test_sensors_that_remember_nothing_have_no_such_error() -> None:
     for more in ({}, {"gain.gain": 0.1}, {"delay.delay": 0.02}):
         assert before_windows(Predictor(measured), Point({**TRUE, **more}, point.states)).shape[-1] == 0
     assert before_windows(Predictor(measured), point).shape[-1] > 0
+
+
+def test_windows_in_which_the_filter_does_not_act_have_no_such_error() -> None:
+    """Nor do they tell how large it is in the others."""
+    measured, point = seen("causal")
+    first = measured.recording_of == 0
+    here, there = (one.name for one in measured.recordings)
+    only_here = {"filter": (Stage(here, 0.0, np.inf), Stage(there, 0.0, 0.0))}
+    staged = before_windows(Predictor(measured, stages=only_here), point)
+    alone = Predictor(measured.of_windows(np.flatnonzero(first)))
+    assert not staged[~first].any()
+    expected = before_windows(alone, Point(point.values, point.states[first]))
+    np.testing.assert_allclose(np.sum(staged[first] ** 2, axis=-1), np.sum(expected**2, axis=-1), atol=1e-18)
+
+
+def test_recordings_that_are_sampled_otherwise_have_their_own() -> None:
+    fast, slow = (recording(f"train_{k}", k, {"filter": FILTERS["causal"]}, noise=0.003) for k in SEEDS)
+    slow = replace(
+        slow, time_step=2.0 * TIME_STEP, time=slow.time[::2], channels={n: x[::2] for n, x in slow.channels.items()}
+    )
+    measured = measure(SPECIMEN, [fast, slow])
+    values = seen("causal")[1].values
+    together = before_windows(Predictor(measured), Point(values, measured.states))
+    for r in (0, 1):
+        own = measured.recording_of == r
+        alone = before_windows(Predictor(measured.of_windows(np.flatnonzero(own))), Point(values, measured.states[own]))
+        assert alone.any()
+        np.testing.assert_allclose(np.sum(together[own] ** 2, axis=-1), np.sum(alone**2, axis=-1), atol=1e-18)
