@@ -13,6 +13,7 @@ import models
 from diagnosis.data.measured import Measured
 from diagnosis.errors import model
 from diagnosis.errors.adequacy import inadequacy
+from diagnosis.errors.draws import draw
 from diagnosis.errors.model import calibrated, refitted
 from diagnosis.errors.past import before_windows
 from diagnosis.fit.prediction import Point, Predictor
@@ -79,6 +80,14 @@ def test_it_is_no_sign_of_what_is_missing(kind: str, monkeypatch: pytest.MonkeyP
     _, with_memory = refitted(found, errors.base)
     weighed = with_memory.whitening(np.moveaxis(with_memory.past, -1, 0))
     assert np.max(np.sum(weighed**2, axis=-1)) < 1.0  # in units of what is expected: less than what it is by itself
+    predictor, now = found.misfit.predictor, found.point
+    elsewhere = with_memory.expected(predictor, now)(np.moveaxis(before_windows(predictor, now), -1, 0))
+    assert np.max(np.sum(elsewhere**2, axis=-1)) < 1.0
+    rngs = [np.random.default_rng(k) for k in range(300)]
+    spread = np.var([draw(with_memory, measured, rng)[:, 0, :30] for rng in rngs], axis=0)
+    alone = replace(with_memory, past=with_memory.past[..., :0])
+    less = np.var([draw(alone, measured, rng)[:, 0, :30] for rng in rngs], axis=0)
+    assert np.mean(spread - less) == pytest.approx(np.mean(np.sum(with_memory.past[:, 0, :30] ** 2, axis=-1)), rel=0.2)
     monkeypatch.setattr(model, "before_windows", lambda *_: np.zeros((*measured.values.shape, 0)))
     _, without = refitted(found, errors.base)
     assert inadequacy(with_memory).p_value > 0.05 and not inadequacy(with_memory).large
