@@ -11,6 +11,10 @@ is exactly the mean of the true acceleration over one sample on either side, wei
 of velocity dv is a reading of dv/dt and the sum over time keeps it. Both are in error by O(dt^2) between impacts. The
 first and last sample repeat their neighbours' (`Place.order`).
 
+Of bodies that move sideways alone models give the rates too, so that nothing is differentiated: a difference of the
+relative motion does not cancel, sample by sample, with the motion of the base that is added to it, and an isolated
+body's acceleration is the small rest of both.
+
 What a joint carries follows from the bodies above it: by Newton's law the force on them is the sum of m_k times the
 absolute accelerations of their mass centres, and their weight. No law of contact is needed for it.
 """
@@ -38,7 +42,8 @@ REFERENCES = ("base", "body_below", "absolute")
 Poses = Mapping[str, FloatArray]
 """``underside_k_x``, ``underside_k_z``: U of body k (m); ``underside_k_height``: of its underside over the base at rest
 (m); ``rotation_k`` (rad); ``mass_k`` (kg) and ``centre_k_x``, ``centre_k_z``: its mass centre from the middle of its
-underside (m): arrays (..., samples)."""
+underside (m): arrays (..., samples). Of bodies that move sideways alone ``underside_k_x`` and ``mass_k``, with
+``velocity_k_x`` against the base (m s-1) and the absolute ``acceleration_k_x`` (m s-2)."""
 
 
 @dataclass(frozen=True)
@@ -75,6 +80,12 @@ class Place:
         return self.quantity == "force" or (self.quantity == "acceleration" and self.relative_to == "absolute")
 
     @property
+    def across(self) -> bool:
+        """Whether it is read on a body that moves sideways alone, without turning."""
+        of_points = ("displacement", "velocity", "acceleration", "force")
+        return self.quantity in of_points and self.direction in ("x", "across")
+
+    @property
     def meaning(self) -> str:
         """In words, for a label."""
         of = f"{self.quantity.replace('_', ' ')} of body {self.body}"
@@ -89,6 +100,8 @@ class Place:
 
     def read(self, poses: Poses, time_step: float, ground: tuple[FloatArray, FloatArray]) -> FloatArray:
         """Readings (..., samples); ``ground``: accelerations of the base (`ground_along`), that broadcast."""
+        if self.across and f"acceleration_{self.body}_x" in poses:
+            return self._read_across(poses, ground[0])
         theta = poses[f"rotation_{self.body}"]
         if self.quantity == "rotation":
             return theta
@@ -114,6 +127,22 @@ class Place:
         if self.direction == "across":
             return np.asarray(moved[0] * cosine - moved[1] * sine)
         return np.asarray(moved[0] * sine + moved[1] * cosine - rest)
+
+    def _read_across(self, poses: Poses, base: FloatArray) -> FloatArray:
+        """Readings of a body that moves sideways alone."""
+        k = self.body
+        if self.quantity == "displacement":
+            below = poses[f"underside_{k - 1}_x"] if self.relative_to == "body_below" and k > 1 else 0.0
+            return np.asarray(poses[f"underside_{k}_x"] - below)
+        if self.quantity == "velocity":
+            return poses[f"velocity_{k}_x"]
+        if self.quantity == "acceleration":
+            return np.asarray(poses[f"acceleration_{k}_x"] - (base if self.relative_to == "base" else 0.0))
+        force = np.zeros_like(poses["acceleration_1_x"])
+        while f"mass_{k}" in poses:
+            force += poses[f"mass_{k}"] * poses[f"acceleration_{k}_x"]
+            k += 1
+        return force
 
 
 def carried(

@@ -110,7 +110,7 @@ def simulate_specimen(
 def _check_places(model: Model, specimen: Specimen, placed: Mapping[str, Place]) -> None:
     """Raises InputError for channels that the model does not predict with this specimen's mechanisms."""
     for name, place in placed.items():
-        model.check_place(name, place)
+        model.check_place(name, place, specimen.parameters)
         for mechanism, why in model.unplaced(place).items():
             if mechanism in specimen.mechanisms:
                 raise InputError(

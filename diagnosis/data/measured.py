@@ -18,6 +18,7 @@ from grids.recordings.base import SHARE, FloatArray, Recording
 from grids.recordings.levels import level_by_level, stem
 from grids.recordings.zero import Zeros, zeros
 from models import MODELS, get
+from models.base import Values
 from models.errors import InputError
 from models.identification import NARROWEST, Identification, Stretches, WindowLengths
 from models.kinematics import Place
@@ -278,7 +279,7 @@ def arrange(
     """
     declared = identification_of(model)
     observed = [*(q.name for q in model.observables if q.unit != SHARE), *declared.same]
-    placed = placed_in(model, recordings)
+    placed = placed_in(model, recordings, {})
     channels = tuple(c for c in (*observed, *placed) if all(c in r.responses for r in recordings))
     for state in declared.free:
         lacking = [r.name for r in recordings if state.channel not in r.channels]
@@ -357,7 +358,7 @@ def left_out(recordings: Sequence[Recording]) -> dict[str, tuple[str, ...]]:
     return {c: names for c, names in lacking.items() if names}
 
 
-def placed_in(model: Model, recordings: Sequence[Recording]) -> tuple[str, ...]:
+def placed_in(model: Model, recordings: Sequence[Recording], values: Values) -> tuple[str, ...]:
     """Channels that say what they measure; InputError where recordings differ or the model lacks the body."""
     found: dict[str, Place] = {}
     for recording in recordings:
@@ -366,5 +367,5 @@ def placed_in(model: Model, recordings: Sequence[Recording]) -> tuple[str, ...]:
                 raise InputError(
                     f"{name} is '{place.meaning}' in {recording.name} and another channel before: rename it."
                 )
-            model.check_place(name, place)
+            model.check_place(name, place, values)
     return tuple(found)

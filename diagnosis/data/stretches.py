@@ -33,25 +33,27 @@ def arrange_stretches(
     recordings: Sequence[Recording],
     stretches: Stretches,
     points: Mapping[str, int],
+    placed: Sequence[str] = (),
     left: Collection[str] = (),
     reference_peak: float | None = None,
 ) -> Measured:
     """The recordings in stretches; channels are compared that all of them hold and the model predicts.
 
-    ``stretches`` in s; ``points``: how many levels the model has of channels by level; ``left``: channels that are the
-    same measurement as another. Raises InputError when nothing can be compared.
+    ``stretches`` in s; ``points``: how many levels the model has of channels by level; ``placed``: channels that say
+    what they measure; ``left``: those that are the same measurement as another. Raises InputError when nothing can be
+    compared.
     """
     declared = identification_of(model)
     split = [level_by_level(r) for r in recordings]
     for recording in split:
         _refuse_beyond(model, recording, points)
-    channels = tuple(
+    observed = [
         name
         for quantity in model.observables
         if quantity.unit != SHARE and quantity.name not in left
         for name in _names(quantity.name, points)
-        if all(name in r.channels for r in split)
-    )
+    ]
+    channels = tuple(c for c in (*observed, *placed) if all(c in r.channels for r in split))
     lead = declared.leads[0].channel
     if not any(stem(name) == lead for name in channels):
         lacking = [r.name for r in recordings if lead not in r.channels]

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import models
 from diagnosis.data.gathered import refuse_moved
-from diagnosis.data.measured import Measured, arrange, identification_of
+from diagnosis.data.measured import Measured, arrange, identification_of, placed_in
 from diagnosis.data.pose import with_rotations
 from diagnosis.data.stretches import arrange_stretches
 from diagnosis.fit.growing import fit_followed
@@ -59,11 +59,10 @@ def measure(specimen: Specimen, recordings: Sequence[Recording], reference_peak:
         return arrange(model, recordings, vertical, declared.windows.in_seconds(derived), peak)
     if declared.stretches is None:
         raise InputError(f"model {model.name} declares neither windows nor stretches of whole runs.")
-    for name, place in ((n, p) for r in recordings for n, p in r.places.items()):
-        model.check_place(name, place)
+    placed = placed_in(model, recordings, values)
     left = [acceleration for _, acceleration in declared.stretches.integrals if INTEGRATED.name in specimen.mechanisms]
     stretches = declared.stretches.in_seconds(derived)
-    return arrange_stretches(model, recordings, stretches, model.points(values), left, peak)
+    return arrange_stretches(model, recordings, stretches, model.points(values), placed, left, peak)
 
 
 def as_recorded(specimen: Specimen, recordings: Sequence[Recording]) -> tuple[Specimen, tuple[Integrated, ...]]:

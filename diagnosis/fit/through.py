@@ -37,6 +37,7 @@ def run_through(
     size = round(m.recordings[recording].time_step / m.shakings[recording].time_step)
     found = np.zeros((len(parts), len(m.channels), samples // size))
     around = m.around(shaking.time_step, shaking.horizontal)
+    ground = shaking.horizontal, np.zeros(samples)
     peaks = {c: float(np.max(np.abs(m.recordings[recording].channels[c]))) for c in m.channels}
     # of all levels together: one of them may hardly move
     largest = {c: max(peak for other, peak in peaks.items() if stem(other) == stem(c)) for c in m.channels}
@@ -52,19 +53,20 @@ def run_through(
             options=options,
         )  # fmt: skip
         acting = sets[low : low + LANES]
-        kept = [k for k in range(len(some)) if _near(ran, k, largest)]
+        with np.errstate(over="ignore", invalid="ignore"):  # of runs that have diverged
+            true = {c: _read(m, ran, c, shaking.time_step, ground) for c in m.channels}
+        kept = [k for k in range(len(some)) if _near(true, k, largest)]
         found[low : low + LANES] = np.nan
         for alike in _alike(acting, kept):
-            true = {c: _of_point(ran[stem(c)][alike], c) for c in m.channels}
-            recorded = recorded_in_stages(true, acting[alike[0]], around)
+            recorded = recorded_in_stages({c: true[c][alike] for c in m.channels}, acting[alike[0]], around)
             for c, name in enumerate(m.channels):
                 found[low + np.array(alike), c] = averages(recorded[name], size)
     return found
 
 
-def _near(ran: Mapping[str, FloatArray], lane: int, largest: Mapping[str, float]) -> bool:
+def _near(channels: Mapping[str, FloatArray], lane: int, largest: Mapping[str, float]) -> bool:
     """Whether a run has not diverged."""
-    return all(np.max(np.abs(_of_point(ran[stem(c)][lane], c))) < FARTHEST * most for c, most in largest.items())
+    return all(np.max(np.abs(channels[c][lane])) < FARTHEST * most for c, most in largest.items())
 
 
 def _alike(sets: Sequence[Sets], lanes: Iterable[int]) -> list[list[int]]:
@@ -79,7 +81,15 @@ def _alike(sets: Sequence[Sets], lanes: Iterable[int]) -> list[list[int]]:
     return groups
 
 
-def _of_point(values: FloatArray, channel: str) -> FloatArray:
-    """An observable (..., samples), or of one by level (..., levels, samples) the level that the channel is of."""
+def _read(
+    measured: Measured,
+    ran: Mapping[str, FloatArray],
+    channel: str,
+    time_step: float,
+    ground: tuple[FloatArray, FloatArray],
+) -> FloatArray:
+    """A compared channel (P, samples) before any instrument, of a run's observables and poses."""
+    if channel in measured.places:
+        return measured.places[channel].read(ran, time_step, ground)
     level = level_of(channel)
-    return values if level is None else values[..., level, :]
+    return ran[channel] if level is None else ran[stem(channel)][..., level, :]

@@ -71,10 +71,12 @@ class Surroundings:
         return channel.startswith("rotation_") and "rate" not in channel
 
     def is_displacement(self, channel: str) -> bool:
-        """Whether a channel is a displacement of a body or a level as a laboratory records it, and not its state."""
-        if channel in self.places:
-            return self.places[channel].quantity == "displacement"
-        return channel.startswith(("displacement_", "level_displacement_")) and "_z" not in channel
+        """Whether a channel is a displacement of a body or a level as a laboratory records it, and not its state.
+
+        One at a position is what an instrument reads there.
+        """
+        named = channel.startswith(("displacement_", "level_displacement_")) and "_z" not in channel
+        return named and channel not in self.places
 
 
 class Level(MechanismParameter):

@@ -2,8 +2,8 @@
 
 [channels.lvdt_left]              # in a specimen, in the TOML beside a CSV; attributes of a variable in netCDF
 quantity = "displacement"         # or velocity, acceleration, rotation, angular_velocity, uplift, compression, force
-body = 1                          # the lower body, or the only one; default. Of uplift and compression also base_layer,
-                                  # top_layer: the joint under body 1, under body 2
+body = 1                          # the lower body, the only one, or the slab above bearings; default; 2 the next above
+                                  # it. Of uplift and compression also base_layer, top_layer: the joint under 1, under 2
 position_x = "-200 mm"            # from the middle of the body's underside, turning with it; default 0
 position_z = 0
 direction = "z"                   # x (default), z; across, along: the body's own
@@ -24,8 +24,8 @@ from models.kinematics import DIRECTIONS, REFERENCES, UNITS, Place
 KEYS = ("quantity", "body", "position_x", "position_z", "direction", "relative_to")
 OF_HISTORIES = ("time", "level", "event", "event_time", "event_kind", "event_body")
 """What a history written by a simulation holds beside channels."""
-MOST = 2
-"""Bodies of a model."""
+MOST = 12
+"""Bodies of a model: the levels of a building."""
 LAYERS = {"base_layer": 1, "top_layer": 2}
 """The body over each layer: what opens or closes is the joint under it."""
 IN_LAYERS = ("uplift", "compression")
@@ -119,7 +119,7 @@ def _body(given: PlaceTable, where: str) -> int:
     if isinstance(given.body, str) or given.body not in range(1, MOST + 1):
         said = f"'{given.body}'" if isinstance(given.body, str) else given.body
         raise InputError(
-            f"{where}: body = {said}; it is 1 (the lower, or the only one) or 2 (the upper one); "
+            f"{where}: body = {said}; it is 1 (the lower, or the only one), 2 (the one above it) ... {MOST}; "
             f"{' and '.join(IN_LAYERS)} may also be of {' or '.join(LAYERS)}."
         )
     return int(given.body)

@@ -11,7 +11,7 @@ from models.isolated import declaration, modes
 from models.isolated.assembly import assemble, complete
 from models.isolated.chain import Chain
 from models.isolated.identification import IDENTIFICATION
-from models.isolated.observe import observe
+from models.isolated.observe import observe, poses
 from models.model import Model
 from models.runs import Request, Run
 
@@ -35,6 +35,7 @@ class Isolated(Model[Chain]):
     observables = declaration.OBSERVABLES
     states = declaration.STATES
     identification = IDENTIFICATION
+    across_alone = True
     call_time = 8e-3
     takes_vertical = False
 
@@ -62,11 +63,17 @@ class Isolated(Model[Chain]):
         return run(coefficients, request)
 
     def points(self, values: Values) -> Mapping[str, int]:
-        levels = int(np.max(values.get("levels", 1.0)))
-        return dict.fromkeys(declaration.BY_LEVEL, levels)
+        return dict.fromkeys(declaration.BY_LEVEL, self.bodies_of(values))
+
+    def bodies_of(self, values: Values) -> int:
+        """The levels: body 1 is the slab above the bearings."""
+        return int(np.max(values.get("levels", 1.0)))
 
     def observe(self, coefficients: Chain, samples: FloatArray) -> dict[str, FloatArray]:
         return observe(coefficients, samples)
+
+    def poses(self, coefficients: Chain, samples: FloatArray) -> Mapping[str, FloatArray]:
+        return poses(coefficients, samples)
 
 
 MODEL = Isolated()

@@ -81,8 +81,8 @@ def test_a_specimen_with_channels_is_written_and_read_back(name: str) -> None:
         ({"quantity": "displacment"}, "displacement"),
         ({"quantity": "force", "position_x": "10 mm"}, "whole joint"),
         ({"quantity": "force", "position_x": 0, "position_z": 0, "relative_to": "", "direction": "along"}, "along"),
-        ({"body": 3}, "body = 3"),
-        ({"body": "base_layer"}, "body = 'base_layer'; it is 1 (the lower, or the only one) or 2"),
+        ({"body": 13}, "body = 13"),
+        ({"body": "base_layer"}, "body = 'base_layer'; it is 1 (the lower, or the only one), 2"),
         ({"quantity": "uplift", "direction": "", "body": "middle"}, "may also be of base_layer or top_layer"),
         ({"direction": "up"}, "direction"),
         ({"relative_to": "absolute"}, "subtract"),
@@ -113,9 +113,9 @@ def test_no_channel_is_named_like_anything_else_in_a_history() -> None:
 
 def test_no_channel_is_named_like_a_quantity_of_the_model() -> None:
     place = Place("compression", 1, 0.1)
-    models.get("housner").check_place("compression_base", place)
+    models.get("housner").check_place("compression_base", place, {})
     with pytest.raises(InputError, match=r"channel compression_base: model interface computes .* rename the channel"):
-        models.get("interface").check_place("compression_base", place)
+        models.get("interface").check_place("compression_base", place, {})
 
 
 @pytest.mark.parametrize(

@@ -27,11 +27,11 @@ def test_nothing_is_named_where_nothing_is_missing() -> None:
         assert found.base[name].estimate == pytest.approx(true, rel=0.02)
 
 
-def test_a_channel_at_a_position_is_refused() -> None:
+def test_a_channel_of_a_level_that_the_specimen_has_not_is_refused() -> None:
     run = made("small", 1.0, 1)
     channels = {**run.channels, "gauge": run.channels["base_acceleration_x"]}
-    placed = replace(run, channels=channels, places={"gauge": Place("displacement", 1, "x", 0.0, 0.0)})
-    with pytest.raises(InputError, match="gauge is on body 1 and model isolated places no rigid body"):
+    placed = replace(run, channels=channels, places={"gauge": Place("displacement", 2)})
+    with pytest.raises(InputError, match="gauge is on body 2 and model isolated has one body"):
         measure(SPECIMEN, [placed])
 
 

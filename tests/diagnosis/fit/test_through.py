@@ -21,6 +21,7 @@ from grids.instruments.integrated_displacement import high_passed
 from grids.recordings.base import Recording
 from grids.specimen import Specimen
 from models.errors import InputError
+from models.kinematics import Place
 from models.shaking import Shaking
 
 STEP, COUNT, CORNER = 0.01, 4000, 0.12
@@ -65,6 +66,37 @@ def test_stretches_are_cut_from_one_run_and_means_of_it(integrated: bool) -> Non
     shown = [m.channels.index(c) for c in channels]
     error = np.where(m.mask, found - m.values, 0.0)[:, shown]
     assert np.sqrt(np.mean(error**2)) < 0.01 * np.sqrt(np.mean(m.values[:, shown] ** 2))
+
+
+def with_instruments(recording: Recording, noise: float) -> Recording:
+    """The recording with a potentiometer on the bearings, a geophone on the roof and load cells under the bearings."""
+    places = {
+        "potentiometer": Place("displacement", 1), "geophone": Place("velocity", 2), "cells": Place("force", 1),
+    }  # fmt: skip
+    base = recording.channels["base_acceleration_x"]
+    ran = models.get("isolated").simulate({**TRUE, **BEARINGS}, Shaking(STEP, base), duration=recording.time[-1])
+    rng, read = np.random.default_rng(7), {}
+    for name, place in places.items():
+        true = place.read(ran.channels, STEP, (base, np.zeros_like(base)))
+        read[name] = true + noise * np.std(true) * rng.normal(size=true.size)
+    return replace(recording, channels={**recording.channels, **read}, places=places)
+
+
+@pytest.mark.parametrize("integrated", [False, True])
+def test_instruments_at_the_levels_are_compared_as_they_read(integrated: bool) -> None:
+    """A potentiometer measures displacements as they are, whether or not those of the levels were integrated."""
+    specimen, _ = as_recorded(SPECIMEN, [with_instruments(made(0.0, integrated), 0.0)])
+    m = measure(specimen, [with_instruments(made(0.0, integrated), 0.0)])
+    found = Predictor(m).predict([Point({**fixed_values(specimen), **BEARINGS}, m.states)])[0]
+    for name in ("potentiometer", "geophone", "cells"):
+        k = m.channels.index(name)
+        error, size = (np.where(m.mask, x, 0.0)[:, k] for x in (found - m.values, m.values))
+        assert np.sqrt(np.mean(error**2)) < 0.01 * np.sqrt(np.mean(size**2))
+    fitted = calibrate(SPECIMEN, [with_instruments(made(0.01, integrated), 0.01)], profile=False)
+    assert fitted.misfit < 0.04
+    for name, true in BEARINGS.items():
+        estimate, rounding = fitted.parameters[name], 1e-3 * true  # of runs on means
+        assert estimate.low95 - rounding < true < estimate.high95 + rounding
 
 
 def held(recording: Recording, *levels: int) -> Recording:
