@@ -14,6 +14,7 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
+from scipy.stats import chi2
 
 from diagnosis.data.measured import Measured
 from diagnosis.errors.adequacy import errs
@@ -41,6 +42,8 @@ PER_SHAPE = 2.0
 """What every unknown beyond the first costs a mechanism."""
 ADEQUATE = 1.08
 """Misfit per sample under which an explanation is adequate."""
+BY_CHANCE = 1e-6
+"""Of drifts as far from zero as they are found, under which they hold more than a sensor's."""
 ALONE, SETTLED, BADLY = 4.0, 1.3, 3.0
 """When one window may decide: its gain in thresholds, its misfit per sample with the mechanism and without."""
 STUCK = 1.0
@@ -287,9 +290,15 @@ def passes_for_white(explanation: Explanation, errors: Errors) -> bool:
     return explains_all(over_white_noise(explanation, errors))
 
 
+def strained(explanation: Explanation) -> bool:
+    """Whether drifts that windows share lie where they hardly would by chance: they hold what a model lacks."""
+    level = explanation.fitted.misfit.level
+    return bool(level.size) and bool(chi2.sf(level @ level, level.size) < BY_CHANCE)
+
+
 def adequate(explanation: Explanation) -> bool:
-    """Whether the misfit is that of the noise."""
-    return misfit_per_sample(explanation) < ADEQUATE
+    """Whether the misfit is that of the noise, and drifts are what the errors say of them."""
+    return misfit_per_sample(explanation) < ADEQUATE and not strained(explanation)
 
 
 def explains_all(explanation: Explanation) -> bool:

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from diagnosis.errors.model import estimate
 from diagnosis.progress import Progress
 from diagnosis.search.beside import POOL_SHARE, extended, seconds
-from diagnosis.search.budget import DECLARED, FURTHER, LAST, WEIGHING
+from diagnosis.search.budget import DECLARED, FURTHER, LAST, NUMBERS, WEIGHING
 from diagnosis.search.declared import explains_most, leaves_much, pairs_as_declared
 from diagnosis.search.details import least
 from diagnosis.search.evidence import drop_without_evidence
@@ -20,7 +20,7 @@ from diagnosis.search.hidden import hidden_beside, take_hidden
 from diagnosis.search.left_out import predicts_worse
 from diagnosis.search.outside import outside
 from diagnosis.search.refit import Explanation, again, best_of, over_ranges, reshaped, with_memory
-from diagnosis.search.shapes import in_the_place_of_shapes
+from diagnosis.search.shapes import in_the_place_of_shapes, without_idle_shapes
 from diagnosis.search.singles import refit_singles, take_further
 from diagnosis.search.ties import settle_ties
 from diagnosis.search.variants import with_other_numbers
@@ -62,10 +62,14 @@ def first_effect(found: Search, progress: Progress) -> Iterator[Search]:
 
 
 def further_effects(found: Search, progress: Progress) -> Iterator[Search]:
-    """The same with a second and a third mechanism beside the first; the last one is the answer."""
+    """The same with a second and a third mechanism beside the first; the last one is the answer.
+
+    Work of its own where the first leaves much: whatever was spent before, something else acts there.
+    """
     if found.best is None or found.best.in_spell:
         return
-    with found.work_of_its_own(FURTHER * found.measured.identification.further_work):
+    much = leaves_much(found.best, found)
+    with found.work_of_its_own(FURTHER * found.measured.identification.further_work, beyond=much):
         _pairs(found, progress)
         yield found
         if found.outside is None:
@@ -139,6 +143,7 @@ def _pairs(found: Search, progress: Progress) -> None:
     if found.best is None:
         return
     if len(found.best.candidates) > 1:
+        _settle_numbers(found)
         exchanged(found, progress)
         return
     progress("comparing with laws outside the library", 0.48)
@@ -169,7 +174,19 @@ def _pairs(found: Search, progress: Progress) -> None:
     elif found.measured.stretches is None:
         progress("looking for a second effect that the errors hide", 0.77)
         take_hidden(found, found.best, [*pairs, *hidden_beside(found, found.best, pairs)])
+    _settle_numbers(found)
     exchanged(found, progress)  # before a third: what stands in for another effect leaves traces of its own
+
+
+def _settle_numbers(found: Search) -> None:
+    """Other whole numbers of two effects that leave something, lest others be sought for what a wrong one leaves."""
+    standing = found.best
+    if standing is None or len(standing.candidates) < 2 or not found.incomplete:
+        return
+    with found.work_of_its_own(NUMBERS, beyond=True):
+        with_other_numbers(found)
+        if found.best is not standing:
+            weigh_again(found)
 
 
 def _with_an_instrument(pairs: Sequence[Explanation]) -> bool:
@@ -184,11 +201,15 @@ def _pair_that_counts(found: Search, best: Explanation, pairs: Sequence[Explanat
     """The likeliest pair that counts; what rests on one window, or may be a detail of a law, is passed over."""
     for pair in sorted(pairs, key=adjusted):
         alone = best_of([e for e in found.singles if e.names[0] in pair.names] or [best])
-        needed = least(found, alone, next(c for c in pair.candidates if c.name not in alone.names))
+        second = next(c for c in pair.candidates if c.name not in alone.names)
         gain = adjusted(best) - adjusted(pair)
         if gain < found.more:
             return None
-        if gain >= needed and survives(alone, pair, needed):
+        before = without_idle_shapes(alone, pair)
+        if before is not alone:
+            gain = adjusted(before) - adjusted(pair)
+        needed = least(found, before, second)
+        if gain >= needed and survives(before, pair, needed):
             return pair
         found.pass_over(pair)
     return None

@@ -17,6 +17,9 @@ from diagnosis.search.found import MISSING, Search
 from diagnosis.search.refit import Explanation, again, extend, further, without
 from diagnosis.search.weighing import CLOSE
 
+IDLE = 0.01
+"""Share of its range within which a shape stays at its null: a law does without it."""
+
 
 def in_the_place_of_shapes(found: Search, single: Explanation) -> list[Explanation]:
     """Pairs of the law of a single without the shape that it can do without, and another mechanism.
@@ -28,12 +31,34 @@ def in_the_place_of_shapes(found: Search, single: Explanation) -> list[Explanati
     plain = _without_shapes(law)
     if plain is None or single.measured.stretches is not None or not found.affordable(f"others beside {law.name}"):
         return []
-    standing = without(single, law, 0)
-    simpler = further(extend(standing, plain, single.part(law)[[law.unknowns.index(x) for x in plain.unknowns]]))
+    simpler = _in_its_place(single, plain)
     if simpler.loss - single.loss < MISSING:
         return []
     pairs = extended(found, simpler, seconds(found, simpler), most=single.loss + CLOSE)
     return [_with_shapes(single, pair) for pair in pairs if pair.loss < single.loss + CLOSE]
+
+
+def without_idle_shapes(single: Explanation, pair: Explanation) -> Explanation:
+    """The single without the shapes of its law that the law can do without and, in a pair with it, does without.
+
+    The same single where there are none. What the other effect of the pair brings is in the place of these shapes, and
+    is what it brings over the law without them.
+    """
+    (law,) = single.candidates
+    plain = _without_shapes(law) if law in pair.candidates else None
+    if plain is None:
+        return single
+    shapes = [k for k, x in enumerate(law.unknowns) if x not in plain.unknowns]
+    idle = [IDLE * np.ptp(law.unknowns[k].bounds) for k in shapes]
+    there, alone = (np.abs(one.part(law)[shapes] - law.null[shapes]) for one in (pair, single))
+    return _in_its_place(single, plain) if np.all(there <= idle) and np.any(alone > idle) else single
+
+
+def _in_its_place(single: Explanation, plain: Candidate) -> Explanation:
+    """The fit of the law of a single without its shapes, from where that stands."""
+    (law,) = single.candidates
+    start = single.part(law)[[law.unknowns.index(x) for x in plain.unknowns]]
+    return further(extend(without(single, law, 0), plain, start))
 
 
 def _without_shapes(law: Candidate) -> Candidate | None:

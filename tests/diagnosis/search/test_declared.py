@@ -134,6 +134,7 @@ def test_a_pair_is_taken_where_a_mechanism_alone_leaves_much_and_the_pair_little
     monkeypatch.setattr(select, "pairs_as_declared", lambda found, *_: work.append(found.budget.most) or [both])
     monkeypatch.setattr(select, "survives", lambda *_: True)
     monkeypatch.setattr(select, "least", lambda *_: 15.0)
+    monkeypatch.setattr(select, "without_idle_shapes", lambda single, _: single)
     for name in ("again", "reshaped", "over_ranges"):
         monkeypatch.setattr(select, name, lambda one: one)
     monkeypatch.setattr(select, "weigh_again", lambda *_: None)
@@ -152,7 +153,8 @@ def test_a_pair_that_was_taken_first_is_exchanged_and_no_other_sought(monkeypatc
     found = search(fit(loss=1000.0))
     found.best = fit(A, B, loss=3.0)
     done: list[str] = []
+    monkeypatch.setattr(select, "_settle_numbers", lambda _: done.append("numbers"))
     monkeypatch.setattr(select, "exchanged", lambda *_: done.append("exchanged"))
     monkeypatch.setattr(select, "seconds", lambda *_: done.append("seconds") or [])
     select._pairs(found, silent)
-    assert done == ["exchanged"]
+    assert done == ["numbers", "exchanged"]

@@ -37,6 +37,7 @@ def search(*singles: Any) -> Any:
 @pytest.fixture(autouse=True)
 def prices_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(details, "adequate", lambda e: True)
+    monkeypatch.setattr(select, "without_idle_shapes", lambda single, _: single)
     for module in (details, select):
         monkeypatch.setattr(module, "adjusted", lambda e: e.loss)
 
@@ -85,3 +86,16 @@ def test_a_detail_is_passed_over_and_a_sensor_that_explains_less_is_named(monkey
     assert select._pair_that_counts(found, best, [detail]) is None
     another = explanation(51_000.0, ARM, YIELDING)
     assert select._pair_that_counts(found, best, [sensor, another]) is another
+
+
+def test_in_the_place_of_a_shape_another_law_counts_by_what_it_brings_over_the_law_without_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The evidence of a gap that stands for a layer that hardens is evidence of that layer."""
+    best, pair = explanation(50_000.0, ARM), explanation(50_150.0, ARM, YIELDING)
+    for plain, counts in ((explanation(48_000.0, ARM), pair), (explanation(49_900.0, ARM), None)):
+        held_against: list[Any] = []
+        monkeypatch.setattr(select, "without_idle_shapes", lambda *_, plain=plain: plain)
+        monkeypatch.setattr(select, "survives", lambda before, *_, of=held_against: of.append(before) or True)
+        assert select._pair_that_counts(search(best), best, [pair]) is counts
+        assert held_against == ([plain] if counts else [])

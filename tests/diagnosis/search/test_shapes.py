@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -12,9 +13,9 @@ from diagnosis.fit.setup import measure
 from diagnosis.search import shapes
 from diagnosis.search.budget import Budget
 from diagnosis.search.candidates import candidates
-from diagnosis.search.found import Search
+from diagnosis.search.found import MISSING, Search
 from diagnosis.search.refit import Explanation, again, extend
-from diagnosis.search.shapes import in_the_place_of_shapes
+from diagnosis.search.shapes import in_the_place_of_shapes, without_idle_shapes
 from tests.diagnosis.walls import WALL, recorded
 
 SPRING, HARD, GAP = -1e5, 15.0, 0.003
@@ -43,6 +44,10 @@ def test_a_gap_that_stands_for_hardening_gives_way_to_it() -> None:
     assert right.loss < single.loss - 3.0
     assert right.fitted.values["added_stiffness.gap"] == pytest.approx(0.0, abs=1e-4)
     assert right.fitted.values["added_stiffness.couple_stiffness"] == pytest.approx(SPRING, rel=0.1)
+    plain = without_idle_shapes(single, right)  # what hardening brings is held against the law without the gap
+    assert "added_stiffness.gap" not in plain.fitted.values and plain.loss > single.loss + MISSING
+    with_gap = replace(right, fitted=replace(right.fitted, u=np.append(single.fitted.u, right.fitted.u[-1])))
+    assert without_idle_shapes(single, with_gap) is single
 
 
 def test_a_gap_that_does_nothing_and_a_law_that_has_no_such_shape_are_left(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 
 from diagnosis.search import beside, exchange, refit, select, weighing
+from diagnosis.search import found as counting
 from diagnosis.search.budget import Budget
 from diagnosis.search.found import Search
 from diagnosis.search.refit import Explanation
@@ -265,6 +267,48 @@ def test_the_last_exchange_goes_on_beyond_the_work_of_all_searches(monkeypatch: 
     list(select.further_effects(found, lambda *_: None))
     assert spent == [False]
     assert checked == ["settle_ties", "drop", "drop_without_evidence", "with_other_numbers"]
+
+
+@pytest.mark.parametrize("much", [True, False])
+def test_where_the_first_leaves_much_others_have_work_of_their_own(monkeypatch: pytest.MonkeyPatch, much: bool) -> None:
+    """The pairs tried before it, from the specimen as declared, may have taken all that was kept for them."""
+    spent: list[bool] = []
+    monkeypatch.setattr(select, "leaves_much", lambda *_: much)
+    monkeypatch.setattr(select, "_pairs", lambda found, _: spent.append(found.spent))
+    monkeypatch.setattr(select, "_more", lambda *_: None)
+    for name in ("settle_ties", "drop", "drop_without_evidence", "with_other_numbers"):
+        monkeypatch.setattr(select, name, lambda _: None)
+    monkeypatch.setattr(select, "with_memory", lambda one: one)
+    monkeypatch.setattr(select, "again", lambda one: one)
+    monkeypatch.setattr(select, "estimate", lambda *_: NOTHING)
+    found = search(fit(loss=10000.0))
+    found.best, found.whole = fit(A, loss=900.0), Budget(-1.0)
+    found.base.measured.identification = SimpleNamespace(further_work=1.0)
+    list(select.further_effects(found, lambda *_: None))
+    assert spent == [not much]
+
+
+@pytest.mark.parametrize(("incomplete", "tried"), [(True, True), (False, False)])
+def test_whole_numbers_of_two_effects_that_leave_something_come_before_others(
+    monkeypatch: pytest.MonkeyPatch, incomplete: bool, tried: bool
+) -> None:
+    """A rubber that yields with the wrong exponent leaves what a third effect would then be sought for."""
+    done: list[str] = []
+    numbered = fit(A, replace(B, held=("exponent",)), loss=500.0)
+
+    def other_numbers(found: Search) -> None:
+        done.append(f"spent {found.spent}")
+        found.best = numbered
+
+    monkeypatch.setattr(counting, "adequate", lambda _: not incomplete)
+    monkeypatch.setattr(select, "with_other_numbers", other_numbers)
+    monkeypatch.setattr(select, "weigh_again", lambda _: done.append("weighed"))
+    monkeypatch.setattr(select, "exchanged", lambda found, _: done.append("exchanged"))
+    found = search(fit(loss=10000.0))
+    found.best, found.whole = fit(A, B, loss=900.0), Budget(-1.0)
+    select._pairs(found, lambda *_: None)
+    assert done == (["spent False", "weighed", "exchanged"] if tried else ["exchanged"])
+    assert (found.best is numbered) == tried
 
 
 @pytest.mark.parametrize(("whole", "most"), [(250.0, 100.0), (100.0, 20.0)])
