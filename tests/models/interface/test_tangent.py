@@ -30,6 +30,21 @@ def test_layers_have_the_slope_that_was_asked_for(law: dict[str, float]) -> None
     np.testing.assert_allclose([s[0] for s in slopes], list(GIVEN.values()), rtol=2e-3)
 
 
+@pytest.mark.parametrize("softer", [1.0, 0.9, 0.7, 0.5, 0.45])
+def test_a_layer_that_yields_and_softens_has_a_slope_at_which_it_could_not_stand(softer: float) -> None:
+    """The slope under the load is a fraction of the stiffness: a layer as stiff as the slope would be crushed."""
+    law = {
+        "bouc_wen.post_yield_ratio": 0.4, "bouc_wen.yield_compression": 6e-4, "bouc_wen.exponent": 1.0,
+        "mullins.softening": 0.62, "mullins.strain": 0.33,
+    }  # fmt: skip
+    asked = {name: softer * value for name, value in GIVEN.items()}
+    assert (softer < 1.0) == bool(np.any(np.isnan(modes.static_state(wall({**LAYERS, **asked, **law})))))
+    found = MODEL.declared({**LAYERS, **asked, **law}, tuple(asked))
+    one = wall({**LAYERS, **{name: float(x[0]) for name, x in found.items()}, **law})
+    slopes = modes.tangents(one, modes.static_state(one))
+    np.testing.assert_allclose([s[0] for s in slopes], list(asked.values()), rtol=1e-4)
+
+
 def test_an_arm_that_is_relaxed_at_rest_is_no_part_of_it() -> None:
     found = MODEL.declared({**LAYERS, **GIVEN, "maxwell.arm_stiffness_ratio": 0.8}, tuple(GIVEN))
     assert not found
