@@ -179,9 +179,14 @@ def _pairs(found: Search, progress: Progress) -> None:
 
 
 def _settle_numbers(found: Search) -> None:
-    """Other whole numbers of two effects that leave something, lest others be sought for what a wrong one leaves."""
+    """Other whole numbers of two effects that leave something, lest others be sought for what a wrong one leaves.
+
+    Not where whole runs are compared: there all models leave something.
+    """
     standing = found.best
-    if standing is None or len(standing.candidates) < 2 or not found.incomplete:
+    if standing is None or len(standing.candidates) < 2 or standing.measured.stretches is not None:
+        return
+    if not found.incomplete:
         return
     with found.work_of_its_own(NUMBERS, beyond=True):
         with_other_numbers(found)
