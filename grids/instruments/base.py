@@ -73,10 +73,9 @@ class Surroundings:
     def is_displacement(self, channel: str) -> bool:
         """Whether a channel is a displacement of a body or a level as a laboratory records it, and not its state.
 
-        One at a position is what an instrument reads there.
+        One at a position, which has another name, is what an instrument reads there.
         """
-        named = channel.startswith(("displacement_", "level_displacement_")) and "_z" not in channel
-        return named and channel not in self.places
+        return channel.startswith(("displacement_", "level_displacement_")) and "_z" not in channel
 
 
 class Level(MechanismParameter):
