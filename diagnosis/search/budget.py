@@ -19,8 +19,6 @@ FURTHER = 150.0
 """s for effects beside the first, kept back from all that comes before: where two act, the first explains little."""
 WEIGHING = 20.0
 """s at least to weigh mechanisms alone against each other, each under errors of its own."""
-SECOND = 60.0
-"""s of it at least where the first effect leaves something, whatever was spent before."""
 NUMBERS = 30.0
 """s for other whole numbers of two effects, whatever was spent before."""
 LAST = 60.0

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from diagnosis.errors.model import estimate
 from diagnosis.progress import Progress
 from diagnosis.search.beside import POOL_SHARE, extended, seconds
-from diagnosis.search.budget import DECLARED, FURTHER, LAST, NUMBERS, SECOND, WEIGHING
+from diagnosis.search.budget import DECLARED, FURTHER, LAST, NUMBERS, WEIGHING
 from diagnosis.search.declared import explains_most, leaves_much, pairs_as_declared
 from diagnosis.search.details import least
 from diagnosis.search.evidence import drop_without_evidence
@@ -64,16 +64,12 @@ def first_effect(found: Search, progress: Progress) -> Iterator[Search]:
 def further_effects(found: Search, progress: Progress) -> Iterator[Search]:
     """The same with a second and a third mechanism beside the first; the last one is the answer.
 
-    With work of its own where the first leaves something, more where it leaves much: whatever was spent before,
-    something else acts there.
+    With work of its own where the first leaves much: whatever was spent before, something else acts there.
     """
     if found.best is None or found.best.in_spell:
         return
-    most = FURTHER * found.measured.identification.further_work
     much = leaves_much(found.best, found)
-    if not much and found.incomplete:
-        most = max(min(most, found.whole.left), SECOND)
-    with found.work_of_its_own(most, beyond=much or found.incomplete):
+    with found.work_of_its_own(FURTHER * found.measured.identification.further_work, beyond=much):
         _pairs(found, progress)
         yield found
         if found.outside is None:

@@ -11,7 +11,7 @@ import pytest
 
 from diagnosis.search import beside, exchange, refit, select, weighing
 from diagnosis.search import found as counting
-from diagnosis.search.budget import FURTHER, SECOND, Budget
+from diagnosis.search.budget import FURTHER, Budget
 from diagnosis.search.found import Search
 from diagnosis.search.refit import Explanation
 from models.runs import DONE
@@ -269,16 +269,13 @@ def test_the_last_exchange_goes_on_beyond_the_work_of_all_searches(monkeypatch: 
     assert checked == ["settle_ties", "drop", "drop_without_evidence", "with_other_numbers"]
 
 
-@pytest.mark.parametrize(
-    ("much", "incomplete", "work"), [(True, True, FURTHER), (False, True, SECOND), (False, False, None)]
-)
-def test_where_the_first_leaves_something_others_have_work_of_their_own(
-    monkeypatch: pytest.MonkeyPatch, much: bool, incomplete: bool, work: float | None
+@pytest.mark.parametrize(("much", "work"), [(True, FURTHER), (False, None)])
+def test_where_the_first_leaves_much_others_have_work_of_their_own(
+    monkeypatch: pytest.MonkeyPatch, much: bool, work: float | None
 ) -> None:
     """The pairs tried before it, from the specimen as declared, may have taken all that was kept for them."""
     left: list[float | None] = []
     monkeypatch.setattr(select, "leaves_much", lambda *_: much)
-    monkeypatch.setattr(counting, "adequate", lambda _: not incomplete)
     monkeypatch.setattr(select, "_pairs", lambda found, _: left.append(None if found.spent else found.budget.left))
     monkeypatch.setattr(select, "_more", lambda *_: None)
     for name in ("settle_ties", "drop", "drop_without_evidence", "with_other_numbers"):
