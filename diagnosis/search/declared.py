@@ -8,13 +8,15 @@ unfitted, for alone they would lead the numbers away again; and each is screened
 
 from __future__ import annotations
 
+import numpy as np
+
 from diagnosis.errors.model import Errors
 from diagnosis.fit.linearisation import linearise_about
 from diagnosis.progress import Progress
 from diagnosis.search.beside import SHARE_OF_SECOND, one_of_each, seconds, starts_of, worth_a_refit
 from diagnosis.search.candidates import firsts
 from diagnosis.search.found import MISSING, Search, adjusted, left_over_white_noise, passes_for_white
-from diagnosis.search.refit import Explanation, again, as_declared, best_of, extend, from_starts
+from diagnosis.search.refit import Explanation, again, as_declared, best_of, extend, from_starts, reaching
 from diagnosis.search.screen import Score, score
 from grids.instruments import INSTRUMENTS
 
@@ -23,6 +25,8 @@ REST, FAR = 0.25, 20.0
 which a mechanism leaves much, whatever it explains."""
 LEADING, SECONDS = 3, 4
 """Classes of mechanisms beside which a second is sought, and the mechanisms that are fitted beside each."""
+END = 0.01
+"""Share of its range within which a number is at an end of it: a fit that is drawn there may not arrive."""
 
 
 def explains_most(one: Explanation, of: Explanation, errors: Errors) -> bool:
@@ -71,15 +75,44 @@ def pairs_as_declared(found: Search, alone: Explanation, progress: Progress) -> 
     return pairs
 
 
+def astray(found: Search) -> bool:
+    """Whether the base model has a number at an end of its range: it makes up for what it lacks with what it has."""
+    f = found.base.fitted
+    if f.measured.stretches is not None:  # fits of whole runs creep
+        return False
+    free = [(u, *x.bounds) for u, x in zip(f.u, f.misfit.unknowns, strict=True) if x.prior is None]
+    return any(min(u - low, high - u) < END * (high - low) for u, low, high in free)
+
+
+def beside_as_declared(found: Search, explanation: Explanation, most: float) -> list[Explanation]:
+    """For each effect of an explanation the best with one other, from the declared specimen and the effect's size.
+
+    Of these those whose loss is less than ``most``. Each explanation is led from there once.
+    """
+    declared, pairs, own = as_declared(found.base), [], frozenset(explanation.candidates)
+    for one in () if own in found.from_declared else explanation.candidates:
+        if found.affordable(f"others beside {one.name}, from the specimen as declared"):
+            pair = _beside(found, extend(declared, one, explanation.part(one), 0), most)
+            pairs += [] if pair is None else [pair]
+            found.from_declared.add(own)
+    return pairs
+
+
 def _beside(found: Search, first: Explanation, most: float) -> Explanation | None:
-    """The best fit of ``first`` with one of the strongest beside it, if its loss is less than ``most``."""
+    """The best fit of ``first`` with one of the strongest beside it, if its loss is less than ``most``.
+
+    From so far away a fit promises little at first: only one that is behind another of these is given up on the way.
+    """
     scores = seconds(found, first)
-    fits = []
+    fits: list[Explanation] = []
     for entry in one_of_each(worth_a_refit(scores, SECONDS, SHARE_OF_SECOND))[:SECONDS]:
         if found.affordable(entry.candidate.name):
-            fits.append(best_of(from_starts([first], entry.candidate, starts_of(entry, scores), most)))
-            most = min(most, adjusted(fits[-1]))
-    return again(best_of(fits)) if fits and best_of(fits).loss <= most else None
+            least = min((adjusted(e) for e in fits), default=np.inf)
+            fits.append(best_of(from_starts([first], entry.candidate, starts_of(entry, scores), least)))
+    if not fits:
+        return None
+    best = reaching(best_of(fits), most)
+    return again(best) if best.loss <= most else None
 
 
 def _unfitted(declared: Explanation, entry: Score, screened: list[Score]) -> Explanation:

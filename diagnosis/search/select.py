@@ -15,7 +15,7 @@ from diagnosis.search.declared import explains_most, leaves_much, pairs_as_decla
 from diagnosis.search.details import least
 from diagnosis.search.evidence import drop_without_evidence
 from diagnosis.search.exchange import drop, exchanged
-from diagnosis.search.found import GAP, MISSING, Search, adequate, adjusted, survives
+from diagnosis.search.found import GAP, MISSING, Search, adequate, adjusted, passes_for_white, survives
 from diagnosis.search.hidden import hidden_beside, take_hidden
 from diagnosis.search.left_out import predicts_worse
 from diagnosis.search.outside import outside
@@ -64,12 +64,14 @@ def first_effect(found: Search, progress: Progress) -> Iterator[Search]:
 def further_effects(found: Search, progress: Progress) -> Iterator[Search]:
     """The same with a second and a third mechanism beside the first; the last one is the answer.
 
-    With work of its own where the first leaves much: whatever was spent before, something else acts there.
+    With work of its own where the first leaves much, or more than white noise: whatever was spent before, something
+    else acts there, or the errors may hold what does.
     """
     if found.best is None or found.best.in_spell:
         return
-    much = leaves_much(found.best, found)
-    with found.work_of_its_own(FURTHER * found.measured.identification.further_work, beyond=much):
+    hides = found.measured.stretches is None and not passes_for_white(found.best, found.errors)
+    more = hides or leaves_much(found.best, found)
+    with found.work_of_its_own(FURTHER * found.measured.identification.further_work, beyond=more):
         _pairs(found, progress)
         yield found
         if found.outside is None:

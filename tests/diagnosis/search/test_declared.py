@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -14,9 +15,16 @@ from diagnosis.progress import silent
 from diagnosis.search import declared, select
 from diagnosis.search.budget import DECLARED, Budget
 from diagnosis.search.candidates import candidates
-from diagnosis.search.declared import FAR, explains_most, leaves_much, pairs_as_declared
+from diagnosis.search.declared import (
+    FAR,
+    astray,
+    beside_as_declared,
+    explains_most,
+    leaves_much,
+    pairs_as_declared,
+)
 from diagnosis.search.found import ENDED, Search
-from diagnosis.search.refit import Explanation
+from diagnosis.search.refit import Explanation, extend
 from tests.diagnosis.made import SPECIMEN, TRUE, recording
 from tests.diagnosis.search.made_up import TILT, A, B, Effect, fit, search
 
@@ -29,6 +37,13 @@ def begun() -> Search:
     fitted, errors = calibrated(SPECIMEN, measured)
     some = tuple(one for one in candidates(measured, SPECIMEN) if one.name in (*EFFECTS, "tilt", "viscous_damping"))
     return Search(Explanation((), fitted), some, errors)
+
+
+def far_away(begun: Search) -> Search:
+    """The base at the ends of what its numbers may be."""
+    f = begun.base.fitted
+    u = np.array([x.bounds[1] for x in f.misfit.unknowns])
+    return Search(Explanation((), fitted_from(f.misfit, u, f.states, 0)), begun.candidates, begun.errors)
 
 
 def over_white(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -63,9 +78,7 @@ def test_a_mechanism_alone_may_leave_much(monkeypatch: pytest.MonkeyPatch, left:
 
 def test_a_pair_is_found_from_the_declared_numbers_wherever_the_fit_of_the_base_went(begun: Search) -> None:
     """The base at the ends of what its numbers may be, as a fit that lacks much may leave it."""
-    f = begun.base.fitted
-    away = Explanation((), fitted_from(f.misfit, np.array([x.bounds[1] for x in f.misfit.unknowns]), f.states, 0))
-    found = Search(away, begun.candidates, begun.errors)
+    found = far_away(begun)
     asked: list[str] = []
     pairs = pairs_as_declared(found, begun.base, lambda text, _: asked.append(text))
     best = pairs[-1]
@@ -91,12 +104,10 @@ def test_the_screen_is_made_about_the_declared_numbers_and_each_pair_has_to_beat
     monkeypatch.setattr(declared, "linearise_about", lambda fitted: screened.append(fitted) or of(fitted))
     monkeypatch.setattr(declared, "_beside", beside)
     monkeypatch.setattr(declared, "passes_for_white", lambda *_: False)
-    f = begun.base.fitted
-    away = Explanation((), fitted_from(f.misfit, np.array([x.bounds[1] for x in f.misfit.unknowns]), f.states, 0))
-    single: Any = fit(A, loss=1000.0)
-    pairs = pairs_as_declared(Search(away, begun.candidates, begun.errors), single, silent)
-    assert [x.value(u) for x, u in zip(f.misfit.unknowns, screened[0].u, strict=True)] == pytest.approx(
-        [SPECIMEN.parameters[x.name] for x in f.misfit.unknowns]
+    unknowns, single = begun.base.fitted.misfit.unknowns, fit(A, loss=1000.0)
+    pairs = pairs_as_declared(far_away(begun), single, silent)
+    assert [x.value(u) for x, u in zip(unknowns, screened[0].u, strict=True)] == pytest.approx(
+        [SPECIMEN.parameters[x.name] for x in unknowns]
     )
     assert bounds == [1000.0, 900.0, 800.0] and [pair.loss for pair in pairs] == [900.0, 800.0, 700.0]
 
@@ -158,3 +169,36 @@ def test_a_pair_that_was_taken_first_is_exchanged_and_no_other_sought(monkeypatc
     monkeypatch.setattr(select, "seconds", lambda *_: done.append("seconds") or [])
     select._pairs(found, silent)
     assert done == ["numbers", "exchanged"]
+
+
+def test_beside_each_effect_of_a_pair_another_is_led_from_the_declared_numbers_once(begun: Search) -> None:
+    """Of an effect that acts with one that does not: the true one takes its place, from wherever the pair stands."""
+    found = far_away(begun)
+    gain, lean = (next(one for one in found.candidates if one.name == name) for name in ("gain", "tilt"))
+    pair = extend(extend(found.base, gain, gain.null + 0.5, 0), lean, lean.null + 0.1, 0)
+    led = beside_as_declared(found, pair, pair.loss)
+    assert len(led) == 2 and [one.names[0] for one in led] == ["gain", "tilt"]
+    assert set(led[0].names) == set(EFFECTS) and led[0].loss < led[1].loss < pair.loss
+    assert led[0].fitted.values["width"] == pytest.approx(TRUE["width"], rel=0.01)
+    assert beside_as_declared(found, pair, pair.loss) == []
+
+
+def test_of_those_led_from_afar_only_what_comes_near_is_taken(begun: Search) -> None:
+    found = far_away(begun)
+    gain = next(one for one in found.candidates if one.name == "gain")
+    assert beside_as_declared(found, extend(found.base, gain, gain.null + 0.5, 0), 0.0) == []
+
+
+@pytest.mark.parametrize(
+    ("at", "prior", "away"), [(9.95, None, True), (0.05, None, True), (0.2, None, False), (9.95, (5.0, 0.1), False)]
+)
+def test_a_base_is_astray_with_a_number_at_an_end_of_its_range(at: float, prior: Any, away: bool) -> None:
+    """But not with one at the end of its tolerance, nor where fits creep."""
+    unknowns = [SimpleNamespace(prior=prior, bounds=(0.0, 10.0)), SimpleNamespace(prior=None, bounds=(0.0, 10.0))]
+    measured = SimpleNamespace(stretches=None)
+    base: Any = SimpleNamespace(
+        fitted=SimpleNamespace(measured=measured, misfit=SimpleNamespace(unknowns=unknowns), u=np.array([at, 5.0]))
+    )
+    assert astray(search(base)) is away
+    measured.stretches = object()
+    assert not astray(search(base))

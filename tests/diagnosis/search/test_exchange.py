@@ -23,6 +23,8 @@ from diagnosis.search.refit import Explanation, extend, joined
 from diagnosis.search.screen import Score
 from diagnosis.search.weighing import reweighed
 from tests.diagnosis.made import SPECIMEN, recording
+from tests.diagnosis.search import made_up
+from tests.diagnosis.search.made_up import A, B, C
 
 TRUE = {"restitution": {"factor_on_housner": 0.9}, "tilt": {"tilt": 0.01}}
 OTHERS = ("velocity_restitution", "offset")
@@ -232,3 +234,25 @@ def test_what_the_budget_left_untried_is_tried_at_the_end(found: Search, monkeyp
     for _ in select.further_effects(search, silent):
         pass
     assert search.best is not None and set(search.best.names) == set(TRUE)
+
+
+@pytest.mark.parametrize(("astray", "better", "taken"), [(True, 40.0, True), (True, 55.0, False), (False, 40.0, False)])
+def test_where_the_base_went_astray_others_are_led_from_the_declared_specimen(
+    monkeypatch: pytest.MonkeyPatch, astray: bool, better: float, taken: bool
+) -> None:
+    """Beside each of two effects, once nothing in their place is better from where they stand."""
+    made_up.nothing_is_fitted(monkeypatch)
+    found = made_up.search(made_up.fit(loss=1000.0), made_up.fit(A, loss=500.0), made_up.fit(B, loss=500.0))
+    found.best, other = made_up.fit(A, B, loss=50.0), made_up.fit(A, C, loss=better)
+    asked: list[tuple[str, ...]] = []
+    monkeypatch.setattr(exchange, "without", lambda best, one, *_: made_up.fit(*{*best.candidates} - {one}, loss=500.0))
+    monkeypatch.setattr(exchange, "from_states_of", lambda one, *_: one)
+    monkeypatch.setattr(exchange, "astray", lambda _: astray)
+    monkeypatch.setattr(
+        exchange,
+        "beside_as_declared",
+        lambda _, best, most: asked.append(best.names) or ([other] if A in best.candidates else []),
+    )
+    exchanged(found, silent)
+    assert found.best is not None and (found.best.names == other.names) is taken
+    assert bool(asked) is astray
