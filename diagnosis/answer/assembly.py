@@ -116,10 +116,10 @@ def _estimated(
     )
     if settled.fitted.loss < final.fitted.loss:
         measured = found.measured.undisturbed
-        shown = stages.needed(lambda: compare(found.base, settled, measured, found.errors))
+        shown = stages.needed(lambda: compare(found.base, settled, measured, found.errors, judged.shown))
         judged = replace(judged, final=settled, shown=shown)
     if judged.final is not found.chosen:
-        judged = replace(judged, held=shown_on_held(task, found, judged.final, 0.95))
+        judged = replace(judged, held=shown_on_held(task, found, judged.final, 0.95, judged.held))
     return judged, effects, base
 
 

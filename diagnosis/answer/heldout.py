@@ -99,8 +99,10 @@ def likelier(before: Explanation, after: Explanation, held: Measured, errors: Er
     return float(one - other)
 
 
-def compare(before: Explanation, after: Explanation, measured: Measured, errors: Errors) -> Shown:
-    """Both explanations on some recordings, states estimated anew."""
+def compare(
+    before: Explanation, after: Explanation, measured: Measured, errors: Errors, known: Shown | None = None
+) -> Shown:  # fmt: skip
+    """Both explanations on some recordings, states estimated anew; those of ``before`` as they are ``known`` to be."""
     learned = {r.name for r in after.measured.recordings}
     held: tuple[HeldStage, ...] = ()
     if not any(r.name in learned for r in measured.recordings):
@@ -109,8 +111,9 @@ def compare(before: Explanation, after: Explanation, measured: Measured, errors:
         predictor = replace(misfit.predictor, measured=seen)
         fixed = {**misfit.fixed, **after.fitted.values}
         held = held_stages(after, Misfit(predictor, errors.of_sensors(seen), (), fixed), seen.states)
-    one, other = frozen(before, measured, errors), frozen(after, measured, errors, held)
-    return Shown(measured, one[1], other[1], one[0], other[0], held)
+    point, predicted = (known.point_before, known.before) if known else frozen(before, measured, errors)
+    own, shown = frozen(after, measured, errors, held)
+    return Shown(measured, predicted, shown, point, own, held)
 
 
 def with_held(predictor: Predictor, held: Sequence[HeldStage]) -> Predictor:

@@ -97,14 +97,16 @@ def judge(task: Task, found: Search, climbed: Climbed | None) -> Judgement:
     )  # fmt: skip
 
 
-def shown_on_held(task: Task, found: Search, explanation: Explanation, share: float) -> Shown | None:
-    """An explanation on the recordings held out, if there are any."""
+def shown_on_held(
+    task: Task, found: Search, explanation: Explanation, share: float, known: Shown | None = None
+) -> Shown | None:
+    """An explanation on the recordings held out, if there are any; ``known``: as of another explanation."""
     held = task.held
     if held is None:
         return None
 
     def compared() -> Shown:
         task.progress("before and after", share)
-        return compare(found.base, explanation, held, found.errors)
+        return compare(found.base, explanation, held, found.errors, known)
 
     return task.stages.needed(compared)

@@ -39,7 +39,7 @@ def with_law(task: Task, judged: Judgement) -> tuple[Judgement, Law | None]:
         final=final,
         gains=[gain for c, gain in zip(chosen.candidates, judged.gains, strict=True) if c in final.candidates],
         near=[rival for rival in judged.near if set(rival.replaced) <= set(final.names)],
-        shown=stages.needed(lambda: compare(found.base, final, found.measured.undisturbed, found.errors)),
+        shown=stages.needed(lambda: compare(found.base, final, found.measured.undisturbed, found.errors, judged.shown)),
         unfit=(),  # of what the law replaced or acts beside
     )
     if not final.candidates:  # nothing is told of what the law replaced

@@ -7,10 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from diagnosis.answer import heldout
 from diagnosis.answer.extrapolated import extrapolated
-from diagnosis.answer.heldout import Shown, horizons, relative_misfit
+from diagnosis.answer.heldout import Shown, compare, horizons, relative_misfit
+from diagnosis.errors.model import calibrated
 from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.setup import measure
+from diagnosis.search.candidates import candidates
+from diagnosis.search.refit import Explanation, extend
 from grids.recordings.base import Recording
 from models.kinematics import Place
 from tests.diagnosis.made import SPECIMEN, TRUE, recording
@@ -69,3 +73,21 @@ def test_a_recording_of_which_nothing_is_compared_has_no_misfit() -> None:
     lost = replace(held, measured=replace(held.measured, mask=np.zeros_like(held.measured.mask)))
     assert np.isnan(relative_misfit(lost.measured, lost.after)) and np.isnan(relative_misfit(lost.measured, None))
     assert extrapolated(learned, held) and not extrapolated(learned, lost)
+
+
+def test_a_known_comparison_gives_what_the_model_before_predicts(monkeypatch: pytest.MonkeyPatch) -> None:
+    measured = measure(SPECIMEN, [recording("a", 4, {"gain": {"gain": 0.06}})])
+    fitted, errors = calibrated(SPECIMEN, measured)
+    base = Explanation((), fitted)
+    gain = next(one for one in candidates(measured, SPECIMEN) if one.name == "gain")
+    little, much = (extend(base, gain, gain.null + size, 0) for size in (0.1, 1.0))
+    asked: list[Explanation] = []
+    frozen = heldout.frozen
+    monkeypatch.setattr(heldout, "frozen", lambda one, *given: asked.append(one) or frozen(one, *given))
+    first = compare(base, little, measured, errors)
+    again, anew = (compare(base, much, measured, errors, known) for known in (first, None))
+    assert asked == [base, little, much, base, much]
+    assert again.before is first.before and again.point_before is first.point_before
+    np.testing.assert_array_equal(again.before, anew.before)
+    np.testing.assert_array_equal(again.after, anew.after)
+    assert not np.array_equal(again.after, first.after)
