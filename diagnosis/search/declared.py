@@ -4,6 +4,8 @@ A fit that lacks much makes up for it with what it has: a stiffness of the layer
 such numbers a screen ranks what fits them, and a fit of both missing effects ends beside them. So the screen is made
 about the declared numbers and the measured motion; the strongest mechanisms stand at the sizes where it starts them,
 unfitted, for alone they would lead the numbers away again; and each is screened and fitted with others beside it.
+
+Where two effects were found about numbers that had gone astray, each is led from the middle of the ranges likewise.
 """
 
 from __future__ import annotations
@@ -16,7 +18,17 @@ from diagnosis.progress import Progress
 from diagnosis.search.beside import SHARE_OF_SECOND, one_of_each, seconds, starts_of, worth_a_refit
 from diagnosis.search.candidates import firsts
 from diagnosis.search.found import MISSING, Search, adjusted, left_over_white_noise, passes_for_white
-from diagnosis.search.refit import Explanation, again, as_declared, best_of, extend, from_starts, reaching
+from diagnosis.search.refit import (
+    Explanation,
+    again,
+    as_declared,
+    best_of,
+    extend,
+    from_starts,
+    reaching,
+    recentred,
+    without,
+)
 from diagnosis.search.screen import Score, score
 from grids.instruments import INSTRUMENTS
 
@@ -84,18 +96,20 @@ def astray(found: Search) -> bool:
     return any(min(u - low, high - u) < END * (high - low) for u, low, high in free)
 
 
-def beside_as_declared(found: Search, explanation: Explanation, most: float) -> list[Explanation]:
-    """For each effect of an explanation the best with one other, from the declared specimen and the effect's size.
+def beside_recentred(found: Search, pair: Explanation, most: float) -> list[Explanation]:
+    """For each of two effects, the surest first, the best with one other, the layers' numbers from their middles on.
 
-    Of these those whose loss is less than ``most``. Each explanation is led from there once.
+    Of these those whose loss is less than ``most``. The states stay, lest a window lose its way from so far. Each pair
+    is led from there once.
     """
-    declared, pairs, own = as_declared(found.base), [], frozenset(explanation.candidates)
-    for one in () if own in found.from_declared else explanation.candidates:
-        if found.affordable(f"others beside {one.name}, from the specimen as declared"):
-            pair = _beside(found, extend(declared, one, explanation.part(one), 0), most)
-            pairs += [] if pair is None else [pair]
-            found.from_declared.add(own)
-    return pairs
+    rests, own = [without(pair, one, 0) for one in pair.removable], frozenset(pair.candidates)
+    fits: list[Explanation] = []
+    for rest in () if own in found.recentred else sorted(rests, key=lambda rest: rest.loss):
+        if found.affordable(f"others beside {rest.names[0]}, from the middle of the ranges"):
+            found.recentred.add(own)
+            best = _beside(found, recentred(rest), most)
+            fits += [] if best is None else [best]
+    return fits
 
 
 def _beside(found: Search, first: Explanation, most: float) -> Explanation | None:

@@ -13,7 +13,7 @@ from diagnosis.progress import Progress
 from diagnosis.search.alike import in_the_place_of_each
 from diagnosis.search.beside import extended, seconds
 from diagnosis.search.candidates import Candidate
-from diagnosis.search.declared import astray, beside_as_declared
+from diagnosis.search.declared import astray, beside_recentred
 from diagnosis.search.details import least
 from diagnosis.search.found import MISSING, STUCK, Search, adjusted
 from diagnosis.search.left_out import predicts_worse
@@ -41,7 +41,7 @@ def exchanged(found: Search, progress: Progress) -> None:
         _try_others(found, incomplete)
         standing, better = found.best, _better(found, incomplete)
         if better is None and len(standing.candidates) == 2 and astray(found):
-            found.tried += beside_as_declared(found, standing, standing.loss + CLOSE)
+            found.tried += beside_recentred(found, standing, standing.loss + CLOSE)
             better = _better(found, incomplete)
         if better is None:
             break

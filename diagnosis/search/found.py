@@ -95,8 +95,8 @@ class Search:
     """The mechanisms beside which others were tried in the place of one, under the errors as they are."""
     cut: set[frozenset[Candidate]] = field(default_factory=set)
     """Beside which not all others were tried, for the budget ended."""
-    from_declared: set[frozenset[Candidate]] = field(default_factory=set)
-    """Pairs each of whose effects was led from the specimen as declared, with others beside it."""
+    recentred: set[frozenset[Candidate]] = field(default_factory=set)
+    """Pairs each of whose effects was led from the middle of the ranges, with others beside it."""
     alike: set[frozenset[Candidate]] = field(default_factory=set)
     """Effects that stood together, and what was tried for being easily taken for one (`diagnosis.search.alike`)."""
     weighed: Explanation | None = None

@@ -125,6 +125,15 @@ def as_declared(explanation: Explanation) -> Explanation:
     return replace(explanation, fitted=fit(misfit, start.u, start.states, 0))
 
 
+def recentred(explanation: Explanation) -> Explanation:
+    """The same with the numbers that have but a range at the middle of it, all else as it stands; not fitted."""
+    f = explanation.fitted
+    effects = {x.name for c in explanation.candidates for x in c.unknowns}
+    each = zip(f.misfit.unknowns, f.u, nominal(f.misfit).u, strict=True)
+    u = np.array([at if x.prior is not None or x.name in effects else middle for x, at, middle in each])
+    return replace(explanation, fitted=fit(f.misfit, u, f.states, 0))
+
+
 def further(explanation: Explanation, iterations: int = ITERATIONS, most: float = np.inf) -> Explanation:
     """The same model fitted from where it stands."""
     f = explanation.fitted

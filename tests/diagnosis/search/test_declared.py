@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -11,6 +12,7 @@ import pytest
 from diagnosis.errors.model import calibrated
 from diagnosis.fit.setup import measure
 from diagnosis.fit.solver import fit as fitted_from
+from diagnosis.fit.starts import nominal
 from diagnosis.progress import silent
 from diagnosis.search import declared, select
 from diagnosis.search.budget import DECLARED, Budget
@@ -18,13 +20,13 @@ from diagnosis.search.candidates import candidates
 from diagnosis.search.declared import (
     FAR,
     astray,
-    beside_as_declared,
+    beside_recentred,
     explains_most,
     leaves_much,
     pairs_as_declared,
 )
 from diagnosis.search.found import ENDED, Search
-from diagnosis.search.refit import Explanation, extend
+from diagnosis.search.refit import Explanation, extend, further, recentred
 from tests.diagnosis.made import SPECIMEN, TRUE, recording
 from tests.diagnosis.search.made_up import TILT, A, B, Effect, fit, search
 
@@ -171,22 +173,35 @@ def test_a_pair_that_was_taken_first_is_exchanged_and_no_other_sought(monkeypatc
     assert done == ["numbers", "exchanged"]
 
 
-def test_beside_each_effect_of_a_pair_another_is_led_from_the_declared_numbers_once(begun: Search) -> None:
-    """Of an effect that acts with one that does not: the true one takes its place, from wherever the pair stands."""
-    found = far_away(begun)
-    gain, lean = (next(one for one in found.candidates if one.name == name) for name in ("gain", "tilt"))
-    pair = extend(extend(found.base, gain, gain.null + 0.5, 0), lean, lean.null + 0.1, 0)
-    led = beside_as_declared(found, pair, pair.loss)
-    assert len(led) == 2 and [one.names[0] for one in led] == ["gain", "tilt"]
-    assert set(led[0].names) == set(EFFECTS) and led[0].loss < led[1].loss < pair.loss
-    assert led[0].fitted.values["width"] == pytest.approx(TRUE["width"], rel=0.01)
-    assert beside_as_declared(found, pair, pair.loss) == []
+def test_beside_each_of_two_effects_another_is_led_from_the_middle_of_the_ranges_once(
+    monkeypatch: pytest.MonkeyPatch, begun: Search
+) -> None:
+    """The surest first; what acts takes the place of what does not."""
+    gain, lean = (next(one for one in begun.candidates if one.name == name) for name in ("gain", "tilt"))
+    pair = further(extend(extend(begun.base, gain, gain.null + 0.5, 0), lean, lean.null + 0.1, 0))
+    led: list[Any] = []
+    beside = declared._beside
+    monkeypatch.setattr(declared, "_beside", lambda found, first, most: led.append(first) or beside(found, first, most))
+    found = Search(begun.base, begun.candidates, begun.errors)
+    best, *others = beside_recentred(found, pair, pair.loss)
+    assert [one.names for one in led] == [("gain",), ("tilt",)]
+    assert set(best.names) == set(EFFECTS) and all(best.loss < one.loss for one in (pair, *others))
+    assert best.fitted.values["width"] == pytest.approx(TRUE["width"], rel=0.01)
+    assert beside_recentred(found, pair, pair.loss) == []
+    assert beside_recentred(Search(begun.base, begun.candidates, begun.errors), pair, 0.0) == []  # none comes near
 
 
-def test_of_those_led_from_afar_only_what_comes_near_is_taken(begun: Search) -> None:
-    found = far_away(begun)
-    gain = next(one for one in found.candidates if one.name == "gain")
-    assert beside_as_declared(found, extend(found.base, gain, gain.null + 0.5, 0), 0.0) == []
+def test_only_numbers_that_have_but_a_range_are_recentred(begun: Search) -> None:
+    gain = next(one for one in begun.candidates if one.name == "gain")
+    single = extend(begun.base, gain, gain.null + 0.5, 0)
+    first, second, *others = single.fitted.misfit.unknowns
+    unknowns = (replace(first, prior=None), replace(second, prior=(0.5, 0.1)), *others)
+    misfit = replace(single.fitted.misfit, unknowns=unknowns)
+    u, states = single.fitted.u + 0.01, single.fitted.states + 1e-4
+    moved = recentred(replace(single, fitted=replace(single.fitted, misfit=misfit, u=u, states=states)))
+    np.testing.assert_array_equal(moved.fitted.u[1:], u[1:])
+    assert moved.fitted.u[0] == nominal(misfit).u[0] != u[0]
+    np.testing.assert_array_equal(moved.fitted.states, states)
 
 
 @pytest.mark.parametrize(

@@ -237,7 +237,7 @@ def test_what_the_budget_left_untried_is_tried_at_the_end(found: Search, monkeyp
 
 
 @pytest.mark.parametrize(("astray", "better", "taken"), [(True, 40.0, True), (True, 55.0, False), (False, 40.0, False)])
-def test_where_the_base_went_astray_others_are_led_from_the_declared_specimen(
+def test_where_the_base_went_astray_others_are_led_from_the_middle_of_the_ranges(
     monkeypatch: pytest.MonkeyPatch, astray: bool, better: float, taken: bool
 ) -> None:
     """Beside each of two effects, once nothing in their place is better from where they stand."""
@@ -250,7 +250,7 @@ def test_where_the_base_went_astray_others_are_led_from_the_declared_specimen(
     monkeypatch.setattr(exchange, "astray", lambda _: astray)
     monkeypatch.setattr(
         exchange,
-        "beside_as_declared",
+        "beside_recentred",
         lambda _, best, most: asked.append(best.names) or ([other] if A in best.candidates else []),
     )
     exchanged(found, silent)
