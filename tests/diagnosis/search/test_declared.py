@@ -180,15 +180,39 @@ def test_beside_each_of_two_effects_another_is_led_from_the_middle_of_the_ranges
     gain, lean = (next(one for one in begun.candidates if one.name == name) for name in ("gain", "tilt"))
     pair = further(extend(extend(begun.base, gain, gain.null + 0.5, 0), lean, lean.null + 0.1, 0))
     led: list[Any] = []
+    middles: list[Any] = []
     beside = declared._beside
     monkeypatch.setattr(declared, "_beside", lambda found, first, most: led.append(first) or beside(found, first, most))
+    monkeypatch.setattr(declared, "recentred", lambda one: middles.append(recentred(one)) or middles[-1])
     found = Search(begun.base, begun.candidates, begun.errors)
     best, *others = beside_recentred(found, pair, pair.loss)
-    assert [one.names for one in led] == [("gain",), ("tilt",)]
+    assert [one.names for one in led] == [("gain",), ("tilt",)] and led == middles
     assert set(best.names) == set(EFFECTS) and all(best.loss < one.loss for one in (pair, *others))
     assert best.fitted.values["width"] == pytest.approx(TRUE["width"], rel=0.01)
     assert beside_recentred(found, pair, pair.loss) == []
     assert beside_recentred(Search(begun.base, begun.candidates, begun.errors), pair, 0.0) == []  # none comes near
+
+
+def test_from_afar_only_what_is_behind_another_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A quick fit may end behind what is to be reached, and goes on from there."""
+    found, promised = search(fit(loss=1000.0)), []
+    entries = [SimpleNamespace(candidate=one) for one in (A, B)]
+    losses = iter((80.0, 120.0))
+
+    def quick(begins: Any, candidate: Any, starts: Any, most: float) -> list[Any]:
+        promised.append(most)
+        return [fit(TILT, candidate, loss=next(losses))]
+
+    monkeypatch.setattr(declared, "seconds", lambda *_: entries)
+    monkeypatch.setattr(declared, "worth_a_refit", lambda scores, *_: scores)
+    monkeypatch.setattr(declared, "one_of_each", lambda scores: scores)
+    monkeypatch.setattr(declared, "starts_of", lambda *_: ())
+    monkeypatch.setattr(declared, "from_starts", quick)
+    monkeypatch.setattr(declared, "reaching", lambda one, most: fit(*one.candidates, loss=one.loss - 40.0))
+    monkeypatch.setattr(declared, "again", lambda one: one)
+    best = declared._beside(found, fit(TILT, loss=500.0), 50.0)
+    assert best is not None and best.names == ("tilt", "maxwell") and best.loss == 40.0
+    assert promised == [np.inf, 80.0]
 
 
 def test_only_numbers_that_have_but_a_range_are_recentred(begun: Search) -> None:
