@@ -89,6 +89,7 @@ def nothing_is_fitted(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(weighing, "from_states_of", same)
     monkeypatch.setattr(exchange, "extended", lambda *_, **__: [])
     monkeypatch.setattr(exchange, "in_the_place_of_each", lambda *_: [])
+    monkeypatch.setattr(exchange, "astray", lambda _: False)
     monkeypatch.setattr(select, "in_the_place_of_shapes", lambda *_: [])
     monkeypatch.setattr(select, "without_idle_shapes", lambda single, _: single)
     monkeypatch.setattr(details, "of_joints", lambda c, _: c.of_joints)
