@@ -9,8 +9,6 @@ import pytest
 
 from diagnosis.progress import silent
 from diagnosis.search import select
-from diagnosis.search.budget import Budget
-from tests.diagnosis.search import made_up
 
 
 def fit(loss: float) -> Any:
@@ -64,28 +62,3 @@ def test_no_third_effect_is_sought_beside_two_that_explain_little(
     select._more(found, silent)
     assert bool(asked) == sought
     assert found.not_tried == ({} if sought else {"a third effect": select.FUTILE})
-
-
-@pytest.mark.parametrize(
-    ("much", "white", "stretches", "beyond"),
-    [(False, True, None, False), (True, True, None, True), (False, False, None, True), (False, False, (), False)],
-)
-def test_further_effects_have_work_of_their_own_where_something_is_left_or_the_errors_may_hold_it(
-    monkeypatch: pytest.MonkeyPatch, much: bool, white: bool, stretches: Any, beyond: bool
-) -> None:
-    """Whatever was spent before; but not where whole runs are compared, which leave more than white noise anyway."""
-    found = made_up.search(made_up.fit(loss=100.0))
-    found.best = made_up.fit(made_up.A, loss=50.0)
-    found.measured.stretches, found.measured.identification = stretches, SimpleNamespace(further_work=1.0)
-    found.whole = Budget(-1.0)
-    lasted: list[bool] = []
-    monkeypatch.setattr(select, "leaves_much", lambda *_: much)
-    monkeypatch.setattr(select, "passes_for_white", lambda *_: white)
-    for name in ("_more", "settle_ties", "drop", "drop_without_evidence", "with_other_numbers"):
-        monkeypatch.setattr(select, name, lambda *_: None)
-    monkeypatch.setattr(select, "_pairs", lambda found, _: lasted.append(not found.spent))
-    for name in ("with_memory", "again"):
-        monkeypatch.setattr(select, name, lambda one: one)
-    monkeypatch.setattr(select, "estimate", lambda *_: found.errors)
-    list(select.further_effects(found, silent))
-    assert lasted == [beyond]

@@ -269,13 +269,25 @@ def test_the_last_exchange_goes_on_beyond_the_work_of_all_searches(monkeypatch: 
     assert checked == ["settle_ties", "drop", "drop_without_evidence", "with_other_numbers"]
 
 
-@pytest.mark.parametrize(("much", "work"), [(True, FURTHER), (False, None)])
-def test_where_the_first_leaves_much_others_have_work_of_their_own(
-    monkeypatch: pytest.MonkeyPatch, much: bool, work: float | None
+@pytest.mark.parametrize(
+    ("much", "white", "windows", "work"),
+    [
+        (True, True, True, FURTHER),
+        (False, True, True, None),
+        (False, False, True, FURTHER),
+        (False, False, False, None),
+    ],
+)
+def test_where_the_first_leaves_much_or_errors_may_hold_some_others_have_work_of_their_own(
+    monkeypatch: pytest.MonkeyPatch, much: bool, white: bool, windows: bool, work: float | None
 ) -> None:
-    """The pairs tried before it, from the specimen as declared, may have taken all that was kept for them."""
+    """The pairs tried before it, from the specimen as declared, may have taken all that was kept for them.
+
+    Runs that are compared whole leave more than white noise anyway.
+    """
     left: list[float | None] = []
     monkeypatch.setattr(select, "leaves_much", lambda *_: much)
+    monkeypatch.setattr(select, "passes_for_white", lambda *_: white)
     monkeypatch.setattr(select, "_pairs", lambda found, _: left.append(None if found.spent else found.budget.left))
     monkeypatch.setattr(select, "_more", lambda *_: None)
     for name in ("settle_ties", "drop", "drop_without_evidence", "with_other_numbers"):
@@ -286,6 +298,7 @@ def test_where_the_first_leaves_much_others_have_work_of_their_own(
     found = search(fit(loss=10000.0))
     found.best, found.whole = fit(A, loss=900.0), Budget(-1.0)
     found.base.measured.identification = SimpleNamespace(further_work=1.0)
+    found.base.measured.stretches = None if windows else "whole runs"
     list(select.further_effects(found, lambda *_: None))
     assert left == [work if work is None else pytest.approx(work, abs=1.0)]
 
