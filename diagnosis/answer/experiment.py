@@ -16,6 +16,7 @@ import numpy as np
 
 from diagnosis.answer.whole_runs import no_run, sensed_run
 from diagnosis.data.measured import Measured, arrange
+from diagnosis.data.stretches import arrange_stretches, names_by_level
 from diagnosis.errors.model import Errors
 from diagnosis.fit.intervals import covariances
 from diagnosis.fit.misfit import Misfit, reduce
@@ -23,12 +24,15 @@ from diagnosis.fit.solver import fit
 from diagnosis.search.found import Near, Search
 from diagnosis.search.refit import Explanation
 from grids.recordings.base import CHANNELS, REQUIRED, SHARE, Recording
+from models.base import Values
 from models.errors import InputError
 from models.kinematics import Place
 
 SCALES = (0.7, 1.0, 1.4)
 NEW_SENSOR_NOISE = 0.01
 """Noise assumed of a channel that is not measured yet, over its peak."""
+OVERTURNED = 1.0
+"""rad."""
 LEAST = 1.0
 """Expected evidence under which an experiment is not offered: it would tell as good as nothing."""
 
@@ -47,8 +51,6 @@ def next_experiment(
     if other is None:
         return None
     measured = best.measured
-    if measured.stretches is not None:  # what a further run of a building would tell is not computed
-        return None
     bank = {}
     for recording in measured.recordings:
         for scale in SCALES:
@@ -73,7 +75,7 @@ def _sensor(
     """The channel that is not recorded yet and would add most evidence, on the same runs; None where none would."""
     measured = best.measured
     gains = {}
-    for name in unrecorded(measured, planned):
+    for name in unrecorded(measured, planned, best.fitted.point.values):
         made = [_made(best, r, 1.0, (*measured.channels, name), planned) for r in measured.recordings]
         gains[name] = sum(_expected(best, other, m, errors) for m in made if m is not None)
     if not gains:
@@ -84,11 +86,15 @@ def _sensor(
     return {"channel": name, "noise": f"{NEW_SENSOR_NOISE:.0%} of its peak", "expected_evidence": expected}
 
 
-def unrecorded(measured: Measured, planned: Mapping[str, Place]) -> list[str]:
-    """The channels that a recording could hold besides those compared: standard ones of the model, and ``planned``."""
-    names = [q.name for q in measured.model.observables if q.name in CHANNELS and q.unit != SHARE]
-    names += [name for name, place in planned.items() if place.body <= measured.model.bodies]
-    return [name for name in dict.fromkeys(names) if name not in measured.channels]
+def unrecorded(measured: Measured, planned: Mapping[str, Place], values: Values) -> list[str]:
+    """The channels that recordings could hold and do not: standard ones of the model, at all levels, and planned."""
+    m = measured
+    points = m.model.points(values)
+    standard = [q.name for q in m.model.observables if q.name in CHANNELS and q.unit != SHARE]
+    names = [name for quantity in standard for name in names_by_level(quantity, points)]
+    names += [name for name, place in planned.items() if place.body <= m.model.bodies_of(values)]
+    held = [name for name in names if all(name in r.channels for r in m.recordings)]
+    return [name for name in dict.fromkeys(names) if name not in (*m.channels, *held)]
 
 
 def _made(
@@ -112,7 +118,9 @@ def _made(
         sigma = float(measured.sigma[:, measured.channels.index(name)].mean()) if known else 0.0
         sigma = sigma or NEW_SENSOR_NOISE * float(np.max(np.abs(values)))
         found[name] = values + sigma * rng.normal(size=values.size)
-    if not np.all(np.isfinite(ran[_leading(measured)])) or np.max(np.abs(ran[_leading(measured)])) > 1.0:
+    leading = ran[_leading(measured)]
+    falls = measured.stretches is None and np.max(np.abs(leading)) > OVERTURNED
+    if falls or not np.all(np.isfinite(leading)):
         return None
     used = {name: place for name, place in places.items() if name in found}
     return replace(recording, channels={**found, REQUIRED: base[REQUIRED]}, places=used)
@@ -134,12 +142,8 @@ def _expected(truth: Explanation, rival: Explanation, made: Recording, errors: E
 
 def _evidence(truth: Explanation, rival: Explanation, made: Recording, errors: Errors) -> float:
     fitted = rival.fitted
-    measured = fitted.measured
-    if measured.lengths is None:
-        return 0.0
-    acts = measured.shakings[0].vertical is not None and measured.shakings[0].vertical_acts
-    windows = arrange(measured.in_own_steps.model, [made], acts, measured.lengths, measured.reference_peak)
     true = truth.fitted
+    windows = _arranged(fitted.measured, made, true.point.values)
     of_truth = replace(true.misfit.predictor, measured=windows)  # effects that begin do so in their own stages
     own = Misfit(of_truth, errors.of_sensors(windows), (), {**true.misfit.fixed, **true.values})
     point = own.point(np.zeros(0), fit(own, np.zeros(0), windows.states).states)
@@ -156,3 +160,15 @@ def _evidence(truth: Explanation, rival: Explanation, made: Recording, errors: E
     gradient = np.einsum("w,wmi,wm->i", weights, j, reduced.residual, optimize=True)
     left = np.einsum("w,wm,wm->", weights, reduced.residual, reduced.residual, optimize=True)
     return float(max(left - gradient @ np.linalg.pinv(hessian, hermitian=True) @ gradient, 0.0))
+
+
+def _arranged(like: Measured, made: Recording, values: Values) -> Measured:
+    """One more recording, cut as those learned from were."""
+    if like.stretches is not None:
+        points = like.model.points(values)
+        return arrange_stretches(
+            like.model, [made], like.stretches, points, tuple(made.places), (), like.reference_peak
+        )
+    assert like.lengths is not None
+    acts = like.shakings[0].vertical is not None and like.shakings[0].vertical_acts
+    return arrange(like.in_own_steps.model, [made], acts, like.lengths, like.reference_peak)

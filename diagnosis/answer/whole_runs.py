@@ -10,6 +10,7 @@ import numpy as np
 from diagnosis.answer.heldout import Shown, traces_of, with_held
 from diagnosis.answer.result import HeldStage, Trace
 from diagnosis.data.measured import Measured, seen_as
+from diagnosis.fit.through import read
 from diagnosis.fit.unknowns import instruments_of
 from diagnosis.search.refit import Explanation
 from grids.instruments.base import Surroundings
@@ -89,9 +90,7 @@ def sensed_run(
     )
     seen = measured.identification.seen(history.channels)
     places, ground = {**recording.places, **(more or {})}, ground_along(moved, np.zeros(1, np.int64), history.time.size)
-    found = {
-        c: np.ravel(places[c].read(seen, shaking.time_step, (ground[0][0], ground[1][0])) if c in places else seen[c])
-        for c in channels
-    }
+    of_base = ground[0][0], ground[1][0]
+    found = {c: np.ravel(read(places, seen, c, shaking.time_step, of_base)) for c in channels}
     around = Surroundings(shaking.time_step, moved.horizontal, measured.reference_peak, places=places)
     return dict(recorded_in_stages(found, sets, around))

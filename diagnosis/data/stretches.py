@@ -51,7 +51,7 @@ def arrange_stretches(
         name
         for quantity in model.observables
         if quantity.unit != SHARE and quantity.name not in left
-        for name in _names(quantity.name, points)
+        for name in names_by_level(quantity.name, points)
     ]
     channels = tuple(c for c in (*observed, *placed) if all(c in r.channels for r in split))
     lead = declared.leads[0].channel
@@ -110,7 +110,8 @@ def _refuse_beyond(model: Model, recording: Recording, points: Mapping[str, int]
             )
 
 
-def _names(quantity: str, points: Mapping[str, int]) -> Sequence[str]:
+def names_by_level(quantity: str, points: Mapping[str, int]) -> Sequence[str]:
+    """The channels of a quantity: one for each of the levels ``points``, or itself."""
     return [f"{quantity}_{k}" for k in range(points[quantity])] if quantity in points else [quantity]
 
 

@@ -111,12 +111,16 @@ class Errors:
     def expected(self, predictor: Predictor, point: Point) -> Whitening:
         """What is to be expected in windows of other recordings: errors of sensors, noise of the base, scatter.
 
-        The latter about the motion at ``point``, like what sensors remember; without drifts, which windows share.
+        The latter about the motion at ``point``, like what sensors remember; without drifts, which windows share. Of a
+        model that runs through whole recordings, of sensors and the model's own.
         """
+        m = predictor.measured
+        if m.stretches is not None:
+            return self.of_sensors(m).with_columns(_own(m, self.components, self.theta))
         base = base_columns(predictor, responses(predictor, point))
         scattered = self.scatter * kicks(predictor, point).columns
         columns = np.concatenate([base, before_windows(predictor, point), scattered], axis=-1)
-        return self.of_sensors(predictor.measured).with_columns(columns)
+        return self.of_sensors(m).with_columns(columns)
 
 
 def disturbance_about(fitted: Fitted) -> FloatArray:
@@ -255,12 +259,16 @@ def _whitening(
 ) -> Whitening:
     """Of the sensors' errors; the base's, ``others`` and a model's own as columns, drifts as errors windows share."""
     found = of_sensors(components, theta, unit, m.channels, peaks_of(m), m)
-    own = [
-        np.sqrt(t) * own_error(m, c.scale)
-        for c, t in zip(components, theta, strict=True)
-        if c.kind == "inadequacy" and c.channel is None and t > 0.0
-    ]
-    found = found.with_columns(np.concatenate([base, others, *own], axis=-1))
+    found = found.with_columns(np.concatenate([base, others, _own(m, components, theta)], axis=-1))
     knots, root = knots_of(m, components), prior.root(theta)
     root = root[:, np.sum(root**2, axis=0) > FAINT]
     return found.with_shared(columns(knots, root, m, base)) if knots and root.size else found
+
+
+def _own(measured: Measured, components: Sequence[Component], theta: FloatArray) -> FloatArray:
+    """What a model that runs through whole recordings gets wrong by itself: columns (W, C, n, K) of unit variance."""
+    found = [np.zeros((*measured.values.shape, 0))]
+    for component, variance in zip(components, theta, strict=True):
+        if component.kind == "inadequacy" and component.channel is None and variance > 0.0:
+            found.append(np.sqrt(variance) * own_error(measured, component.scale))
+    return np.concatenate(found, axis=-1)

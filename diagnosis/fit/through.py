@@ -14,6 +14,7 @@ from diagnosis.data.stretches import averages
 from grids.instruments.staged import Sets, recorded_in_stages
 from grids.recordings.levels import level_of, stem
 from models.base import FloatArray
+from models.kinematics import Place
 from models.piecewise import Part, trajectories
 from models.shaking import Shaking
 
@@ -54,7 +55,7 @@ def run_through(
         )  # fmt: skip
         acting = sets[low : low + LANES]
         with np.errstate(over="ignore", invalid="ignore"):  # of runs that have diverged
-            true = {c: _read(m, ran, c, shaking.time_step, ground) for c in m.channels}
+            true = {c: read(m.places, ran, c, shaking.time_step, ground) for c in m.channels}
         kept = [k for k in range(len(some)) if _near(true, k, largest)]
         found[low : low + LANES] = np.nan
         for alike in _alike(acting, kept):
@@ -81,15 +82,15 @@ def _alike(sets: Sequence[Sets], lanes: Iterable[int]) -> list[list[int]]:
     return groups
 
 
-def _read(
-    measured: Measured,
+def read(
+    places: Mapping[str, Place],
     ran: Mapping[str, FloatArray],
     channel: str,
     time_step: float,
     ground: tuple[FloatArray, FloatArray],
 ) -> FloatArray:
-    """A compared channel (P, samples) before any instrument, of a run's observables and poses."""
-    if channel in measured.places:
-        return measured.places[channel].read(ran, time_step, ground)
+    """A channel (P, samples) before any instrument, of a run's observables and poses."""
+    if channel in places:
+        return places[channel].read(ran, time_step, ground)
     level = level_of(channel)
     return ran[channel] if level is None else ran[stem(channel)][..., level, :]

@@ -88,12 +88,27 @@ class Whitening:
             found = np.moveaxis(self.sensor @ rows, -1, 0)
         return np.ascontiguousarray(found).reshape(*averages.shape[:-2], -1)
 
+    def without(self, channel: int) -> Whitening:
+        """The whitening of all channels but one, of which nothing is compared; without errors that windows share."""
+        sensor = self.sensor.copy()
+        sensor[:, channel] = 0.0
+        others = replace(self, sensor=sensor, shared=None, level=None)
+        if self.basis is None or self.shrink is None:
+            return others
+        kept = np.repeat(np.arange(sensor.shape[1]) != channel, sensor.shape[2])
+        size = np.sqrt(1.0 / (1.0 - self.shrink) ** 2 - 1.0)
+        return others._beside(self.basis * size[:, None, :] * kept[:, None])
+
     def with_columns(self, columns: FloatArray) -> Whitening:
         """The whitening of the sensors' errors and of independent normal numbers times ``columns`` (W, C, N, K)."""
         if not columns.shape[-1]:
             return self
         each = self.of_sensors(self.measured.averaged(np.moveaxis(columns, -1, 0)))
-        u, s, _ = np.linalg.svd(np.moveaxis(each, 0, -1), full_matrices=False)
+        return self._beside(np.moveaxis(each, 0, -1))
+
+    def _beside(self, each: FloatArray) -> Whitening:
+        """With ``each`` (W, M, K), columns in units of the sensors' errors, beside these."""
+        u, s, _ = np.linalg.svd(each, full_matrices=False)
         return replace(self, basis=u, shrink=1.0 - 1.0 / np.sqrt(1.0 + s**2))
 
     def with_shared(self, columns: FloatArray) -> Whitening:

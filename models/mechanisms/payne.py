@@ -18,5 +18,6 @@ MECHANISM = Mechanism(
     signature="with the amplitude of the cycle; small cycles after large ones are stiff again",
     sentence="the rubber loses up to {softening:.1%} of its stiffness in large cycles, over a strain of {strain:.2f}",
     acts={"isolated": partial(with_law, name="payne")},
+    static_test="cycle the rubber slowly to a small strain, to a large one and to the small one again",
     source="Payne (J. Appl. Polym. Sci. 6, 1962); A is a form of this project: models/isolated/bearing.py",
 )

@@ -35,11 +35,13 @@ def with_law(coefficients: Layered, values: Values, name: str) -> Layered:
 
 def rubber_mechanism(
     name: str, parameters: tuple[MechanismParameter, ...], *, equation: str, signature: str, sentence: str,
-    source: str, models: Sequence[str] = ("interface", "isolated"),
+    static_test: str, source: str, models: Sequence[str] = ("interface", "isolated"),
 ) -> Mechanism:  # fmt: skip
     """The mechanism of a rubber law: a class of its own, addressed at both joints of a wall together or at one."""
     acts: dict[str, Callable[..., Any]] = {model: partial(with_law, name=name) for model in models}
-    return Mechanism(name, name, parameters, equation, signature, sentence, acts, source, at_joints=("interface",))
+    return Mechanism(
+        name, name, parameters, equation, signature, sentence, acts, source, ("interface",), static_test=static_test
+    )
 
 
 def nothing(u: FloatArray, *_: Any) -> FloatArray:

@@ -113,6 +113,7 @@ LAW = RubberLaw(
         signature="with the amplitude; loops at any frequency",
         sentence="the rubber yields at {yield_compression:.2e} m to {post_yield_ratio:.2f} of its stiffness "
         "(its parameters are not unique: look at the loop)",
+        static_test="cycle the rubber slowly at several amplitudes and read its loops",
         source="Wen (J. Eng. Mech. Div. 102, 1976): models/rubber/bouc_wen.py",
     ),
     "adds", effect, numbers, update, energy=energy, rate=rate, relaxed=relaxed, turned=turned, refusal=refusal,

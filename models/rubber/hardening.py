@@ -37,6 +37,7 @@ LAW = RubberLaw(
         equation="s = k u (1 + beta2 (u/e)^2) + c u'",
         signature="at large rotations, while a joint presses on a short length",
         sentence="the rubber stiffens with the squared strain, coefficient {beta2:.1f}",
+        static_test="load the rubber slowly and read force over deformation",
         source="models/rubber/hardening.py",
     ),
     "adds", effect, numbers, update, slope, energy, hidden=False, of_strain=True,

@@ -75,6 +75,7 @@ LAW = RubberLaw(
         equation="s = k u/(1 - u/(lock_strain e)) + c u'",
         signature="at large rotations, while a joint presses on a short length; strains end below a limit",
         sentence="the rubber locks at a strain of {lock_strain:.2f}",
+        static_test="load the rubber slowly and read force over deformation",
         source="form of this project: models/rubber/locking.py",
     ),
     "adds", effect, numbers, update, slope, energy, hidden=False, limit=limit,

@@ -65,6 +65,7 @@ LAW = RubberLaw(
         signature="everywhere, more at higher frequencies",
         sentence="an arm of {arm_stiffness_ratio:.2f} times the layer's stiffness relaxes within "
         "{relaxation_time:.3f} s",
+        static_test="hold the rubber at a constant strain and follow its force as it relaxes",
         source="models/rubber/maxwell.py",
     ),
     "adds", effect, numbers, update, slope, energy, rate,

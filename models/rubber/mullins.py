@@ -52,6 +52,7 @@ LAW = RubberLaw(
         equation="s = k [1 - softening (1 - exp(-u_max/(strain e)))] u + c u'",
         signature="grows with the largest rotation so far",
         sentence="the rubber has lost up to {softening:.1%} of its stiffness over a strain of {strain:.2f}",
+        static_test="cycle the rubber slowly to a small strain, to a large one and to the small one again",
         source="Mullins (Rubber Chem. Technol. 42, 1969): models/rubber/mullins.py",
     ),
     "softens", effect, numbers, update, rate=rate, relaxed=relaxed, turned=turned, reached=reached, of_strain=True,

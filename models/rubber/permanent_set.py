@@ -56,6 +56,7 @@ LAW = RubberLaw(
         equation="s = k (u - u_p) + c u', u_p' = rate e max(0, (u - u_p)/e - strain_limit)",
         signature="late; rotations that do not come back",
         sentence="the rubber takes a set at {rate:.2f} per second beyond a strain of {strain_limit:.2f}",
+        static_test="measure the thickness of the rubber before and after a run",
         source="models/rubber/permanent_set.py",
         models=("interface",),
     ),

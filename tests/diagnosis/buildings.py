@@ -30,4 +30,5 @@ def made(name: str, peak: float, seed: int, **laws: float) -> Recording:
     ran = models.get("isolated").simulate({**BODY, **BEARINGS, **laws}, Shaking(STEP, base), duration=time[-1])
     x = np.asarray(ran.channels["level_displacement_x"])
     x = x + 0.01 * np.std(x) * rng.normal(size=x.shape)
-    return Recording(name, STEP, time, {"base_acceleration_x": base, "level_displacement_x": x}, ("0",))
+    levels = tuple(str(level) for level in range(x.shape[0]))
+    return Recording(name, STEP, time, {"base_acceleration_x": base, "level_displacement_x": x}, levels)

@@ -59,8 +59,8 @@ def test_hysteresis_is_named_and_predicts_a_larger_run() -> None:
     values = found.effects[0].parameters
     assert values["post_yield_ratio"].estimate == pytest.approx(0.4, abs=0.04)
     assert found.holdout is not None and found.holdout.after < 0.2 * found.holdout.before
-    assert not found.located and not found.visited and not found.channels and not found.constancy
-    assert found.next_experiment is found.missing_force is found.other_model is None
+    assert not found.located and not found.visited and not found.constancy
+    assert found.missing_force is found.other_model is None
     assert not any(effect.stages for effect in found.effects)
     assert found.errors is not None and found.errors.base_drift is found.errors.scatter is None
     (beyond,) = found.extrapolated

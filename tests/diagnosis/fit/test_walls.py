@@ -54,7 +54,7 @@ def test_a_fit_works_with_the_slope_under_load_and_gives_the_unstressed_stiffnes
 
 def test_a_new_sensor_is_one_that_a_recording_can_hold() -> None:
     """How far the layers are compressed is known to the model, and no standard channel."""
-    found = unrecorded(measure(WALL, [recorded(1)]), {})
+    found = unrecorded(measure(WALL, [recorded(1)]), {}, TRUE)
     assert "displacement_2_x" in found and set(found) <= set(CHANNELS) and "rotation_1" not in found
 
 
