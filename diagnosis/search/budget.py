@@ -17,6 +17,8 @@ DECLARED = 80.0
 """s for pairs from the specimen as declared, where no mechanism alone explains much."""
 FURTHER = 150.0
 """s for effects beside the first, kept back from all that comes before: where two act, the first explains little."""
+THIRD = 60.0
+"""s at least for a third effect, where two leave something."""
 WEIGHING = 20.0
 """s at least to weigh mechanisms alone against each other, each under errors of its own."""
 NUMBERS = 30.0

@@ -8,7 +8,7 @@ or when it alone makes that window fit (`settles`).
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import NamedTuple
@@ -204,6 +204,11 @@ class Search:
             yield
         finally:
             self.budget, self.whole = outer.after(own), whole
+
+    def at_least(self, work: float) -> AbstractContextManager[None]:
+        """Within, the budget is what is left of it, and ``work`` s of its own where that is less."""
+        enough = min(self.budget.left, self.whole.left) >= work
+        return nullcontext() if enough else self.work_of_its_own(work, beyond=True)
 
     def pass_over(self, explanation: Explanation) -> None:
         """It does not count, and is not taken later either."""

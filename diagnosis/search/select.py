@@ -6,11 +6,12 @@ What counts is in `diagnosis.search.found`.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import nullcontext
 
 from diagnosis.errors.model import estimate
 from diagnosis.progress import Progress
 from diagnosis.search.beside import POOL_SHARE, extended, seconds
-from diagnosis.search.budget import DECLARED, FURTHER, LAST, NUMBERS, WEIGHING
+from diagnosis.search.budget import DECLARED, FURTHER, LAST, NUMBERS, THIRD, WEIGHING
 from diagnosis.search.declared import explains_most, leaves_much, pairs_as_declared
 from diagnosis.search.details import least
 from diagnosis.search.evidence import drop_without_evidence
@@ -65,7 +66,7 @@ def further_effects(found: Search, progress: Progress) -> Iterator[Search]:
     """The same with a second and a third mechanism beside the first; the last one is the answer.
 
     With work of its own where the first leaves much, or more than white noise: whatever was spent before, something
-    else acts there, or the errors may hold what does.
+    else acts there, or the errors may hold what does. With some for a third where two leave more than noise.
     """
     if found.best is None or found.best.in_spell:
         return
@@ -75,7 +76,9 @@ def further_effects(found: Search, progress: Progress) -> Iterator[Search]:
         _pairs(found, progress)
         yield found
         if found.outside is None:
-            _more(found, progress)
+            lacks = found.measured.stretches is None and found.incomplete
+            with found.at_least(THIRD) if lacks else nullcontext():
+                _more(found, progress)
             yield found
     if found.best is not None and len(found.best.candidates) > 1:
         with found.work_of_its_own(LAST, beyond=True):  # goes on where the budget ended

@@ -11,7 +11,7 @@ import pytest
 
 from diagnosis.search import beside, exchange, refit, select, weighing
 from diagnosis.search import found as counting
-from diagnosis.search.budget import FURTHER, Budget
+from diagnosis.search.budget import FURTHER, THIRD, Budget
 from diagnosis.search.found import Search
 from diagnosis.search.refit import Explanation
 from models.runs import DONE
@@ -290,17 +290,44 @@ def test_where_the_first_leaves_much_or_errors_may_hold_some_others_have_work_of
     monkeypatch.setattr(select, "passes_for_white", lambda *_: white)
     monkeypatch.setattr(select, "_pairs", lambda found, _: left.append(None if found.spent else found.budget.left))
     monkeypatch.setattr(select, "_more", lambda *_: None)
+    further_effects_of(Budget(-1.0), windows, monkeypatch)
+    assert left == [work if work is None else pytest.approx(work, abs=1.0)]
+
+
+@pytest.mark.parametrize(
+    ("incomplete", "windows", "spent", "work"),
+    [
+        (True, True, FURTHER + 1.0, THIRD),
+        (True, True, 50.0, FURTHER - 50.0),
+        (False, True, FURTHER + 1.0, None),
+        (True, False, FURTHER + 1.0, None),
+    ],
+)
+def test_where_two_leave_something_a_third_has_work_of_its_own_if_too_little_is_left(
+    monkeypatch: pytest.MonkeyPatch, incomplete: bool, windows: bool, spent: float, work: float | None
+) -> None:
+    left: list[float | None] = []
+    monkeypatch.setattr(select, "leaves_much", lambda *_: True)
+    monkeypatch.setattr(select, "passes_for_white", lambda *_: True)
+    monkeypatch.setattr(counting, "errs", lambda _: incomplete)
+    monkeypatch.setattr(select, "_pairs", lambda *_: DONE.call(0, spent))
+    monkeypatch.setattr(select, "_more", lambda found, _: left.append(None if found.spent else found.budget.left))
+    further_effects_of(Budget(), windows, monkeypatch)
+    assert left == [work if work is None else pytest.approx(work, abs=1.0)]
+
+
+def further_effects_of(whole: Budget, windows: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The stages for further effects beside one that stands, nothing fitted."""
     for name in ("settle_ties", "drop", "drop_without_evidence", "with_other_numbers"):
         monkeypatch.setattr(select, name, lambda _: None)
     monkeypatch.setattr(select, "with_memory", lambda one: one)
     monkeypatch.setattr(select, "again", lambda one: one)
     monkeypatch.setattr(select, "estimate", lambda *_: NOTHING)
     found = search(fit(loss=10000.0))
-    found.best, found.whole = fit(A, loss=900.0), Budget(-1.0)
+    found.best, found.whole = fit(A, loss=900.0), whole
     found.base.measured.identification = SimpleNamespace(further_work=1.0)
     found.base.measured.stretches = None if windows else "whole runs"
     list(select.further_effects(found, lambda *_: None))
-    assert left == [work if work is None else pytest.approx(work, abs=1.0)]
 
 
 @pytest.mark.parametrize(
