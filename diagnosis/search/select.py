@@ -10,7 +10,7 @@ from contextlib import nullcontext
 
 from diagnosis.errors.model import estimate
 from diagnosis.progress import Progress
-from diagnosis.search.beside import POOL_SHARE, extended, seconds
+from diagnosis.search.beside import POOL_SHARE, extended, joinable, seconds
 from diagnosis.search.budget import DECLARED, FURTHER, LAST, NUMBERS, THIRD, WEIGHING
 from diagnosis.search.declared import explains_most, leaves_much, pairs_as_declared
 from diagnosis.search.details import least
@@ -20,15 +20,18 @@ from diagnosis.search.found import GAP, MISSING, Search, adequate, adjusted, pas
 from diagnosis.search.hidden import hidden_beside, take_hidden
 from diagnosis.search.left_out import predicts_worse
 from diagnosis.search.outside import outside
-from diagnosis.search.refit import Explanation, again, best_of, over_ranges, reshaped, with_memory
+from diagnosis.search.refit import QUICK, Explanation, again, best_of, extend, over_ranges, reshaped, with_memory
 from diagnosis.search.shapes import in_the_place_of_shapes, without_idle_shapes
 from diagnosis.search.singles import refit_singles, take_further
 from diagnosis.search.ties import settle_ties
 from diagnosis.search.variants import with_other_numbers
 from diagnosis.search.weighing import weigh_again
 from grids.instruments import INSTRUMENTS
+from models.errors import InputError
 
 FIRST_POOL = 3
+RIVALS = 2
+"""Explanations beside which an effect that came last is tried too."""
 LITTLE = 0.25
 """Share of what is missing that two effects must explain for one more to be sought beside them."""
 FUTILE = "what was found explains less than a quarter of what is missing"
@@ -245,9 +248,34 @@ def _more(found: Search, progress: Progress) -> None:
         best = _next(found, found.best, more)
         if best is None:
             return
+        found.tried += _beside_rivals(found, found.best, best)
         found.best = best
         weigh_again(found)
         exchanged(found, progress)
+
+
+def _beside_rivals(found: Search, before: Explanation, after: Explanation) -> list[Explanation]:
+    """What came last, beside explanations as large as ``before`` that are less behind it than what came last gains.
+
+    Of two that explain nearly as much without it either may be the one that stands for the other.
+    """
+    if found.measured.stretches is not None:  # fits of whole runs creep
+        return []
+    last, gain = after.candidates[-1], adjusted(before) - adjusted(after)
+    rivals: dict[frozenset[str], Explanation] = {}  # other orders, or other joints, of the same laws are none
+    for one in sorted(found.tried, key=adjusted):
+        joins = found.eligible(one) and last in joinable(found, one)
+        if len(one.candidates) == len(before.candidates) and joins and adjusted(one) < adjusted(before) + gain:
+            rivals.setdefault(frozenset(one.names), one)
+    rivals.pop(frozenset(before.names), None)
+    fits = []
+    for one in list(rivals.values())[:RIVALS]:
+        if found.affordable(f"{last.name} beside {' and '.join(one.names)}"):
+            try:
+                fits.append(again(extend(one, last, after.part(last), QUICK, one.loss)))
+            except InputError as refusal:  # it does not act together with an effect of the rival
+                found.not_tried.setdefault(last.name, str(refusal))
+    return fits
 
 
 def _next(found: Search, before: Explanation, more: Sequence[Explanation]) -> Explanation | None:
