@@ -60,6 +60,10 @@ class Explained:
     def removable(self) -> tuple[Effect, ...]:
         return self.candidates
 
+    def part(self, candidate: Effect) -> Any:
+        assert candidate in self.candidates
+        return "as fitted"
+
 
 def fit(*candidates: Effect, loss: float, first: float | None = None) -> Any:
     """An explanation of two windows; ``first``: the loss of the first of them, by default half of it."""

@@ -9,6 +9,9 @@ import pytest
 
 from diagnosis.progress import silent
 from diagnosis.search import select
+from models.errors import InputError
+from tests.diagnosis.search import made_up
+from tests.diagnosis.search.made_up import TILT, A, B, C, Effect
 
 
 def fit(loss: float) -> Any:
@@ -62,3 +65,35 @@ def test_no_third_effect_is_sought_beside_two_that_explain_little(
     select._more(found, silent)
     assert bool(asked) == sought
     assert found.not_tried == ({} if sought else {"a third effect": select.FUTILE})
+
+
+def test_a_third_effect_is_tried_beside_the_pairs_that_are_less_behind_than_it_gains(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The nearest two, of other laws, which were not passed over; a refusal to act together ends nothing."""
+    delay, other_joint = Effect("delay", of_joints=False), Effect(A.name, order=1)
+    asked: list[Any] = []
+
+    def extend(one: Any, candidate: Any, start: Any, iterations: int, most: float) -> Any:
+        assert candidate is delay and start == "as fitted" and most == one.loss
+        asked.append(one.candidates)
+        if C in one.candidates:
+            raise InputError("no two together")
+        return made_up.fit(*one.candidates, delay, loss=100.0)
+
+    monkeypatch.setattr(select, "extend", extend)
+    monkeypatch.setattr(select, "again", lambda one: one)
+    before, after = made_up.fit(TILT, A, loss=500.0), made_up.fit(TILT, A, delay, loss=200.0)
+    passed_over = made_up.fit(A, B, loss=510.0)
+    far, last = made_up.fit(TILT, Effect("payne"), loss=801.0), made_up.fit(TILT, Effect("mullins"), loss=790.0)
+    nearer = [made_up.fit(TILT, other_joint, loss=520.0), made_up.fit(delay, B, loss=530.0)]
+    taken = [made_up.fit(TILT, B, loss=600.0), made_up.fit(TILT, C, loss=700.0)]
+    found = made_up.search(made_up.fit(loss=9000.0), far, last, *taken, *nearer, passed_over, before)
+    found.candidates = (TILT, A, B, C, delay)
+    found.measured.stretches = None
+    found.pass_over(passed_over)
+    (one,) = select._beside_rivals(found, before, after)
+    assert asked == [(TILT, B), (TILT, C)] and one.candidates == (TILT, B, delay)
+    assert found.not_tried == {"delay": "no two together"}
+    found.tried = [far, before]
+    assert not select._beside_rivals(found, before, after)
