@@ -24,6 +24,7 @@ from diagnosis.fit.unknowns import Unknown, values_of
 from diagnosis.fit.whitening import Whitening
 from grids.instruments.accelerometer_offset import MECHANISM as ZERO
 from models.base import FloatArray
+from models.errors import InputError
 
 NU = 10.0
 STEP = 0.05
@@ -212,11 +213,16 @@ class Misfit:
 
 
 def answered(asking: Asking[Found], predictor: Predictor) -> Found:
-    """What it finds, its predictions run as it asks for them."""
+    """What it finds, its predictions run as it asks for them; it is told where the model refuses its parameters."""
     try:
         points = next(asking)
         while True:
-            points = asking.send(predictor.predict(points))
+            try:
+                predicted = predictor.predict(points)
+            except InputError as refusal:
+                points = asking.throw(refusal)
+            else:
+                points = asking.send(predicted)
     except StopIteration as end:
         found: Found = end.value
         return found

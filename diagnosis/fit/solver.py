@@ -23,6 +23,7 @@ from diagnosis.fit.misfit import NU, Asking, Linear, Misfit, Reduced, answered, 
 from diagnosis.fit.prediction import Point
 from diagnosis.fit.unknowns import clip, values_of
 from models.base import FloatArray
+from models.errors import InputError
 
 DAMPINGS = (0.0, 0.03, 0.3, 3.0)
 """Dampings tried at once, over the one that the step before leads to."""
@@ -247,12 +248,16 @@ def fit_together(
     asked = {k: next(one) for k, one in enumerate(asking)}
     while asked:
         points = [replace(p, stages=misfits[k].predictor.stages) for k, own in asked.items() for p in own]
-        predicted, first = misfits[0].predictor.predict(points), 0
+        first, refused = 0, None
+        try:
+            predicted = misfits[0].predictor.predict(points)
+        except InputError as refusal:
+            refused = refusal
         for k, own in list(asked.items()):
-            part = predicted[first : first + len(own)]
+            part = slice(first, first + len(own))
             first += len(own)
             try:
-                asked[k] = asking[k].send(part)
+                asked[k] = asking[k].send(predicted[part]) if refused is None else asking[k].throw(refused)
             except StopIteration as end:
                 found[k] = end.value
                 del asked[k]
@@ -270,15 +275,19 @@ def _fitting(
     place = yield from Place.at(misfit, u, states)
     damping, small, bold, moved = 1.0, 0, True, False
     for _ in range(iterations):
-        if not place.fresh:  # derivatives of another place say where to go, not that this is the end
-            place = yield from Place.at(place.misfit, place.u, place.states)
-        if place.gain < TOLERANCE or (moved and place.promised > most):
-            break
         best, further = 0, None
-        if bold and place.gain < NEAR * place.loss:
-            further = yield from _whole(place)
-        if further is None:
-            best, further = yield from _search(place, damping)
+        try:
+            if not place.fresh:  # derivatives of another place say where to go, not that this is the end
+                place = yield from Place.at(place.misfit, place.u, place.states)
+            if place.gain < TOLERANCE or (moved and place.promised > most):
+                break
+            if bold and place.gain < NEAR * place.loss:
+                further = yield from _whole(place)
+            if further is None:
+                best, further = yield from _search(place, damping)
+        except InputError:  # the steps led where the model refuses its parameters: shorter ones may not
+            damping, bold = 10.0 * damping, False
+            continue
         bold = best == 0 and further is not None
         if further is None:
             damping *= 10.0
@@ -318,7 +327,10 @@ def _search(place: Place, damping: float) -> Asking[tuple[int, Place | None]]:
         shift = place.shift(change)
         moved.append([states + share * shift for share in shares])
     points = [misfit.point(u, x) for u, each in zip(steps, moved, strict=True) for x in each]
-    predicted = yield points
+    try:
+        predicted = yield points
+    except InputError:
+        predicted = yield from _where_it_runs(points)
     residuals = misfit.whitened(predicted).reshape(len(steps), len(shares), *residual.shape)
     if misfit.level.size:
         own = place.u.size
@@ -334,6 +346,22 @@ def _search(place: Place, damping: float) -> Asking[tuple[int, Place | None]]:
     chosen = np.stack(moved[best])[pick[best], np.arange(states.shape[0])]
     further = yield from Place.at(levels[best], steps[best], chosen)
     return best, further
+
+
+def _where_it_runs(points: Sequence[Point]) -> Asking[FloatArray]:
+    """Predictions (P, W, C, N), nan of points where the model refuses its parameters; InputError if it does at all."""
+    found: list[FloatArray | None] = []
+    why: InputError | None = None
+    for point in points:
+        try:
+            found.append((yield [point])[0])
+        except InputError as refusal:
+            found.append(None)
+            why = refusal
+    runs = [one for one in found if one is not None]
+    if not runs and why is not None:
+        raise why
+    return np.stack([np.full_like(runs[0], np.nan) if one is None else one for one in found])
 
 
 def normal(misfit: Misfit, reduced: Reduced, weights: FloatArray, u: FloatArray) -> tuple[FloatArray, FloatArray]:

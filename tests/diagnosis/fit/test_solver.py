@@ -15,11 +15,12 @@ from diagnosis.fit.growing import fit_from
 from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.setup import base_fit, measure, with_noise_of_the_base
-from diagnosis.fit.solver import ITERATIONS, Fitted, fit, fit_thoroughly
+from diagnosis.fit.solver import ITERATIONS, Fitted, fit, fit_thoroughly, fit_together
 from diagnosis.fit.starts import nominal
 from diagnosis.fit.unknowns import fixed_values, of_specimen
 from diagnosis.fit.whitening import sensor_noise_only
 from grids.specimen import Specimen
+from models.errors import InputError
 from models.stacked.identification import IDENTIFICATION
 from models.stacked.model import MODEL
 from tests.diagnosis.made import SPECIMEN, recording
@@ -69,6 +70,36 @@ def test_a_restart_ends_no_higher_than_what_it_mends(monkeypatch: pytest.MonkeyP
     assert len(began) > 1 and began[1] == 0.0
     assert found.loss == min(losses) < losses[0]
     assert any(level != 0.0 for level in began) == (above > 0.0)
+
+
+@pytest.mark.parametrize("together", [False, True])
+def test_a_step_to_where_the_model_refuses_its_parameters_ends_no_fit(
+    monkeypatch: pytest.MonkeyPatch, together: bool
+) -> None:
+    """The fit goes as far as it may; a start that is refused is said so."""
+    best = base_fit(SPECIMEN, measure(SPECIMEN, [recording("a", 1)]))
+    unknown, true = best.misfit.unknowns[0], float(best.u[0])
+    begin, limit = true - 0.6, unknown.value(true - 0.2)
+    predict, refused = Predictor.predict, 0
+
+    def up_to_limit(self: Predictor, points: Any, *rest: Any, **more: Any) -> Any:
+        nonlocal refused
+        if any(point.values[unknown.name] > limit for point in points):
+            refused += 1
+            raise InputError(f"{unknown.name} is beyond {limit}.")
+        return predict(self, points, *rest, **more)
+
+    def fitted(u: Any) -> Fitted:
+        return fit_together([best.misfit], u, best.states)[0] if together else fit(best.misfit, u, best.states)
+
+    u = best.u.copy()
+    u[0] = begin
+    start = fit(best.misfit, u, best.states, 0).loss
+    monkeypatch.setattr(Predictor, "predict", up_to_limit)
+    found = fitted(u)
+    assert refused > 0 and begin < found.u[0] <= true - 0.2 and best.loss < found.loss < start
+    with pytest.raises(InputError, match="is beyond"):
+        fitted(best.u)
 
 
 @cache
