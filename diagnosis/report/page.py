@@ -21,7 +21,7 @@ from diagnosis.fit.unknowns import effects
 from diagnosis.forces.constancy import BLOW
 from diagnosis.report import words
 from grids.recordings import CHANNELS, Recording, noise_levels
-from grids.recordings.levels import stem
+from grids.recordings.levels import level_of, stem
 from grids.specimen import Specimen
 from models.base import Mechanism
 from models.model import Model
@@ -68,7 +68,7 @@ def report_page(
     }
     places = {name: place for r in (*train, *holdout) for name, place in r.places.items()} | dict(specimen.places)
     short |= {name: f"{name}, {place.meaning}" for name, place in places.items()}
-    short |= {trace.channel: short[stem(trace.channel)] for trace in diagnosis.traces}
+    short |= {name: _at_level(short[stem(name)], name) for name in _by_level(diagnosis)}
     return (
         environment()
         .get_template("report.html.j2")
@@ -104,6 +104,21 @@ def report_page(
             held_out_names={trace.recording for trace in diagnosis.traces if trace.held_out},
         )
     )
+
+
+def _by_level(diagnosis: Diagnosis) -> list[str]:
+    """The channels of single levels that the page speaks of."""
+    sensor = (diagnosis.next_experiment or {}).get("sensor")
+    named = [
+        *(trace.channel for trace in diagnosis.traces),
+        *diagnosis.channels,
+        *([sensor["channel"]] if sensor else []),
+    ]
+    return [name for name in named if level_of(name) is not None]
+
+
+def _at_level(meaning: str, name: str) -> str:
+    return meaning.replace("of a level", f"of level {level_of(name)}")
 
 
 def _forces(diagnosis: Diagnosis, model: Model[Any]) -> dict[str, str]:

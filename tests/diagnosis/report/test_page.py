@@ -158,6 +158,21 @@ def test_page_without_held_out_recordings_or_screen() -> None:
     assert "held-out" not in words and "What could be missing" not in words
 
 
+def test_page_tells_the_levels_of_a_building_apart() -> None:
+    """A channel that would tell rivals apart may be of a level that no recording holds."""
+    wider = {f"level_displacement_x_{level}": {"bearing_stiffness": 2.5} for level in (0, 1)}
+    offered = {
+        "separates": ["bouc_wen", "mullins"],
+        "recording": None,
+        "sensor": {"channel": "level_acceleration_x_2", "noise": "1% of its peak", "expected_evidence": 40.0},
+        "static_test": "",
+    }
+    page = render(replace(diagnosis("cannot_tell_apart"), channels=wider, next_experiment=offered))
+    words = " ".join(" ".join(outline(page).text).split())
+    assert "horizontal displacement of level 0" in words and "horizontal displacement of level 1" in words
+    assert "Record the absolute horizontal acceleration of level 2 as well" in words
+
+
 def test_words_of_a_user_are_no_markup() -> None:
     page = render(replace(diagnosis(), statement="a < b & <b>bold</b>"))
     assert "a &lt; b &amp; &lt;b&gt;bold&lt;/b&gt;" in page
