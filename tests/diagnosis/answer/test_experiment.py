@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cache
 
-from diagnosis.answer.experiment import next_experiment
+from diagnosis.answer.experiment import next_experiment, unrecorded
 from diagnosis.errors.model import calibrated
 from diagnosis.fit.setup import measure
 from diagnosis.search.candidates import Candidate, candidates
 from diagnosis.search.found import Near, Search
 from diagnosis.search.refit import Explanation, extend
 from grids.recordings.base import Recording
-from grids.specimen import Specimen
+from grids.specimen import Specimen, with_mechanism
 from models.kinematics import Place
+from tests.diagnosis.buildings import BEARINGS, made
 from tests.diagnosis.buildings import SPECIMEN as BUILDING
-from tests.diagnosis.buildings import made
 from tests.diagnosis.made import SPECIMEN, recording
 from tests.diagnosis.report.schema import NextExperimentPart
 
@@ -66,6 +67,16 @@ def test_a_run_and_a_channel_are_offered_that_tell_the_laws_of_a_building_apart(
     # the slab's accelerometer, not one on a body that the model has not
     assert offered["sensor"]["channel"] in ("level_acceleration_x_0", "on")
     assert "cycle the rubber slowly" in offered["static_test"]
+
+
+def test_what_is_recorded_already_is_no_further_channel() -> None:
+    """The acceleration from which a displacement was integrated is the same measurement, and not compared."""
+    run = made("small", 1.0, 1)
+    both = replace(run, channels={**run.channels, "level_acceleration_x": run.channels["level_displacement_x"]})
+    filtered = with_mechanism(BUILDING, "integrated_displacement", {"high_pass_hz": 0.1})
+    values = {**BUILDING.parameters, **BEARINGS}
+    assert unrecorded(measure(BUILDING, [run]), {}, values) == ["level_acceleration_x_0"]
+    assert unrecorded(measure(filtered, [both]), {}, values) == []
 
 
 def test_no_shaking_is_offered_that_would_tell_nothing() -> None:
