@@ -9,7 +9,7 @@ windows share moves with the parameters; it is linear and costs no runs.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -20,7 +20,7 @@ from scipy.stats import qmc
 from diagnosis.data.measured import Measured
 from diagnosis.fit.bounded import bounded_step
 from diagnosis.fit.misfit import NU, Asking, Linear, Misfit, Reduced, answered, reduce
-from diagnosis.fit.prediction import Point
+from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.unknowns import clip, values_of
 from models.base import FloatArray
 from models.errors import InputError
@@ -247,21 +247,26 @@ def fit_together(
     found: dict[int, Fitted] = {}
     asked = {k: next(one) for k, one in enumerate(asking)}
     while asked:
-        points = [replace(p, stages=misfits[k].predictor.stages) for k, own in asked.items() for p in own]
-        first, refused = 0, None
-        try:
-            predicted = misfits[0].predictor.predict(points)
-        except InputError as refusal:
-            refused = refusal
-        for k, own in list(asked.items()):
-            part = slice(first, first + len(own))
-            first += len(own)
+        points = {k: [replace(p, stages=misfits[k].predictor.stages) for p in own] for k, own in asked.items()}
+        for k, answer in _answers(misfits[0].predictor, points).items():
             try:
-                asked[k] = asking[k].send(predicted[part]) if refused is None else asking[k].throw(refused)
+                asked[k] = asking[k].throw(answer) if isinstance(answer, InputError) else asking[k].send(answer)
             except StopIteration as end:
                 found[k] = end.value
                 del asked[k]
     return [found[k] for k in range(len(misfits))]
+
+
+def _answers(predictor: Predictor, asked: Mapping[int, Sequence[Point]]) -> dict[int, FloatArray | InputError]:
+    """The predictions that each asks for, run side by side; where the model refuses some parameters, one by one."""
+    try:
+        predicted = predictor.predict([p for own in asked.values() for p in own])
+    except InputError as refusal:
+        if len(asked) == 1:
+            return dict.fromkeys(asked, refusal)
+        return {k: answer for k, own in asked.items() for answer in _answers(predictor, {k: own}).values()}
+    ends = np.cumsum([len(own) for own in asked.values()])
+    return dict(zip(asked, np.split(predicted, ends[:-1]), strict=True))
 
 
 def _fitting(

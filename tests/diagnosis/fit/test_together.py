@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from diagnosis.fit.solver import fit, fit_together
 from diagnosis.fit.whitening import sensor_noise_only
 from grids.stages import Stage
 from models.base import FloatArray
+from models.errors import InputError
 from tests.diagnosis.fit import carried as wall
 from tests.diagnosis.made import SPECIMEN, TRUE, recording
 
@@ -131,3 +133,27 @@ def test_fits_with_unknowns_side_by_side_end_where_each_does() -> None:
         alone = fit(misfit, base.u, base.states)
         assert one.loss == pytest.approx(alone.loss, rel=1e-6)
         np.testing.assert_allclose(one.u, alone.u, atol=1e-5)
+
+
+def test_parameters_of_one_that_the_model_refuses_leave_the_others_as_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    measured = measure(SPECIMEN, [recording("b", 2)], reference_peak=0.03)
+    base = base_fit(SPECIMEN, measured)
+    fixed = {**base.misfit.fixed, "restitution.factor_on_housner": 0.95}
+    settings = [of("restitution", (4.0, 6.0)), of("restitution", (0.0, 0.0))]
+    predictor = base.misfit.predictor
+    several = [replace(base.misfit, fixed=fixed, predictor=replace(predictor, stages=one)) for one in settings]
+    begun, alone = fit(several[0], base.u, base.states, 0), fit(several[1], base.u, base.states)
+    predict, first = Predictor.predict, True
+
+    def refused(self: Predictor, points: Any, *rest: Any, **more: Any) -> Any:
+        nonlocal first
+        if any(point.stages == settings[0] for point in points):
+            if not first:
+                raise InputError("not these")
+            first = False
+        return predict(self, points, *rest, **more)
+
+    monkeypatch.setattr(Predictor, "predict", refused)
+    stays, other = fit_together(several, base.u, base.states)
+    assert stays.loss == pytest.approx(begun.loss, rel=1e-9)
+    assert other.loss == pytest.approx(alone.loss, rel=1e-9)
