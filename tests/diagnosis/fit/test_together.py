@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ import pytest
 from diagnosis.fit.misfit import Misfit
 from diagnosis.fit.prediction import Point, Predictor
 from diagnosis.fit.setup import base_fit, measure
-from diagnosis.fit.solver import fit, fit_together
+from diagnosis.fit.solver import Fitted, fit, fit_together
 from diagnosis.fit.whitening import sensor_noise_only
 from grids.stages import Stage
 from models.base import FloatArray
@@ -122,13 +123,20 @@ def test_fits_side_by_side_are_those_one_by_one(iterations: int) -> None:
     assert len({round(one.loss, 3) for one in together}) == len(SETTINGS)
 
 
-def test_fits_with_unknowns_side_by_side_end_where_each_does() -> None:
+@cache
+def two_with_unknowns() -> tuple[Fitted, list[Misfit]]:
+    """A base fit, and its misfit with a restitution that acts for two seconds, or never."""
     measured = measure(SPECIMEN, [recording("b", 2)], reference_peak=0.03)
     base = base_fit(SPECIMEN, measured)
     fixed = {**base.misfit.fixed, "restitution.factor_on_housner": 0.95}
     settings = [of("restitution", (4.0, 6.0)), of("restitution", (0.0, 0.0))]
     predictor = base.misfit.predictor
     several = [replace(base.misfit, fixed=fixed, predictor=replace(predictor, stages=one)) for one in settings]
+    return base, several
+
+
+def test_fits_with_unknowns_side_by_side_end_where_each_does() -> None:
+    base, several = two_with_unknowns()
     for one, misfit in zip(fit_together(several, base.u, base.states), several, strict=True):
         alone = fit(misfit, base.u, base.states)
         assert one.loss == pytest.approx(alone.loss, rel=1e-6)
@@ -136,18 +144,13 @@ def test_fits_with_unknowns_side_by_side_end_where_each_does() -> None:
 
 
 def test_parameters_of_one_that_the_model_refuses_leave_the_others_as_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
-    measured = measure(SPECIMEN, [recording("b", 2)], reference_peak=0.03)
-    base = base_fit(SPECIMEN, measured)
-    fixed = {**base.misfit.fixed, "restitution.factor_on_housner": 0.95}
-    settings = [of("restitution", (4.0, 6.0)), of("restitution", (0.0, 0.0))]
-    predictor = base.misfit.predictor
-    several = [replace(base.misfit, fixed=fixed, predictor=replace(predictor, stages=one)) for one in settings]
+    base, several = two_with_unknowns()
     begun, alone = fit(several[0], base.u, base.states, 0), fit(several[1], base.u, base.states)
     predict, first = Predictor.predict, True
 
     def refused(self: Predictor, points: Any, *rest: Any, **more: Any) -> Any:
         nonlocal first
-        if any(point.stages == settings[0] for point in points):
+        if any(point.stages == several[0].predictor.stages for point in points):
             if not first:
                 raise InputError("not these")
             first = False
