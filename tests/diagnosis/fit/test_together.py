@@ -145,7 +145,8 @@ def test_fits_with_unknowns_side_by_side_end_where_each_does() -> None:
 
 def test_parameters_of_one_that_the_model_refuses_leave_the_others_as_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
     base, several = two_with_unknowns()
-    begun, alone = fit(several[0], base.u, base.states, 0), fit(several[1], base.u, base.states)
+    away = base.u + 1.0
+    begun, alone = fit(several[0], away, base.states, 0), fit(several[1], away, base.states, 1)
     predict, first = Predictor.predict, True
 
     def refused(self: Predictor, points: Any, *rest: Any, **more: Any) -> Any:
@@ -157,6 +158,7 @@ def test_parameters_of_one_that_the_model_refuses_leave_the_others_as_they_are(m
         return predict(self, points, *rest, **more)
 
     monkeypatch.setattr(Predictor, "predict", refused)
-    stays, other = fit_together(several, base.u, base.states)
+    stays, other = fit_together(several, away, base.states, 1)
     assert stays.loss == pytest.approx(begun.loss, rel=1e-9)
     assert other.loss == pytest.approx(alone.loss, rel=1e-9)
+    assert other.loss < fit(several[1], away, base.states, 0).loss - 1.0
